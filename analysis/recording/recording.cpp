@@ -1,0 +1,42 @@
+#include "analysis/recording/recording.hpp"
+
+#include <algorithm>
+
+namespace gyrolog {
+
+std::size_t Column::size() const {
+    return std::visit([](const auto& values) { return values.size(); }, data);
+}
+
+double Column::value(std::size_t i) const {
+    return std::visit([&](const auto& values) { return static_cast<double>(values[i]) * scale; }, data);
+}
+
+std::vector<double> Column::values() const {
+    std::vector<double> all(size());
+    for (std::size_t i = 0; i < all.size(); ++i) { all[i] = value(i); }
+    return all;
+}
+
+const Column* Recording::find(std::string_view column_name) const {
+    const auto found =
+        std::ranges::find_if(columns, [&](const Column& column) { return column.name == column_name; });
+    return found == columns.end() ? nullptr : &*found;
+}
+
+std::int64_t Recording::missing_samples() const {
+    if (segments.empty()) { return 0; }
+    const Segment& last = segments.back();
+    return last.first_index + static_cast<std::int64_t>(last.count) - segments.front().first_index -
+           static_cast<std::int64_t>(rows());
+}
+
+double Recording::duration_s() const {
+    if (segments.empty() || rate_hz <= 0.0) { return 0.0; }
+    const Segment& last = segments.back();
+    return static_cast<double>(last.first_index + static_cast<std::int64_t>(last.count) -
+                               segments.front().first_index) /
+           rate_hz;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,71 @@
+// A recording as the analysis sees it: columns of numbers on a uniform grid of sampling instants, with holes where
+// samples are missing. Where it came from (capture, text, simulation) is no longer visible.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace gyrolog {
+
+// One quantity. Counts keep the sensor's integers (value = counts * scale); sources that have only real numbers keep
+// those, already in `unit`.
+struct Column {
+    std::string name;  // recording.md's name without the unit: "gx", "gx2", "ax", "temp", "ref_x"
+    std::string unit;  // of value(): "rad/s", "m/s^2", "degC"
+    std::variant<std::vector<std::int16_t>, std::vector<double>> data;
+    double scale = 1.0;  // unit per count; 1 for real numbers
+
+    std::size_t size() const;
+    bool is_counts() const { return data.index() == 0; }
+    double value(std::size_t i) const;
+    std::vector<double> values() const;
+};
+
+// Rows first ... first + count - 1 follow each other without a hole; the first of them is sampling instant
+// `first_index` of the grid.
+struct Segment {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    std::int64_t first_index = 0;
+};
+
+enum class StampKind {
+    none,      // no time stamps came with the data: the rate was given
+    sampling,  // stamps mark the sampling instants: dropouts can be read from them
+    arrival,   // stamps mark when the data arrived (bursts): good for the mean rate only
+};
+
+struct Dropout {
+    double at_s = 0.0;         // from the recording's first sample
+    std::int64_t samples = 0;  // missing
+    std::string cause;         // "sensor_fifo_overflow", "bus_error", "ring_overflow", "link", "time_stamps", "empty_fields"
+};
+
+// Segments are in order and do not overlap on the grid; every row belongs to exactly one.
+struct Recording {
+    std::string name;
+    double rate_hz = 0.0;                   // estimated from the stamps, or given
+    std::optional<double> nominal_rate_hz;  // what the device or the user said
+    std::optional<double> rate_sd_hz;       // one sigma of the estimate
+    std::optional<double> stamp_jitter_s;   // one sigma of the stamps about the fitted grid
+    StampKind stamps = StampKind::none;
+    std::vector<double> t_s;                // stamps as they came, one a row; empty with StampKind::none
+    std::vector<Column> columns;            // gyro first
+    std::vector<Segment> segments;
+    std::vector<Dropout> dropouts;
+    std::vector<std::string> warnings;      // for the user: what was odd about the data and what was done about it
+
+    std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
+    const Column* find(std::string_view column_name) const;
+    std::int64_t missing_samples() const;
+    // From the first sampling instant to the end of the last one: (last index - first index + 1) / rate.
+    double duration_s() const;
+};
+
+}  // namespace gyrolog

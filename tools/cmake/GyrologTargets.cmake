@@ -1,0 +1,87 @@
+# The compiler settings every target shares, and one function for each kind of target.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_C_STANDARD_REQUIRED ON)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+
+find_package(Threads REQUIRED)
+
+add_library(gyrolog_settings INTERFACE)
+# A simulated sample must be the same bits with both compilers: no contraction to fused multiply-add.
+target_compile_options(gyrolog_settings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wformat=2
+  -Wnull-dereference -Werror -ffp-contract=off
+  $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast -Woverloaded-virtual -Wnon-virtual-dtor>)
+target_include_directories(gyrolog_settings INTERFACE ${CMAKE_SOURCE_DIR})
+target_link_libraries(gyrolog_settings INTERFACE Threads::Threads)
+if(GYROLOG_SANITIZE)
+  target_compile_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE})
+  # GCC's -Wnull-dereference and -Wmaybe-uninitialized misfire on instrumented code.
+  target_compile_options(gyrolog_settings INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized)
+endif()
+if(GYROLOG_FUZZ)
+  target_compile_options(gyrolog_settings INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# gyrolog_library(NAME SOURCES ... LINK ...): a static library with the project's settings.
+function(gyrolog_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  add_library(${name} STATIC ${arg_SOURCES})
+  target_link_libraries(${name} PUBLIC ${arg_LINK} PRIVATE gyrolog_settings)
+  target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
+endfunction()
+
+# gyrolog_test(NAME SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds]): one GoogleTest binary, one ctest entry.
+function(gyrolog_test name)
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT" ${ARGN})
+  if(NOT GYROLOG_TESTS)
+    return()
+  endif()
+  find_package(GTest REQUIRED)
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE gyrolog_settings ${arg_LINK} GTest::gmock GTest::gtest_main)
+  add_test(NAME ${name} COMMAND ${name})
+  if(NOT arg_LABELS)
+    set(arg_LABELS default)
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 120)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
+    WORKING_DIRECTORY ${CMAKE_BINARY_DIR}
+    ENVIRONMENT "GYROLOG_SOURCE_DIR=${CMAKE_SOURCE_DIR};GYROLOG_BUILD_DIR=${CMAKE_BINARY_DIR};${arg_ENVIRONMENT}")
+endfunction()
+
+# gyrolog_fuzz(NAME SOURCES ... LINK ...): with clang and GYROLOG_FUZZ a libFuzzer binary; in the ordinary build the
+# same entry point behind a driver that feeds it a bounded number of generated inputs, as a default-tier test.
+function(gyrolog_fuzz name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  if(GYROLOG_FUZZ)
+    add_executable(${name} ${arg_SOURCES})
+    target_link_libraries(${name} PRIVATE gyrolog_settings ${arg_LINK})
+    target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  elseif(GYROLOG_TESTS)
+    add_executable(${name} ${arg_SOURCES} ${CMAKE_SOURCE_DIR}/tests/fuzz/bounded_driver.cpp)
+    target_link_libraries(${name} PRIVATE gyrolog_settings ${arg_LINK})
+    add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/${name})
+    set_tests_properties(${name} PROPERTIES LABELS "default;fuzz" TIMEOUT 120)
+  endif()
+endfunction()
+
+# gyrolog_benchmark(NAME SOURCES ... LINK ...): a Google Benchmark binary, built on request.
+function(gyrolog_benchmark name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  if(NOT GYROLOG_BENCHMARKS)
+    return()
+  endif()
+  find_package(benchmark REQUIRED)
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE gyrolog_settings ${arg_LINK} benchmark::benchmark_main)
+endfunction()
