@@ -1,0 +1,16 @@
+// A result file, written whole or not at all.
+#pragma once
+
+#include <string>
+
+#include "host/base/bytes.hpp"
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+// Replaces the file at `path` by `contents`: written beside it and renamed, so that a failure leaves what was there.
+// A path that is no regular file (a pipe, /dev/stdout) is written directly.
+// Errors: storage_failed, disk_full, not_found (the folder is missing), permission_denied.
+Status write_file(const std::string& path, ByteView contents);
+
+}  // namespace gyrolog
