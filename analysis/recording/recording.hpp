@@ -13,13 +13,14 @@
 
 namespace gyrolog {
 
-// One quantity. Counts keep the sensor's integers (value = counts * scale); sources that have only real numbers keep
-// those, already in `unit`.
+// One quantity. Counts keep the sensor's integers (value = counts * scale + offset); sources that have only real
+// numbers keep those, already in `unit`.
 struct Column {
     std::string name;  // recording.md's name without the unit: "gx", "gx2", "ax", "temp", "ref_x"
     std::string unit;  // of value(): "rad/s", "m/s^2", "degC"
     std::variant<std::vector<std::int16_t>, std::vector<double>> data;
-    double scale = 1.0;  // unit per count; 1 for real numbers
+    double scale = 1.0;   // unit per count; 1 for real numbers
+    double offset = 0.0;  // value at count 0; only a temperature has one
 
     std::size_t size() const;
     bool is_counts() const { return data.index() == 0; }
@@ -55,7 +56,8 @@ struct Recording {
     std::optional<double> rate_sd_hz;       // one sigma of the estimate
     std::optional<double> stamp_jitter_s;   // one sigma of the stamps about the fitted grid
     StampKind stamps = StampKind::none;
-    std::vector<double> t_s;                // stamps as they came, one a row; empty with StampKind::none
+    std::vector<double> t_s;                // stamps as they came, one a row; empty with StampKind::none, and where
+                                            // the segments hold all that the stamps said (a capture)
     std::vector<Column> columns;            // gyro first
     std::vector<Segment> segments;
     std::vector<Dropout> dropouts;
