@@ -1,52 +1,131 @@
-/// The board's own state machine: identify, configure, stream, account for what could not be sent (SPEC.md, Device).
+/// The board's own state machine: identify, configure, stream, account for what could not be sent (SPEC.md,
+/// Device).
 ///
 /// Invariants:
-///   - Every sampling instant takes one index, whether its sample was kept or lost.
-///   - Every frame takes one sequence number when it is made. A frame that finds no room in the ring is dropped whole:
+///   - Every sampling instant takes one index, whether its sample was kept or lost, and a loss is counted
+///   exactly:
+///     samples in the frames made so far + lost_samples == index of the next instant not yet dealt with.
+///   - Every frame takes one sequence number when it is made. A frame that finds no room in the ring is
+///   dropped whole:
 ///     the wire never carries a torn frame, and the host sees the missing number.
+///   - The samples of one frame are consecutive, and taken under one configuration.
 ///   - Nothing here waits for the host, and nothing is allocated.
 ///
-/// Threads: glp_board_on_data_ready may interrupt the others on a single-core device; it writes only the pending
-/// interrupts' queue. All other calls belong to one main loop.
+/// Threads: glp_board_on_data_ready and glp_board_on_sampling_instant may interrupt the others on a
+/// single-core device; they write only the queue of instants. All other calls belong to one main loop.
 #ifndef GYROLOG_PROTOCOL_DEVICE_BOARD_H
 #define GYROLOG_PROTOCOL_DEVICE_BOARD_H
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include <gyrolog_protocol/frame.h>
 #include <gyrolog_protocol/frame_stream.h>
 #include <gyrolog_protocol/message.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "hal.h"
 #include "mpu9250.h"
+
+/// Instants that may wait for the main loop: a power of two, 8 bytes each. The FIFO holds 42 samples of gyro
+/// and accel.
+#ifndef GLP_BOARD_INSTANTS
+    #define GLP_BOARD_INSTANTS 128U
+#endif
+/// The least ring that glp_board_init takes: one frame of the largest size beside the room kept for short
+/// frames.
+#define GLP_BOARD_RING_MIN 2048U
 
 /// What a port knows about itself at boot.
 typedef struct glp_board_identity {
     uint8_t uid[GLP_UID_BYTES];
     const char* firmware;  ///< At most GLP_FIRMWARE_BYTES characters
     uint32_t tick_hz;
-    uint8_t tick_bits;
+    uint8_t tick_bits;      ///< 32 to 64
+    uint32_t rate_max_mHz;  ///< Fastest output rate this port can keep up with; CONFIGURE above it is refused
     uint32_t boot_id;
     glp_reset_cause reset_cause;
 } glp_board_identity;
 
-typedef struct glp_board glp_board;  // defined below; a port may place it in static memory
+/// The fields are the module's own; a test may look at them. A port places one in static memory.
+typedef struct glp_board {
+    const glp_hal* hal;
+    glp_board_identity identity;
+    uint64_t tick_mask;
+    uint8_t who_am_i;
+    bool sensor_ready;
 
-/// `ring` is where frames wait for the host; 4 KiB ride out 2 s at 100 Hz.
-void glp_board_init(glp_board* self, const glp_hal* hal, const glp_board_identity* identity, uint8_t* ring,
+    glp_mpu_settings settings;
+    glp_mpu_plan plan;
+    uint8_t samples_per_frame_asked;  ///< 0: the board chooses
+    glp_config config;                ///< As the host is told
+    uint64_t period_ticks;            ///< Nominal, of the output rate
+
+    // Written by the interrupt while `armed`, read by the main loop.
+    volatile bool armed;
+    uint16_t interrupts_to_skip;  ///< Until the next sampling instant, where the board decimates
+    volatile uint32_t instants;   ///< Since the start, modulo 2^32
+    uint64_t instant_ticks[GLP_BOARD_INSTANTS];
+
+    // Accounts since the start.
+    bool streaming;
+    bool resync;  ///< The FIFO's content cannot be trusted: empty it before the next read
+    uint16_t resync_flags;
+    uint64_t next_index;      ///< Of the oldest instant not yet dealt with
+    uint64_t previous_ticks;  ///< Of the instant before it
+    bool previous_known;
+    uint32_t lost_samples;
+    uint32_t lost_frames;
+    uint32_t fifo_overflows;
+    uint32_t bus_errors;
+    int16_t temperature;
+
+    // The frame that is being filled.
+    uint8_t payload[GLP_FRAME_PAYLOAD_MAX];
+    uint8_t frame_samples;
+    uint16_t frame_flags;
+    uint16_t next_flags;  ///< For the next SAMPLES frame
+    uint64_t frame_ticks;
+    uint64_t frame_index;
+
+    // Frames on their way: each as two bytes of length and its wire bytes.
+    uint32_t sequence;
+    uint8_t* ring;
+    size_t ring_bytes;
+    size_t ring_begin;
+    size_t ring_used;
+    size_t ring_high_water;
+    size_t front_bytes;  ///< Left of the frame whose sending has begun
+    bool flush_due;
+    uint32_t overflow_frames;  ///< Dropped and not yet told in an EVENT
+    uint8_t wire[GLP_FRAME_WIRE_MAX];
+
+    bool dtr;
+    uint64_t hello_ticks;  ///< When the last one was made
+    uint64_t status_ticks;
+    glp_stream commands;
+} glp_board;
+
+/// `ring` is where frames wait for the host; 4 KiB ride out 2 s at 100 Hz. `hal` and `ring` must outlive the
+/// board. False when the ring is smaller than GLP_BOARD_RING_MIN or tick_bits is not 32 to 64.
+bool glp_board_init(glp_board* self, const glp_hal* hal, const glp_board_identity* identity, uint8_t* ring,
                     size_t ring_bytes);
-/// Resets and sets up the sensor with the default configuration. False when WHO_AM_I or a read-back is wrong: the
-/// board then still answers, and says so in an EVENT.
+/// Resets and sets up the sensor with the default configuration: 100 Hz, gyro 500 dps and accel 8 g, DLPF 41
+/// Hz. False when the bus fails, or WHO_AM_I or a read-back is wrong: the board then still answers, and says
+/// so in an EVENT.
 bool glp_board_boot(glp_board* self);
 
-/// The sensor's data-ready interrupt, with the tick at which it came.
+/// The sensor's data-ready interrupt, with the tick at which it came. Counts to the k-th where the board
+/// decimates.
 void glp_board_on_data_ready(glp_board* self, uint64_t ticks);
-/// The host's SET_CONTROL_LINE_STATE. A rising DTR starts the stream, a falling one stops it.
+/// The same for a port that has done that counting elsewhere: by a timer that counts the pin, or, where the
+/// pin cannot show single samples (at 32 kHz its 50 us pulses merge), by a timer of the output rate.
+void glp_board_on_sampling_instant(glp_board* self, uint64_t ticks);
+/// The host's SET_CONTROL_LINE_STATE. A rising DTR starts the stream, a falling one stops it. A port reports
+/// a bus reset, a suspend or an unplugged cable as DTR low.
 void glp_board_on_line_state(glp_board* self, bool dtr);
 /// Bytes from the OUT endpoint.
 void glp_board_on_receive(glp_board* self, const uint8_t* bytes, size_t size);
 /// One turn of the main loop: read the sensor, build frames, feed the endpoint, send what is due.
 void glp_board_poll(glp_board* self);
 
+#endif

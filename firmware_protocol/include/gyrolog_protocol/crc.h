@@ -1,5 +1,5 @@
-/// CRC-32 (polynomial 0x04C11DB7, reflected, initial value and final xor 0xFFFFFFFF): the one of IEEE 802.3 and zlib.
-/// Check value: the nine characters "123456789" give 0xCBF43926.
+/// CRC-32 (polynomial 0x04C11DB7, reflected, initial value and final xor 0xFFFFFFFF): the one of IEEE 802.3
+/// and zlib. Check value: the nine characters "123456789" give 0xCBF43926.
 #ifndef GYROLOG_PROTOCOL_CRC_H
 #define GYROLOG_PROTOCOL_CRC_H
 

@@ -1,7 +1,7 @@
 /// One frame: header, payload, checksum (SPEC.md, Frames).
 ///
-///   wire = 00, COBS(body), 00        body = header (8 bytes), payload, CRC-32 of both; little endian throughout
-///   header = version u8, type u8, flags u16, sequence u32
+///   wire = 00, COBS(body), 00        body = header (8 bytes), payload, CRC-32 of both; little endian
+///   throughout header = version u8, type u8, flags u16, sequence u32
 #ifndef GYROLOG_PROTOCOL_FRAME_H
 #define GYROLOG_PROTOCOL_FRAME_H
 
@@ -16,7 +16,8 @@
 #define GLP_FRAME_BODY_MAX 1016U
 #define GLP_FRAME_BODY_MIN (GLP_FRAME_HEADER_BYTES + GLP_FRAME_CRC_BYTES)
 #define GLP_FRAME_PAYLOAD_MAX (GLP_FRAME_BODY_MAX - GLP_FRAME_BODY_MIN)
-/// COBS form without delimiters, at the most. 1016 = 4 * 254: the last full group needs no code byte behind it.
+/// COBS form without delimiters, at the most. 1016 = 4 * 254: the last full group needs no code byte behind
+/// it.
 #define GLP_FRAME_ENCODED_MAX 1020U
 /// With both delimiters.
 #define GLP_FRAME_WIRE_MAX (GLP_FRAME_ENCODED_MAX + 2U)
@@ -36,7 +37,8 @@ typedef enum glp_frame_type {
     glp_frame_get_status = 0x85
 } glp_frame_type;
 
-/// Flags of a SAMPLES frame: what happened between the sample before and the frame's first one. 0 in other frames.
+/// Flags of a SAMPLES frame: what happened between the sample before and the frame's first one. 0 in other
+/// frames.
 enum {
     glp_flag_sensor_fifo_overflow = 0x0001,
     glp_flag_bus_error = 0x0002,
@@ -59,8 +61,9 @@ typedef struct glp_frame {
 /// Status: ok; bad_length when the payload exceeds GLP_FRAME_PAYLOAD_MAX; no_space.
 glp_cobs_result glp_frame_encode(const glp_frame* frame, uint8_t* wire, size_t capacity);
 
-/// Judges the bytes between two delimiters (COBS form). `body` receives the decoded bytes, and the frame's payload
-/// points into it. Status: ok, bad_cobs, bad_length, bad_crc, bad_version.
-glp_status glp_frame_decode(const uint8_t* encoded, size_t size, uint8_t body[GLP_FRAME_BODY_MAX], glp_frame* frame);
+/// Judges the bytes between two delimiters (COBS form). `body` receives the decoded bytes, and the frame's
+/// payload points into it. Status: ok, bad_cobs, bad_length, bad_crc, bad_version.
+glp_status glp_frame_decode(const uint8_t* encoded, size_t size, uint8_t body[GLP_FRAME_BODY_MAX],
+                            glp_frame* frame);
 
 #endif

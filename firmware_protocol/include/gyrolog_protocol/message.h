@@ -1,8 +1,10 @@
-/// The payloads of the device's frames (SPEC.md, Messages). Little endian, no padding; offsets stand in SPEC.md.
+/// The payloads of the device's frames (SPEC.md, Messages). Little endian, no padding; offsets stand in
+/// SPEC.md.
 ///
-/// Each pair: glp_X_write fills `payload` and returns its size (0 when it does not fit or a field is out of range);
-/// glp_X_read judges a received frame: ok, bad_length, bad_value. A longer payload than this minor version knows is
-/// accepted and its tail ignored (SPEC.md, Versioning), except in SAMPLES, whose length is exact.
+/// Each pair: glp_X_write fills `payload` and returns its size (0 when it does not fit or a field is out of
+/// range); glp_X_read judges a received frame: ok, bad_length, bad_value. A longer payload than this minor
+/// version knows is accepted and its tail ignored (SPEC.md, Versioning), except in SAMPLES, whose length is
+/// exact.
 #ifndef GYROLOG_PROTOCOL_MESSAGE_H
 #define GYROLOG_PROTOCOL_MESSAGE_H
 
@@ -17,12 +19,13 @@
 #define GLP_FIRMWARE_BYTES 24U
 #define GLP_SENSOR_BYTES 16U
 
-/// HELLO, 72 bytes: who is speaking. Sent when the host raises DTR, on request, and every 5 s while streaming.
+/// HELLO, 72 bytes: who is speaking. Sent when the host raises DTR, on request, and every 5 s while
+/// streaming.
 typedef struct glp_hello {
     uint8_t protocol_major;
     uint8_t protocol_minor;
-    uint8_t tick_bits;    ///< Width of the device's tick counter, 32 to 64; ticks are modulo 2^tick_bits
-    uint8_t who_am_i;     ///< The sensor's WHO_AM_I register as read, 0x71 for an MPU-9250
+    uint8_t tick_bits;  ///< Width of the device's tick counter, 32 to 64; ticks are modulo 2^tick_bits
+    uint8_t who_am_i;   ///< The sensor's WHO_AM_I register as read, 0x71 for an MPU-9250
     uint32_t tick_hz;
     uint32_t boot_id;     ///< Differs from boot to boot: tells a reset from a gap
     uint8_t reset_cause;  ///< glp_reset_cause
@@ -45,34 +48,35 @@ enum { glp_layout_gyro = 0x01, glp_layout_accel = 0x02, glp_layout_temperature =
 
 /// CONFIG, 40 bytes: the configuration in force. Sent after each HELLO and after each change.
 typedef struct glp_config {
-    uint16_t generation;         ///< Counts changes since boot; SAMPLES name the one they were taken under
+    uint16_t generation;  ///< Counts changes since boot; SAMPLES name the one they were taken under
     uint8_t layout;
     uint8_t samples_per_frame;
-    uint32_t rate_mHz;           ///< Nominal output rate in millihertz
+    uint32_t rate_mHz;  ///< Nominal output rate in millihertz
     uint16_t gyro_full_scale_dps;
     uint16_t accel_full_scale_g;
     uint16_t dlpf_hz;            ///< Gyro bandwidth by the register map, 0 when the filter is bypassed
+    uint16_t decimation;         ///< The board takes every k-th sample that the sensor makes; 1 takes all
     uint32_t gyro_ndps_per_lsb;  ///< Nanodegrees per second for one count
     uint32_t accel_pg_per_lsb;   ///< Pico-g for one count (8 g at 4096 LSB/g: 244140625)
     uint32_t temp_nC_per_lsb;    ///< Nanokelvin for one count
     int32_t temp_offset_mC;      ///< Temperature at count 0, thousandths of a degree Celsius
-    uint8_t registers[8];        ///< Read back: SMPLRT_DIV CONFIG GYRO_CONFIG ACCEL_CONFIG ACCEL_CONFIG2 FIFO_EN
-                                 ///< INT_ENABLE USER_CTRL
+    uint8_t registers[8];  ///< Read back: SMPLRT_DIV CONFIG GYRO_CONFIG ACCEL_CONFIG ACCEL_CONFIG2 FIFO_EN
+                           ///< INT_ENABLE USER_CTRL
 } glp_config;
 
 #define GLP_SAMPLES_HEADER_BYTES 28U
 
-/// SAMPLES: consecutive samples. Sample i of the frame has index first_index + i; indices count every sampling
-/// instant since the start, so a jump is exactly the number of samples lost.
+/// SAMPLES: consecutive samples. Sample i of the frame has index first_index + i; indices count every
+/// sampling instant since the start, so a jump is exactly the number of samples lost.
 typedef struct glp_samples {
-    uint64_t first_ticks;        ///< Device ticks at the data-ready interrupt of the first sample
+    uint64_t first_ticks;  ///< Device ticks at the data-ready interrupt of the first sample
     uint64_t first_index;
     uint16_t config_generation;
-    int16_t temperature;         ///< Counts, read once a frame
-    uint32_t lost_samples;       ///< Lost on the device since the start
-    uint8_t count;               ///< 1 or more
+    int16_t temperature;    ///< Counts, read once a frame
+    uint32_t lost_samples;  ///< Lost on the device since the start
+    uint8_t count;          ///< 1 or more
     uint8_t layout;
-    const uint8_t* samples;      ///< count times glp_sample_bytes(layout)
+    const uint8_t* samples;  ///< count times glp_sample_bytes(layout)
 } glp_samples;
 
 /// Bytes of one sample; 0 for a layout the specification does not know.
@@ -85,16 +89,16 @@ int16_t glp_sample_field(const glp_samples* samples, size_t i, size_t field);
 /// STATUS, 48 bytes, once a second while streaming: the device's own accounts.
 typedef struct glp_device_status {
     uint64_t ticks;
-    uint64_t next_index;            ///< Index of the next sampling instant
+    uint64_t next_index;  ///< Index of the next sampling instant
     uint32_t lost_samples;
-    uint32_t lost_frames;           ///< Frames dropped because the host did not take them; their numbers are used up
+    uint32_t lost_frames;  ///< Frames dropped because the host did not take them; their numbers are used up
     uint32_t ring_bytes;
     uint32_t ring_high_water_bytes;
-    uint32_t usb_frame_number;      ///< Count of start-of-frame tokens, 1 kHz on full speed; 0 when unknown
+    uint32_t usb_frame_number;  ///< Count of start-of-frame tokens, 1 kHz on full speed; 0 when unknown
     uint32_t fifo_overflows;
     uint32_t bus_errors;
     int16_t temperature;
-    uint8_t streaming;              ///< 0 or 1
+    uint8_t streaming;  ///< 0 or 1
     uint8_t reset_cause;
 } glp_device_status;
 
@@ -106,7 +110,8 @@ typedef enum glp_event_code {
     glp_event_sensor_fifo_overflow = 3,
     glp_event_bus_error = 4,
     glp_event_ring_overflow = 5,
-    glp_event_sensor_fault = 6,  ///< WHO_AM_I or a register read back wrong; value = register << 8 | value read
+    glp_event_sensor_fault =
+        6,  ///< WHO_AM_I or a register read back wrong; value = register << 8 | value read
     glp_event_text = 7
 } glp_event_code;
 
@@ -114,7 +119,7 @@ typedef struct glp_event {
     uint64_t ticks;
     uint64_t index;  ///< Next sampling instant when it happened
     uint16_t code;
-    int32_t value;   ///< By code: samples or frames lost, register read, ...
+    int32_t value;  ///< By code: samples or frames lost, register read, ...
     const char* text;
     size_t text_bytes;
 } glp_event;

@@ -4,9 +4,9 @@
 
 typedef enum glp_status {
     glp_status_ok = 0,
-    glp_status_bad_cobs,     ///< A code byte points past the end, or a zero stands inside an encoded frame.
-    glp_status_bad_length,   ///< Too short or too long for a frame, or for the message that its type promises.
-    glp_status_bad_crc,      ///< The checksum does not agree.
+    glp_status_bad_cobs,    ///< A code byte points past the end, or a zero stands inside an encoded frame.
+    glp_status_bad_length,  ///< Too short or too long for a frame, or for the message that its type promises.
+    glp_status_bad_crc,     ///< The checksum does not agree.
     glp_status_bad_version,  ///< Intact, but of another major version.
     glp_status_bad_value,    ///< Intact, but a field holds a value that the specification forbids.
     glp_status_no_space,     ///< The caller's buffer is too small.
