@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cassert>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <variant>
@@ -37,19 +38,26 @@ public:
     bool ok() const { return state_.index() == 0; }
     explicit operator bool() const { return ok(); }
 
-    T& value() & { assert(ok()); return *std::get_if<0>(&state_); }
-    const T& value() const& { assert(ok()); return *std::get_if<0>(&state_); }
-    T&& value() && { assert(ok()); return std::move(*std::get_if<0>(&state_)); }
+    T& value() & { return *checked(std::get_if<0>(&state_)); }
+    const T& value() const& { return *checked(std::get_if<0>(&state_)); }
+    T&& value() && { return std::move(*checked(std::get_if<0>(&state_))); }
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
     T& operator*() & { return value(); }
     const T& operator*() const& { return value(); }
     T&& operator*() && { return std::move(*this).value(); }
 
-    const Error& error() const& { assert(!ok()); return *std::get_if<1>(&state_); }
-    Error&& error() && { assert(!ok()); return std::move(*std::get_if<1>(&state_)); }
+    const Error& error() const& { return *checked(std::get_if<1>(&state_)); }
+    Error&& error() && { return std::move(*checked(std::get_if<1>(&state_))); }
 
 private:
+    // Reading what is not there is our own bug, in a release build too.
+    template <typename Alternative>
+    static Alternative* checked(Alternative* alternative) {
+        if (alternative == nullptr) { std::abort(); }
+        return alternative;
+    }
+
     std::variant<T, Error> state_;
 };
 
