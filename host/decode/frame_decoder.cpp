@@ -1,0 +1,66 @@
+#include "host/decode/frame_decoder.hpp"
+
+namespace gyrolog {
+namespace {
+
+template <typename Message>
+glp_status deliver_as(const ReceivedFrame& received, MessageHandler& handler,
+                      glp_status (*read)(const glp_frame*, Message*),
+                      void (MessageHandler::*hand_over)(const ReceivedFrame&, const Message&)) {
+    Message message{};
+    const glp_status status = read(&received.frame, &message);
+    if (status == glp_status_ok) { (handler.*hand_over)(received, message); }
+    return status;
+}
+
+glp_status deliver_by_type(const ReceivedFrame& received, MessageHandler& handler) {
+    switch (received.frame.type) {
+        case glp_frame_hello:
+            return deliver_as(received, handler, glp_hello_read, &MessageHandler::on_hello);
+        case glp_frame_config:
+            return deliver_as(received, handler, glp_config_read, &MessageHandler::on_config);
+        case glp_frame_samples:
+            return deliver_as(received, handler, glp_samples_read, &MessageHandler::on_samples);
+        case glp_frame_status:
+            return deliver_as(received, handler, glp_device_status_read, &MessageHandler::on_status);
+        case glp_frame_event:
+            return deliver_as(received, handler, glp_event_read, &MessageHandler::on_event);
+        case glp_frame_reply:
+            return deliver_as(received, handler, glp_reply_read, &MessageHandler::on_reply);
+        default:
+            handler.on_unknown(received);
+            return glp_status_ok;
+    }
+}
+
+}  // namespace
+
+void FrameDecoder::feed(ByteView bytes, HostTime arrival, MessageHandler& handler) {
+    while (!bytes.empty()) {
+        ReceivedFrame received{{}, arrival};
+        bool have_frame = false;
+        const std::size_t taken =
+            glp_stream_push(&stream_, bytes.data(), bytes.size(), &received.frame, &have_frame);
+        bytes = bytes.subspan(taken);
+        if (have_frame) { deliver(received, handler); }
+    }
+}
+
+void FrameDecoder::deliver(const ReceivedFrame& received, MessageHandler& handler) {
+    if (stream_.frames == 1) { skipped_at_head_ = stream_.bytes_skipped; }
+    const glp_status status = deliver_by_type(received, handler);
+    if (status != glp_status_ok) {
+        ++malformed_[status];
+        handler.on_malformed(received, status);
+    }
+}
+
+ByteAccounts FrameDecoder::bytes() const {
+    return {stream_.bytes_in, stream_.bytes_in_frames, stream_.bytes_skipped, glp_stream_buffered(&stream_)};
+}
+
+std::uint64_t FrameDecoder::bytes_skipped_at_head() const {
+    return stream_.frames == 0 ? stream_.bytes_skipped : skipped_at_head_;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,146 @@
+// Says of every frame and sample whether it arrived, and of those that did not, where they were lost.
+//
+// What proves a loss:
+//   - A frame number left out is a missing frame: the board numbers every frame that it makes.
+//   - A sampling index left out is a missing sample: the board numbers every sampling instant since its
+//   start.
+//   - The indices after a start begin at 0, so a run whose first frames were lost still shows how much is
+//   missing.
+//   - At the end of a run the STATUS and EVENT frames tell how far the board had counted.
+// Across a reset of the board (another boot id, or numbers that begin again) nothing is missing that these do
+// not prove.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "host/decode/frame_decoder.hpp"
+#include "host/decode/protocol.hpp"
+
+namespace gyrolog {
+
+enum class DropoutCause : std::uint8_t {
+    sensor_fifo_overflow,  // the board says so
+    bus_error,             // the board says so
+    ring_overflow,         // the board says so: the host did not take frames in time
+    device,                // the board counted the loss, but the frame that names the cause was lost too
+    link,                  // frames are missing, and the board counted no loss
+};
+
+std::string_view dropout_cause_name(DropoutCause cause);
+
+// Samples first_index ... first_index + samples - 1 of a run.
+struct LinkDropout {
+    std::uint32_t run = 0;
+    std::uint64_t first_index = 0;
+    std::uint64_t samples = 0;
+    DropoutCause cause = DropoutCause::link;
+};
+
+struct FrameAccounts {
+    std::uint64_t good = 0;        // intact, well formed, new
+    std::uint64_t missing = 0;     // numbers left out
+    std::uint64_t duplicated = 0;  // intact, but came before
+    std::uint64_t corrupted =
+        0;  // refused candidates and malformed messages; a missing number usually goes with one
+    std::array<std::uint64_t, glp_status_count> corrupted_by_reason{};
+    std::uint64_t lost_on_device = 0;  // of the missing ones, as the board's STATUS counts them
+};
+
+struct SampleAccounts {
+    std::uint64_t good = 0;
+    std::uint64_t missing = 0;
+    std::uint64_t lost_on_device = 0;  // as the board counts them: a cross-check on `missing`
+};
+
+struct LinkReport {
+    ByteAccounts bytes;
+    std::uint64_t bytes_skipped_at_head = 0;
+    FrameAccounts frames;
+    SampleAccounts samples;
+    std::vector<LinkDropout> dropouts;  // in order of arrival
+    std::uint64_t dropouts_unlisted = 0;
+    std::uint64_t boots = 0;  // of the board, as far as the stream shows
+    std::uint64_t runs = 0;
+
+    bool complete() const { return frames.missing == 0 && samples.missing == 0; }
+};
+
+// Where a SAMPLES frame belongs. A run is a stretch with one boot, one start, one configuration and one
+// unbroken clock.
+struct SamplePlace {
+    std::uint32_t boot = 0;
+    std::uint32_t run = 0;
+    bool continues_grid = false;  // the run's indices go on from the run before it
+};
+
+// Each take_ call is given one frame, in the order of arrival. False or no value means: this frame is a
+// duplicate and must be used for nothing.
+class LinkAccounts {
+public:
+    bool take_hello(const glp_frame& frame, const glp_hello& hello);
+    bool take_config(const glp_frame& frame, const glp_config& config);
+    std::optional<SamplePlace> take_samples(const glp_frame& frame, const glp_samples& samples);
+    bool take_status(const glp_frame& frame, const glp_device_status& status);
+    bool take_event(const glp_frame& frame, const glp_event& event);
+    bool take_malformed(const glp_frame& frame);
+    bool take_other(const glp_frame& frame);  // replies and unknown types
+
+    std::uint32_t boot() const { return boot_; }
+    // What is known now. Samples that a STATUS or EVENT proves missing at the end are in it.
+    LinkReport report(const FrameDecoder& decoder) const;
+
+private:
+    // The end of the run as the board last told it: `next_index` instants have passed, of which up to
+    // `pending` may still wait in a frame that is not full.
+    struct Tail {
+        std::uint64_t next_index = 0;
+        std::uint64_t pending = 0;
+        std::uint32_t lost_samples = 0;
+    };
+    // Enough of a frame to know it again.
+    struct Fingerprint {
+        std::uint64_t value = 0;
+        std::uint32_t sequence = 0;
+        bool used = false;
+    };
+
+    bool take_number(const glp_frame& frame, bool new_boot);
+    void begin_boot();
+    void begin_run(std::uint64_t next_index, std::uint32_t lost_samples);
+    bool begins_grid(const glp_frame& frame, const glp_samples& samples) const;
+    std::vector<LinkDropout> split(std::uint64_t missing, std::uint64_t lost, std::uint16_t flags) const;
+    std::vector<LinkDropout> tail_gap() const;
+    void enter(const std::vector<LinkDropout>& gap);
+
+    FrameAccounts frames_;
+    std::uint64_t intact_ = 0;
+    std::uint64_t malformed_ = 0;  // of the intact ones that were new
+    std::optional<std::uint32_t> next_sequence_;
+    std::array<Fingerprint, 256> recent_{};
+    std::optional<std::uint32_t> boot_id_;
+    std::uint32_t boot_ = 0;
+    bool booted_since_samples_ = false;
+    bool start_seen_ = false;
+
+    SampleAccounts samples_;
+    std::vector<LinkDropout> dropouts_;
+    std::uint64_t dropouts_unlisted_ = 0;
+    std::uint32_t run_ = 0;
+    bool in_run_ = false;
+    std::uint64_t next_index_ = 0;
+    std::uint32_t lost_samples_ = 0;    // the board's counter at the last SAMPLES
+    std::uint64_t lost_unplaced_ = 0;   // counted by the board, not yet seen as a jump of the index
+    std::uint64_t frames_missing_ = 0;  // since the last SAMPLES
+    std::uint16_t told_flags_ = 0;      // causes that EVENT frames named since the last SAMPLES
+    std::uint16_t generation_ = 0;
+    std::uint8_t layout_ = 0;
+    std::uint64_t frame_samples_ = 1;  // of a full frame, as configured or seen
+    std::optional<Tail> tail_;
+    std::optional<std::uint32_t> status_lost_frames_;
+};
+
+}  // namespace gyrolog

@@ -1,0 +1,236 @@
+#include "host/decode/recording_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <utility>
+
+namespace gyrolog {
+namespace {
+
+constexpr double standard_gravity = 9.80665;  // m/s^2, 3rd CGPM 1901
+constexpr double rate_tolerance = 0.03;       // the sensor's clock is good to 1 %
+constexpr double longest_pause_s = 1e9;
+
+bool same_setting(const glp_config& a, const glp_config& b) {
+    return a.layout == b.layout && a.rate_mHz == b.rate_mHz &&
+           a.gyro_full_scale_dps == b.gyro_full_scale_dps && a.accel_full_scale_g == b.accel_full_scale_g &&
+           a.dlpf_hz == b.dlpf_hz && a.gyro_ndps_per_lsb == b.gyro_ndps_per_lsb &&
+           a.accel_pg_per_lsb == b.accel_pg_per_lsb && a.temp_nC_per_lsb == b.temp_nC_per_lsb &&
+           a.temp_offset_mC == b.temp_offset_mC &&
+           std::memcmp(a.registers, b.registers, sizeof(a.registers)) == 0;
+}
+
+void append_field(std::vector<std::int16_t>& column, const std::uint8_t* bytes, std::size_t count,
+                  std::size_t stride) {
+    const std::size_t rows = column.size();
+    column.resize(rows + count);
+    std::int16_t* out = column.data() + rows;
+    for (std::size_t i = 0; i < count; ++i, bytes += stride) {
+        out[i] = static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[0] | (bytes[1] << 8U)));
+    }
+}
+
+struct Quantity {
+    const char* name;
+    const char* unit;
+    double scale;
+    double offset;
+};
+
+std::vector<Quantity> quantities(std::uint8_t layout, const glp_config& config) {
+    const double rad_s = config.gyro_ndps_per_lsb * 1e-9 * std::numbers::pi / 180.0;
+    const double m_s2 = config.accel_pg_per_lsb * 1e-12 * standard_gravity;
+    std::vector<Quantity> all;
+    if ((layout & glp_layout_gyro) != 0) {
+        for (const char* name : {"gx", "gy", "gz"}) { all.push_back({name, "rad/s", rad_s, 0.0}); }
+    }
+    if ((layout & glp_layout_accel) != 0) {
+        for (const char* name : {"ax", "ay", "az"}) { all.push_back({name, "m/s^2", m_s2, 0.0}); }
+    }
+    all.push_back({"temp", "degC", config.temp_nC_per_lsb * 1e-9, config.temp_offset_mC * 1e-3});
+    return all;
+}
+
+}  // namespace
+
+void RecordingBuilder::take_config(std::uint32_t boot, const glp_config& config) {
+    config_ = config;
+    config_boot_ = boot;
+    // A stream that was joined in its middle tells the configuration of its first samples afterwards.
+    if (!current_.config && current_.boot == boot && current_.generation == config.generation) {
+        current_.config = config;
+    }
+}
+
+const glp_config* RecordingBuilder::config_of(const SamplePlace& place, const glp_samples& samples) const {
+    const bool known =
+        config_ && config_boot_ == place.boot && config_->generation == samples.config_generation;
+    return known ? &*config_ : nullptr;
+}
+
+bool RecordingBuilder::belongs(const SamplePlace& place, const glp_samples& samples) const {
+    if (current_.rows == 0 || current_.layout != samples.layout) { return false; }
+    const glp_config* config = config_of(place, samples);
+    if (config != nullptr && current_.config) { return same_setting(*config, *current_.config); }
+    return current_.boot == place.boot && current_.generation == samples.config_generation;
+}
+
+void RecordingBuilder::take_samples(const SamplePlace& place, const glp_samples& samples) {
+    if (!belongs(place, samples)) {
+        close();
+        current_.layout = samples.layout;
+    }
+    current_.boot = place.boot;
+    current_.generation = samples.config_generation;
+    if (!current_.config) {
+        if (const glp_config* config = config_of(place, samples)) { current_.config = *config; }
+    }
+    append(place, samples);
+}
+
+void RecordingBuilder::append(const SamplePlace& place, const glp_samples& samples) {
+    const std::size_t stride = glp_sample_bytes(samples.layout);
+    const std::size_t fields = stride / 2;
+    for (std::size_t field = 0; field < fields; ++field) {
+        append_field(current_.fields[field], samples.samples + 2 * field, samples.count, stride);
+    }
+    if ((samples.layout & glp_layout_temperature) == 0) {
+        std::vector<std::int16_t>& column = current_.fields[fields];
+        column.insert(column.end(), samples.count, samples.temperature);
+    }
+
+    std::vector<Piece>& pieces = current_.pieces;
+    if (!pieces.empty() && pieces.back().run == place.run &&
+        samples.first_index - pieces.back().first_index == pieces.back().count) {
+        pieces.back().count += samples.count;
+    } else {
+        pieces.push_back(
+            {place.boot, place.run, place.continues_grid, samples.first_index, current_.rows, samples.count});
+    }
+    current_.rows += samples.count;
+}
+
+void RecordingBuilder::close() {
+    if (!current_.config) {
+        without_config_ += current_.rows;
+    } else if (current_.rows > longest_.rows) {
+        left_out_ += longest_.rows;
+        longest_ = std::move(current_);
+    } else {
+        left_out_ += current_.rows;
+    }
+    current_ = Stretch{};
+}
+
+// Consecutive runs share their grid when the board's indices go on, and are otherwise set apart by the
+// clocks.
+std::vector<RecordingBuilder::RunOrigin> RecordingBuilder::place_on_grid(const std::vector<Piece>& pieces,
+                                                                         const SampleTimeline& timeline,
+                                                                         Recording& recording) {
+    std::vector<RunOrigin> origins;
+    for (const Piece& piece : pieces) {
+        if (origins.empty()) {
+            origins.push_back({piece.run, piece.first_index, 0});
+        } else if (origins.back().run != piece.run) {
+            const RunOrigin& before = origins.back();
+            const Segment& last = recording.segments.back();
+            const std::int64_t end = last.first_index + static_cast<std::int64_t>(last.count);
+            std::int64_t grid = before.grid_index(piece.first_index);
+            if (!piece.continues_grid) {
+                const std::uint64_t end_index =
+                    before.first_index + static_cast<std::uint64_t>(end - before.grid);
+                const auto from = timeline.device_time_s(before.run, end_index, recording.rate_hz);
+                const auto to = timeline.device_time_s(piece.run, piece.first_index, recording.rate_hz);
+                const double pause_s = from && to ? *to - *from : -1.0;
+                grid = end + std::llround(std::clamp(pause_s, 0.0, longest_pause_s) * recording.rate_hz);
+                if (pause_s < 0.0) {
+                    recording.warnings.emplace_back("a restart's pause is not known: joined without one");
+                }
+            }
+            origins.push_back({piece.run, piece.first_index, std::max(grid, end)});
+        }
+        recording.segments.push_back(
+            {piece.first, piece.count, origins.back().grid_index(piece.first_index)});
+    }
+    return origins;
+}
+
+void RecordingBuilder::enter_dropouts(const LinkReport& link, const std::vector<RunOrigin>& origins,
+                                      Recording& recording) {
+    const std::int64_t last = recording.segments.back().first_index;
+    for (const LinkDropout& dropout : link.dropouts) {
+        const auto origin =
+            std::lower_bound(origins.begin(), origins.end(), dropout.run,
+                             [](const RunOrigin& o, std::uint32_t run) { return o.run < run; });
+        if (origin == origins.end() || origin->run != dropout.run) { continue; }
+        const std::int64_t at = origin->grid_index(dropout.first_index);
+        if (at <= 0 || at > last) { continue; }
+        recording.dropouts.push_back({static_cast<double>(at) / recording.rate_hz,
+                                      static_cast<std::int64_t>(dropout.samples),
+                                      std::string(dropout_cause_name(dropout.cause))});
+    }
+    if (link.dropouts_unlisted > 0) {
+        recording.warnings.push_back(std::to_string(link.dropouts_unlisted) +
+                                     " more dropouts are counted but not listed");
+    }
+}
+
+void RecordingBuilder::set_rate(const Stretch& stretch, const SampleTimeline& timeline,
+                                Recording& recording) {
+    const double nominal_hz = stretch.config->rate_mHz * 1e-3;
+    recording.nominal_rate_hz = nominal_hz;
+    recording.rate_hz = nominal_hz;
+    const auto estimate = timeline.rate(stretch.pieces.front().run, stretch.pieces.back().run);
+    if (!estimate) {
+        recording.warnings.emplace_back(
+            "too few time stamps, or no HELLO with their unit: the rate is the nominal one");
+        return;
+    }
+    recording.rate_hz = estimate->rate_hz;
+    recording.rate_sd_hz = estimate->sd_hz;
+    recording.stamp_jitter_s = estimate->jitter_s;
+    recording.stamps = StampKind::sampling;
+    if (std::abs(estimate->rate_hz - nominal_hz) > rate_tolerance * nominal_hz) {
+        recording.warnings.push_back("the stamps give " + std::to_string(estimate->rate_hz) +
+                                     " Hz, the board says " + std::to_string(nominal_hz) + " Hz");
+    }
+}
+
+Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimeline& timeline,
+                                           const LinkReport& link) {
+    close();
+    RecordingBuilder taken = std::exchange(*this, RecordingBuilder{});
+    Stretch& stretch = taken.longest_;
+    if (stretch.rows == 0) {
+        return Error{ErrorCode::malformed, taken.without_config_ > 0
+                                               ? "the stream never tells the configuration of its samples"
+                                               : "the stream holds no samples"};
+    }
+
+    Recording recording;
+    recording.name = std::move(name);
+    set_rate(stretch, timeline, recording);
+    if (recording.rate_hz <= 0.0) { return Error{ErrorCode::malformed, "the board says that its rate is 0"}; }
+    enter_dropouts(link, place_on_grid(stretch.pieces, timeline, recording), recording);
+    std::size_t field = 0;
+    for (const Quantity& quantity : quantities(stretch.layout, *stretch.config)) {
+        recording.columns.push_back({quantity.name, quantity.unit, std::move(stretch.fields[field++]),
+                                     quantity.scale, quantity.offset});
+    }
+    if (stretch.pieces.front().boot != stretch.pieces.back().boot) {
+        recording.warnings.emplace_back("the board was reset: the pause is known by the host's clock only");
+    }
+    if (taken.left_out_ > 0) {
+        recording.warnings.push_back(std::to_string(taken.left_out_) +
+                                     " samples of other configurations are left out");
+    }
+    if (taken.without_config_ > 0) {
+        recording.warnings.push_back(std::to_string(taken.without_config_) +
+                                     " samples whose configuration was never told are left out");
+    }
+    return recording;
+}
+
+}  // namespace gyrolog

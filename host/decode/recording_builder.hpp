@@ -1,0 +1,85 @@
+// Samples of a stream as a Recording: counts in columns, and segments on the grid of sampling instants.
+//
+// One configuration only, because a column has one scale and a recording one rate: the longest stretch is
+// kept, and the rest is named in a warning. Restarts within a stretch become segments at their true distance:
+// by the board's ticks, or by the host's clock when the board was reset.
+//
+// Memory: two bytes a value. A stretch that has become shorter than another is dropped at once.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/recording/recording.hpp"
+#include "host/base/result.hpp"
+#include "host/decode/link_accounts.hpp"
+#include "host/decode/protocol.hpp"
+#include "host/decode/sample_timeline.hpp"
+
+namespace gyrolog {
+
+class RecordingBuilder {
+public:
+    // `boot` is LinkAccounts::boot() at this frame.
+    void take_config(std::uint32_t boot, const glp_config& config);
+    void take_samples(const SamplePlace& place, const glp_samples& samples);
+
+    // Error `malformed` when there are no samples, or none whose configuration was told. Leaves the builder
+    // empty.
+    Result<Recording> finish(std::string name, const SampleTimeline& timeline, const LinkReport& link);
+
+private:
+    static constexpr std::size_t fields_max = 7;
+
+    // Consecutive samples.
+    struct Piece {
+        std::uint32_t boot = 0;
+        std::uint32_t run = 0;
+        bool continues_grid = false;
+        std::uint64_t first_index = 0;  // in its run
+        std::size_t first = 0;          // row
+        std::size_t count = 0;
+    };
+    // The grid index of a run's sample.
+    struct RunOrigin {
+        std::uint32_t run = 0;
+        std::uint64_t first_index = 0;
+        std::int64_t grid = 0;
+
+        std::int64_t grid_index(std::uint64_t index) const {
+            return grid + static_cast<std::int64_t>(index - first_index);
+        }
+    };
+    struct Stretch {
+        std::uint32_t boot = 0;
+        std::uint16_t generation = 0;
+        std::uint8_t layout = 0;
+        std::optional<glp_config> config;
+        std::vector<Piece> pieces;
+        std::array<std::vector<std::int16_t>, fields_max>
+            fields;  // in the layout's order; temperature always last
+        std::size_t rows = 0;
+    };
+
+    bool belongs(const SamplePlace& place, const glp_samples& samples) const;
+    const glp_config* config_of(const SamplePlace& place, const glp_samples& samples) const;
+    void close();
+    void append(const SamplePlace& place, const glp_samples& samples);
+    static void set_rate(const Stretch& stretch, const SampleTimeline& timeline, Recording& recording);
+    static std::vector<RunOrigin> place_on_grid(const std::vector<Piece>& pieces,
+                                                const SampleTimeline& timeline, Recording& recording);
+    static void enter_dropouts(const LinkReport& link, const std::vector<RunOrigin>& origins,
+                               Recording& recording);
+
+    std::optional<glp_config> config_;  // as last told
+    std::uint32_t config_boot_ = 0;
+    Stretch current_;
+    Stretch longest_;
+    std::uint64_t left_out_ = 0;
+    std::uint64_t without_config_ = 0;
+};
+
+}  // namespace gyrolog
