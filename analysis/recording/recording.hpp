@@ -8,19 +8,21 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 namespace gyrolog {
 
-// One quantity. Counts keep the sensor's integers (value = counts * scale + offset); sources that have only real
-// numbers keep those, already in `unit`.
+// One quantity. The data stay as the source had them, sensor counts as integers and real numbers in the source's own
+// unit, so that nothing is rounded on the way in; value() = data * scale + offset is in SI.
 struct Column {
-    std::string name;  // recording.md's name without the unit: "gx", "gx2", "ax", "temp", "ref_x"
-    std::string unit;  // of value(): "rad/s", "m/s^2", "degC"
+    std::string name;  // the quantity and its axis, without a unit: "gx", "gx2", "ax", "temp", "ref_x"
+    std::string unit;  // of value(): "rad/s", "m/s^2", "degC"; "lsb" where the scale of counts is not known
     std::variant<std::vector<std::int16_t>, std::vector<double>> data;
-    double scale = 1.0;   // unit per count; 1 for real numbers
-    double offset = 0.0;  // value at count 0; only a temperature has one
+    double scale = 1.0;         // `unit` per number in data
+    double offset = 0.0;        // value at 0; only a temperature has one
+    std::string source_unit{};  // of data, as a text column's name ends: "dps", "rad_s", "lsb", "g"; may be empty
 
     std::size_t size() const;
     bool is_counts() const { return data.index() == 0; }
@@ -58,7 +60,7 @@ struct Recording {
     StampKind stamps = StampKind::none;
     std::vector<double> t_s;                // stamps as they came, one a row; empty with StampKind::none, and where
                                             // the segments hold all that the stamps said (a capture)
-    std::vector<Column> columns;            // gyro first
+    std::vector<Column> columns;            // gyro first; its values are finite, others may hold NaN for "not known"
     std::vector<Segment> segments;
     std::vector<Dropout> dropouts;
     std::vector<std::string> warnings;      // for the user: what was odd about the data and what was done about it
