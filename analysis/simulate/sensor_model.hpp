@@ -1,0 +1,68 @@
+// What the simulator models, in SI units: the contents of a gyrolog-model/1 file
+// (host/formats/model_json.hpp).
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/noise/noise_model.hpp"
+
+namespace gyrolog {
+
+using Vector3 = std::array<double, 3>;
+using Matrix3 = std::array<Vector3, 3>;  // rows
+
+inline constexpr Matrix3 identity_matrix = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+inline constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
+
+struct AxisModel {
+    NoiseCoefficients noise;  // two-sided convention
+    double bias_rad_s = 0.0;
+    std::map<std::string, double> sd_rel;  // this axis' own uncertainties, in place of the model's
+};
+
+struct TemperatureModel {
+    double reference_C = 25.0;
+    Vector3 bias_rad_s_per_C{};
+    double scale_per_C = 0.0;  // relative change of the scale factor
+};
+
+// An effect that was added to the model: a name of the effect registry, with its parameters under the names
+// and in the units that the effect itself defines.
+struct EffectModel {
+    std::string effect;
+    std::vector<std::string> axes;
+    std::map<std::string, double> params;
+    std::string carried_json;  // keys of this entry that this build does not know; "" for none
+};
+
+struct SensorModel {
+    double rate_hz = 100.0;
+    double full_scale_rad_s = 0.0;
+    double lsb_rad_s = 0.0;  // 0: no quantisation
+    double saturation_rad_s = 0.0;
+    std::array<AxisModel, 3> axes;
+    Matrix3 M = identity_matrix;  // true rate to measured rate
+    double latency_s = 0.0;
+    double timestamp_jitter_s = 0.0;       // one sigma
+    std::map<std::string, double> sd_rel;  // relative one-sigma uncertainties: N, B, K, timestamp_jitter, ...
+    std::map<std::string, double> sd_abs;  // absolute ones: M (1), latency_s (s), rate_rel (1), ...
+    double ref_noise_rad_s = 0.0;          // one sigma of a reference rate's samples
+    double acc_noise_m_s2 = 0.0;           // one sigma of an accelerometer sample
+    double temp_noise_C = 0.0;             // one sigma of a temperature sample
+    std::optional<Matrix3> orientation;    // body to sensor
+    std::optional<Vector3> misalignment;   // relative cross-axis sensitivity
+    std::optional<TemperatureModel> temperature;
+    std::vector<EffectModel> effects;
+    std::string carried_json;  // keys that this build does not know, as JSON text; written back untouched; ""
+                               // for none
+};
+
+// A typical MPU-9250 at 100 Hz and 500 dps: noise and range of its product specification (PS-MPU-9250A-01,
+// table 1), bias instability and random walk as commonly measured.
+SensorModel typical_mpu9250();
+
+}  // namespace gyrolog
