@@ -23,6 +23,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "frame_ring.h"
 #include "hal.h"
 #include "mpu9250.h"
 
@@ -41,7 +42,8 @@ typedef struct glp_board_identity {
     const char* firmware;  ///< At most GLP_FIRMWARE_BYTES characters
     uint32_t tick_hz;
     uint8_t tick_bits;      ///< 32 to 64
-    uint32_t rate_max_mHz;  ///< Fastest output rate this port can keep up with; CONFIGURE above it is refused
+    uint32_t rate_max_mHz;  ///< Fastest output rate this port can keep up with; 0 for no limit.
+                            ///< CONFIGURE above it is refused
     uint32_t boot_id;
     glp_reset_cause reset_cause;
 } glp_board_identity;
@@ -52,24 +54,27 @@ typedef struct glp_board {
     glp_board_identity identity;
     uint64_t tick_mask;
     uint8_t who_am_i;
-    bool sensor_ready;
+    bool sensor_ready;              ///< Set up, and its state not in doubt since
+    glp_mpu_outcome setup_outcome;  ///< Of the last set-up, until an EVENT has told it
+    glp_mpu_fault setup_fault;
+    bool dtr;
 
     glp_mpu_settings settings;
     glp_mpu_plan plan;
-    uint8_t samples_per_frame_asked;  ///< 0: the board chooses
     glp_config config;                ///< As the host is told
+    uint8_t samples_per_frame_asked;  ///< 0: the board chooses
     uint64_t period_ticks;            ///< Nominal, of the output rate
+    uint64_t patience_ticks;          ///< No sample waits longer for its frame to fill
 
-    // Written by the interrupt while `armed`, read by the main loop.
+    // Written by the interrupt while `armed`.
     volatile bool armed;
-    uint16_t interrupts_to_skip;  ///< Until the next sampling instant, where the board decimates
-    volatile uint32_t instants;   ///< Since the start, modulo 2^32
-    uint64_t instant_ticks[GLP_BOARD_INSTANTS];
+    volatile uint16_t interrupts_to_skip;  ///< Until the next instant, where the board decimates
+    volatile uint32_t instants;            ///< Modulo 2^32
+    volatile uint64_t instant_ticks[GLP_BOARD_INSTANTS];
 
     // Accounts since the start.
     bool streaming;
-    bool resync;  ///< The FIFO's content cannot be trusted: empty it before the next read
-    uint16_t resync_flags;
+    uint32_t instants_done;   ///< Of `instants`, how many are in a frame or counted lost
     uint64_t next_index;      ///< Of the oldest instant not yet dealt with
     uint64_t previous_ticks;  ///< Of the instant before it
     bool previous_known;
@@ -79,34 +84,34 @@ typedef struct glp_board {
     uint32_t bus_errors;
     int16_t temperature;
 
+    // Losses on their way to the host.
+    bool resync;            ///< The FIFO's content is not to be trusted: empty it before the next read
+    uint16_t resync_flags;  ///< Why
+    uint16_t next_flags;    ///< For the next SAMPLES frame
+    uint16_t untold_flags;  ///< For the next EVENT, as are the following
+    uint32_t untold_samples;
+    uint64_t untold_index;
+    uint64_t told_ticks;
+    uint32_t untold_frames;
+
     // The frame that is being filled.
     uint8_t payload[GLP_FRAME_PAYLOAD_MAX];
     uint8_t frame_samples;
     uint16_t frame_flags;
-    uint16_t next_flags;  ///< For the next SAMPLES frame
     uint64_t frame_ticks;
     uint64_t frame_index;
 
-    // Frames on their way: each as two bytes of length and its wire bytes.
-    uint32_t sequence;
-    uint8_t* ring;
-    size_t ring_bytes;
-    size_t ring_begin;
-    size_t ring_used;
-    size_t ring_high_water;
-    size_t front_bytes;  ///< Left of the frame whose sending has begun
-    bool flush_due;
-    uint32_t overflow_frames;  ///< Dropped and not yet told in an EVENT
-    uint8_t wire[GLP_FRAME_WIRE_MAX];
-
-    bool dtr;
-    uint64_t hello_ticks;  ///< When the last one was made
+    uint32_t sequence;  ///< Of the next frame
+    uint64_t hello_ticks;
     uint64_t status_ticks;
+    uint8_t wire[GLP_FRAME_WIRE_MAX];
+    glp_frame_ring ring;
     glp_stream commands;
 } glp_board;
 
-/// `ring` is where frames wait for the host; 4 KiB ride out 2 s at 100 Hz. `hal` and `ring` must outlive the
-/// board. False when the ring is smaller than GLP_BOARD_RING_MIN or tick_bits is not 32 to 64.
+/// `ring` is where frames wait for the host; 4 KiB ride out 1.5 s at 100 Hz. `hal` and `ring` must outlive
+/// the board. False when the ring is smaller than GLP_BOARD_RING_MIN, or tick_bits is not 32 to 64 or too few
+/// for 10 s.
 bool glp_board_init(glp_board* self, const glp_hal* hal, const glp_board_identity* identity, uint8_t* ring,
                     size_t ring_bytes);
 /// Resets and sets up the sensor with the default configuration: 100 Hz, gyro 500 dps and accel 8 g, DLPF 41

@@ -109,12 +109,15 @@ glp_mpu_outcome glp_mpu_reset(const glp_hal* hal, uint8_t* who_am_i, glp_mpu_fau
 /// off.
 glp_mpu_outcome glp_mpu_apply(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8],
                               glp_mpu_fault* fault);
-/// Empties the FIFO and switches it (if the plan uses it) and the data-ready interrupt on; `registers` as
-/// above.
+/// Switches the data-ready interrupt and, if the plan uses it, the FIFO on; `registers` as above. The FIFO
+/// may already hold samples when this returns: empty it at a moment between two interrupts.
 glp_mpu_outcome glp_mpu_start(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8]);
 glp_mpu_outcome glp_mpu_stop(const glp_hal* hal);
 
-bool glp_mpu_fifo_reset(const glp_hal* hal, const glp_mpu_plan* plan);
+/// Two register writes; what is sampled between them is lost.
+bool glp_mpu_fifo_empty(const glp_hal* hal);
+/// Forgets an overflow that was noted before this call.
+bool glp_mpu_overflow_clear(const glp_hal* hal);
 /// Bytes in the FIFO, and whether it has overflowed since the last call.
 bool glp_mpu_fifo_level(const glp_hal* hal, size_t* bytes, bool* overflowed);
 

@@ -16,6 +16,8 @@ typedef struct glp_cobs_result {
 } glp_cobs_result;
 
 /// Neither call writes past `capacity`. glp_cobs_decode may work in place (`out == in`).
+/// One sequence of bytes has one encoded form: a full last group is not followed by an empty one, and the
+/// decoder refuses it (SPEC.md, COBS).
 glp_cobs_result glp_cobs_encode(const uint8_t* in, size_t size, uint8_t* out, size_t capacity);
 glp_cobs_result glp_cobs_decode(const uint8_t* in, size_t size, uint8_t* out, size_t capacity);
 

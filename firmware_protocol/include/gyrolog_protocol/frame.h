@@ -1,7 +1,7 @@
 /// One frame: header, payload, checksum (SPEC.md, Frames).
 ///
 ///   wire = 00, COBS(body), 00        body = header (8 bytes), payload, CRC-32 of both; little endian
-///   throughout header = version u8, type u8, flags u16, sequence u32
+///   header = version u8, type u8, flags u16, sequence u32
 #ifndef GYROLOG_PROTOCOL_FRAME_H
 #define GYROLOG_PROTOCOL_FRAME_H
 
@@ -16,8 +16,7 @@
 #define GLP_FRAME_BODY_MAX 1016U
 #define GLP_FRAME_BODY_MIN (GLP_FRAME_HEADER_BYTES + GLP_FRAME_CRC_BYTES)
 #define GLP_FRAME_PAYLOAD_MAX (GLP_FRAME_BODY_MAX - GLP_FRAME_BODY_MIN)
-/// COBS form without delimiters, at the most. 1016 = 4 * 254: the last full group needs no code byte behind
-/// it.
+/// COBS form without delimiters, at the most. 1016 = 4 * 254: no code byte follows the last full group.
 #define GLP_FRAME_ENCODED_MAX 1020U
 /// With both delimiters.
 #define GLP_FRAME_WIRE_MAX (GLP_FRAME_ENCODED_MAX + 2U)
@@ -37,10 +36,10 @@ typedef enum glp_frame_type {
     glp_frame_get_status = 0x85
 } glp_frame_type;
 
-/// Flags of a SAMPLES frame: what happened between the sample before and the frame's first one. 0 in other
-/// frames.
+/// Flags of a SAMPLES frame: what happened between the sample before and the frame's first one. Other frames:
+/// 0.
 enum {
-    glp_flag_sensor_fifo_overflow = 0x0001,
+    glp_flag_sensor_fifo_overflow = 0x0001,  ///< The FIFO or the data registers, read too late
     glp_flag_bus_error = 0x0002,
     glp_flag_ring_overflow = 0x0004,
     glp_flag_first_after_start = 0x0008,

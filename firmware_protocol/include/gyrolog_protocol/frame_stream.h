@@ -17,9 +17,8 @@
 #include "frame.h"
 
 typedef struct glp_stream {
-    uint8_t encoded[GLP_FRAME_ENCODED_MAX];
-    uint8_t body[GLP_FRAME_BODY_MAX];
-    size_t encoded_bytes;    ///< Of the candidate that is being collected
+    uint8_t buffer[GLP_FRAME_ENCODED_MAX];  ///< The candidate while it comes in, then its decoded body
+    size_t encoded_bytes;                   ///< Of the candidate that is being collected
     bool leading_delimiter;  ///< A delimiter stands in front of the candidate and belongs to nobody yet
     bool overlong;           ///< The candidate has outgrown a frame: skip up to the next delimiter
     uint64_t bytes_in;

@@ -83,7 +83,7 @@ typedef struct glp_samples {
 size_t glp_sample_bytes(uint8_t layout);
 /// Samples of this layout that fit one frame.
 size_t glp_samples_per_frame_max(uint8_t layout);
-/// The int16 at place `field` (0 to 6) of sample `i`.
+/// The int16 at place `field` of sample `i`: 0 to glp_sample_bytes(layout)/2 - 1.
 int16_t glp_sample_field(const glp_samples* samples, size_t i, size_t field);
 
 /// STATUS, 48 bytes, once a second while streaming: the device's own accounts.
@@ -139,7 +139,8 @@ typedef struct glp_reply {
     uint8_t result;
 } glp_reply;
 
-/// CONFIGURE (command), 16 bytes. 0 in a field means "leave as it is"; dlpf_hz 0xFFFF bypasses the filter.
+/// CONFIGURE (command), 16 bytes. 0 in a field means "leave as it is", but for samples_per_frame, where the
+/// board then chooses; dlpf_hz 0xFFFF bypasses the filter.
 #define GLP_DLPF_OFF 0xFFFFU
 typedef struct glp_configure {
     uint32_t rate_mHz;
