@@ -1,0 +1,18 @@
+// Confidence interval of a deviation by chi-square (NIST SP 1065, section 5.3.2).
+#pragma once
+
+namespace gyrolog {
+
+struct Interval {
+    double lo = 0.0;
+    double hi = 0.0;
+};
+
+// Of the true deviation, given the estimate and its equivalent degrees of freedom; `confidence` between 0 and
+// 1, equal tails: lo = s sqrt(edf / chi2_{(1+p)/2}), hi = s sqrt(edf / chi2_{(1-p)/2}).
+Interval chi_square_interval(double deviation, double edf, double confidence);
+
+// The point that a standard normal variable exceeds with probability 1 - p.
+double normal_quantile(double p);
+
+}  // namespace gyrolog

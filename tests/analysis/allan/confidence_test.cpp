@@ -1,0 +1,185 @@
+#include "analysis/allan/confidence.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "analysis/allan/allan_deviation.hpp"
+#include "analysis/allan/power_law.hpp"
+
+namespace gyrolog {
+namespace {
+
+std::vector<double> white(std::size_t count, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> y(count);
+    for (double& value : y) { value = normal(random); }
+    return y;
+}
+
+std::vector<double> integrated(std::vector<double> y) {
+    for (std::size_t i = 1; i < y.size(); ++i) { y[i] += y[i - 1]; }
+    return y;
+}
+
+std::vector<double> differentiated(std::vector<double> y) {
+    for (std::size_t i = y.size() - 1; i > 0; --i) { y[i] -= y[i - 1]; }
+    return y;
+}
+
+// Half an integration: the fractional filter of 1 / f noise (Kasdin 1995), coefficients h_k = h_{k-1} (k -
+// 1/2) / k.
+std::vector<double> half_integrated(const std::vector<double>& x) {
+    std::vector<double> h{1.0};
+    for (std::size_t k = 1; k < x.size(); ++k) {
+        const auto n = static_cast<double>(k);
+        h.push_back(h.back() * (n - 0.5) / n);
+    }
+    std::vector<double> y(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        for (std::size_t k = 0; k <= i; ++k) { y[i] += h[k] * x[i - k]; }
+    }
+    return y;
+}
+
+TEST(ChiSquareInterval, HasThePublishedLimits) {
+    // NIST SP 1065 section 5.3.2: chi-square percentiles; edf 10, 95 %: 3.247 and 20.483.
+    const Interval interval = chi_square_interval(1.0, 10.0, 0.95);
+    EXPECT_NEAR(interval.lo, std::sqrt(10.0 / 20.483), 2e-5);
+    EXPECT_NEAR(interval.hi, std::sqrt(10.0 / 3.247), 1e-4);
+}
+
+TEST(ChiSquareInterval, AnswersForMillionsOfDegreesOfFreedom) {
+    const Interval interval = chi_square_interval(1.0, 3e6, 0.683);
+    // Nearly normal, one sigma 1 / sqrt(2 edf) = 4.082e-4; the chi-square's skewness shows in the fourth
+    // digit.
+    EXPECT_NEAR(interval.hi - 1.0, 4.085e-4, 1e-6);
+    EXPECT_NEAR(1.0 - interval.lo, 4.085e-4, 1e-6);
+}
+
+struct NoiseCase {
+    PowerLaw law;
+    std::vector<double> (*make)(std::size_t, std::uint64_t);
+};
+
+const NoiseCase noise_cases[] = {
+    {PowerLaw::white_angle, [](std::size_t n, std::uint64_t seed) { return differentiated(white(n, seed)); }},
+    {PowerLaw::white_rate, [](std::size_t n, std::uint64_t seed) { return white(n, seed); }},
+    {PowerLaw::flicker_rate,
+     [](std::size_t n, std::uint64_t seed) { return half_integrated(white(n, seed)); }},
+    {PowerLaw::rate_walk, [](std::size_t n, std::uint64_t seed) { return integrated(white(n, seed)); }},
+};
+
+TEST(PowerLaw, IsIdentifiedFromManyAverages) {
+    for (const NoiseCase& noise : noise_cases) {
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+            EXPECT_EQ(identify_power_law(noise.make(2000, seed)), noise.law) << "seed " << seed;
+        }
+    }
+}
+
+TEST(PowerLaw, IsNotIdentifiedFromFewerThanFourAverages) {
+    EXPECT_EQ(identify_power_law(std::vector<double>{1.0, 2.0, 4.0}), std::nullopt);
+    EXPECT_EQ(identify_power_law(std::vector<double>(50, 1.0)), std::nullopt);
+}
+
+// The definition of the equivalent degrees of freedom, 2 E(s)^2 / var(s), from many realisations.
+double edf_by_simulation(const NoiseCase& noise, std::size_t samples, std::int64_t m, DeviationKind kind,
+                         int runs) {
+    AllanOptions options;
+    options.m = {m};
+    options.kind = kind;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (int run = 0; run < runs; ++run) {
+        // A start-up piece is cut off so that filtered noise is stationary in its differences.
+        std::vector<double> y = noise.make(2 * samples, 1000 + static_cast<std::uint64_t>(run));
+        y.erase(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(samples));
+        const Column column{"gx", "rad/s", y, 1.0, 0.0, "rad_s"};
+        const std::vector<Segment> whole = {{0, samples, 0}};
+        const double s = std::pow(allan_deviation(column, whole, 1.0, options).points.at(0).deviation, 2);
+        sum += s;
+        squares += s * s;
+    }
+    const double mean = sum / runs;
+    return 2.0 * mean * mean / (squares / runs - mean * mean);
+}
+
+TEST(EquivalentDegreesOfFreedom, AreThoseOfSimulatedNoise) {
+    constexpr std::size_t samples = 256;
+    constexpr int runs = 600;
+    for (const NoiseCase& noise : noise_cases) {
+        for (const std::int64_t m : {2, 16, 64}) {
+            for (const DeviationKind kind : {DeviationKind::overlapping, DeviationKind::standard}) {
+                const std::int64_t stride = kind == DeviationKind::standard ? m : 1;
+                const std::int64_t terms = (static_cast<std::int64_t>(samples) - 2 * m) / stride + 1;
+                const double edf = equivalent_degrees_of_freedom(shares_of(noise.law), m, stride, {{terms}});
+                // The variance of s is known to sqrt((2 + 12 / edf) / runs); four sigma, and 8 % for noise
+                // that is sampled instead of continuous.
+                const double tolerance = 4.0 * std::sqrt((2.0 + 12.0 / edf) / runs) + 0.08;
+                EXPECT_NEAR(edf_by_simulation(noise, samples, m, kind, runs) / edf, 1.0, tolerance)
+                    << "law " << static_cast<int>(noise.law) << " m " << m << " stride " << stride;
+            }
+        }
+    }
+}
+
+TEST(EquivalentDegreesOfFreedom, DoNotDependOnHowTheLagsAreSummed) {
+    // m = 256 is summed lag by lag, m = 257 in pieces; both close to the limit of large m.
+    for (const PowerLaw law :
+         {PowerLaw::flicker_angle, PowerLaw::white_rate, PowerLaw::flicker_rate, PowerLaw::rate_walk}) {
+        const double direct = equivalent_degrees_of_freedom(shares_of(law), 256, 1, {{256 * 40}});
+        const double pieces = equivalent_degrees_of_freedom(shares_of(law), 257, 1, {{257 * 40}});
+        EXPECT_NEAR(pieces / direct, 1.0, law == PowerLaw::flicker_angle ? 2e-3 : 1e-4)
+            << static_cast<int>(law);
+    }
+}
+
+TEST(EquivalentDegreesOfFreedom, OfOneDifferenceIsOne) {
+    EXPECT_DOUBLE_EQ(equivalent_degrees_of_freedom(shares_of(PowerLaw::flicker_rate), 1000, 1, {{1}}), 1.0);
+}
+
+TEST(EquivalentDegreesOfFreedom, AddOverRunsThatAreFarApart) {
+    const double one = equivalent_degrees_of_freedom(shares_of(PowerLaw::white_rate), 10, 1, {{500}});
+    const double two = equivalent_degrees_of_freedom(shares_of(PowerLaw::white_rate), 10, 1, {{500, 500}});
+    EXPECT_DOUBLE_EQ(two, 2.0 * one);
+}
+
+// An interval at 68.3 % must cover the truth in 68.3 % of records, at every averaging time, the last ones
+// too.
+TEST(AllanInterval, CoversTheTruthAsOftenAsItSays) {
+    constexpr std::size_t samples = 4096;
+    constexpr int records = 200;
+    for (const auto& noise : {noise_cases[1], noise_cases[3]}) {
+        const bool is_white = noise.law == PowerLaw::white_rate;
+        int all = 0;
+        int covered = 0;
+        int late = 0;
+        int late_covered = 0;
+        for (int record = 0; record < records; ++record) {
+            const auto y = noise.make(samples, 77 + static_cast<std::uint64_t>(record));
+            const Column column{"gx", "rad/s", y, 1.0, 0.0, "rad_s"};
+            AllanOptions options;
+            options.m = {2, 8, 32, 128, 512, 1024, 2048};
+            for (const AllanPoint& p : allan_deviation(column, {{{0, samples, 0}}}, 1.0, options).points) {
+                const auto m = static_cast<double>(p.m);
+                const double truth =
+                    is_white ? 1.0 / std::sqrt(m) : std::sqrt((2.0 * m * m + 1.0) / (6.0 * m));
+                const bool inside = p.lo <= truth && truth <= p.hi;
+                ++all;
+                covered += inside ? 1 : 0;
+                if (p.m >= 512) {
+                    ++late;
+                    late_covered += inside ? 1 : 0;
+                }
+            }
+        }
+        EXPECT_NEAR(static_cast<double>(covered) / all, 0.683, 0.06);
+        EXPECT_NEAR(static_cast<double>(late_covered) / late, 0.683, 0.10);
+    }
+}
+
+}  // namespace
+}  // namespace gyrolog
