@@ -15,8 +15,8 @@ public:
     // `wake` makes the owner leave its wait and come to run_pending(); it is called from any thread.
     explicit CallQueue(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-    // Runs `work` on the owner's thread and returns true when it has run; at once when called from that thread.
-    // After close() it returns false and `work` does not run.
+    // Runs `work` on the owner's thread and returns true when it has run; at once when called from that
+    // thread. After close() it returns false and `work` does not run.
     bool call(const std::function<void()>& work) {
         std::unique_lock lock(mutex_);
         if (std::this_thread::get_id() == owner_) {

@@ -1,0 +1,110 @@
+#include "host/transport/usb_source.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace gyrolog {
+namespace {
+
+constexpr std::int64_t drain_ms = 50;
+constexpr std::int64_t write_timeout_ms = 1000;
+
+SourceIdentity identity_of(const UsbBoard& board) {
+    return {board.uri(),
+            board.vendor_id,
+            board.product_id,
+            board.bus_number,
+            board.device_address,
+            board.manufacturer,
+            board.product,
+            board.serial,
+            board.device_descriptor,
+            board.configuration_descriptor};
+}
+
+SourceEnd source_end_of(BulkInStream::End end) {
+    switch (end) {
+        case BulkInStream::End::stopped:
+            return SourceEnd::stopped;
+        case BulkInStream::End::device_lost:
+            return SourceEnd::device_lost;
+        case BulkInStream::End::failed:
+            return SourceEnd::failed;
+    }
+    return SourceEnd::failed;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<UsbSource>> UsbSource::open(std::shared_ptr<UsbContext> usb, const UsbBoard& board,
+                                                   BulkInPlan plan) {
+    // A request that is not whole packets could be overrun by the last one.
+    if (plan.transfers == 0 || plan.transfer_bytes == 0 ||
+        plan.transfer_bytes % board.layout.packet_in_bytes != 0) {
+        return Error{ErrorCode::invalid_argument,
+                     "open board '" + board.uri() + "': transfers must be whole packets of " +
+                         std::to_string(board.layout.packet_in_bytes) + " bytes"};
+    }
+    GYROLOG_TRY(std::unique_ptr<UsbDevice> device, UsbDevice::open(*usb, board));
+    return std::unique_ptr<UsbSource>(new UsbSource(std::move(usb), std::move(device), plan));
+}
+
+Result<std::unique_ptr<UsbSource>> UsbSource::open(std::shared_ptr<UsbContext> usb, std::string_view serial,
+                                                   BulkInPlan plan) {
+    GYROLOG_TRY(const UsbSurvey survey, survey_usb(*usb));
+    GYROLOG_TRY(const UsbBoard board, choose_board(survey, serial));
+    return open(std::move(usb), board, plan);
+}
+
+UsbSource::UsbSource(std::shared_ptr<UsbContext> usb, std::unique_ptr<UsbDevice> device, BulkInPlan plan)
+    : usb_(std::move(usb)),
+      device_(std::move(device)),
+      plan_(plan),
+      identity_(identity_of(device_->board())),
+      stream_(*usb_, device_->handle(), device_->board().layout.endpoint_in, plan_, *this) {}
+
+UsbSource::~UsbSource() {
+    stop();
+    if (line_raised_ && !device_lost_) { static_cast<void>(set_line_state(false)); }
+}
+
+double UsbSource::tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const {
+    const double filled_bytes = std::min(bytes_per_completion, static_cast<double>(plan_.transfer_bytes));
+    return stream_.queued_transfers() * filled_bytes / bytes_per_s;
+}
+
+Status UsbSource::start(TransferSink& sink) {
+    usb_->call([&] { sink_ = &sink; });
+    // A board that refuses the request has no line state; it is quiet until it gets a START command.
+    Status begun = set_line_state(false);
+    if (begun.ok() || begun.error().code == ErrorCode::unsupported) {
+        begun = stream_.start([this](BulkInStream::End end, const std::optional<Error>& error) {
+            device_lost_ = end == BulkInStream::End::device_lost;
+            // Nothing may be told after the end.
+            std::exchange(sink_, nullptr)->on_end(source_end_of(end), error);
+        });
+    }
+    if (!begun.ok()) {
+        usb_->call([this] { sink_ = nullptr; });
+        return begun;
+    }
+    stream_.wait_for_end(drain_ms);
+    return {};
+}
+
+Status UsbSource::set_line_state(bool data_terminal_ready) {
+    GYROLOG_CHECK(device_->set_line_state(data_terminal_ready, *this));
+    line_raised_ = data_terminal_ready;
+    return {};
+}
+
+Status UsbSource::write(ByteView bytes) { return device_->write(bytes, write_timeout_ms, *this); }
+
+void UsbSource::stop() { stream_.stop(); }
+
+void UsbSource::on_usb_transfer(const Transfer& transfer) {
+    // A full sink has counted what it refused. The bus does not wait, so there is no second try.
+    if (sink_ != nullptr) { static_cast<void>(sink_->on_transfer(transfer)); }
+}
+
+}  // namespace gyrolog
