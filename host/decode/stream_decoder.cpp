@@ -1,0 +1,64 @@
+#include "host/decode/stream_decoder.hpp"
+
+namespace gyrolog {
+
+void StreamDecoder::on_hello(const ReceivedFrame& frame, const glp_hello& hello) {
+    if (!accounts_.take_hello(frame.frame, hello)) { return; }
+    hello_ = hello;
+    timeline_.take_hello(hello);
+    if (options_.observer != nullptr) { options_.observer->on_hello(frame, hello); }
+}
+
+void StreamDecoder::on_config(const ReceivedFrame& frame, const glp_config& config) {
+    if (!accounts_.take_config(frame.frame, config)) { return; }
+    config_ = config;
+    builder_.take_config(accounts_.boot(), config);
+    if (options_.observer != nullptr) { options_.observer->on_config(frame, config); }
+}
+
+void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& samples) {
+    const std::optional<SamplePlace> place = accounts_.take_samples(frame.frame, samples);
+    if (!place) { return; }
+    run_ = place->run;
+    timeline_.take_samples(*place, samples, frame.frame.flags, frame.arrival);
+    if (options_.keep_samples) { builder_.take_samples(*place, samples); }
+    if (options_.observer != nullptr) { options_.observer->on_samples(frame, samples); }
+}
+
+void StreamDecoder::on_status(const ReceivedFrame& frame, const glp_device_status& status) {
+    if (!accounts_.take_status(frame.frame, status)) { return; }
+    status_ = status;
+    if (options_.observer != nullptr) { options_.observer->on_status(frame, status); }
+}
+
+void StreamDecoder::on_event(const ReceivedFrame& frame, const glp_event& event) {
+    if (!accounts_.take_event(frame.frame, event)) { return; }
+    if (options_.observer != nullptr) { options_.observer->on_event(frame, event); }
+}
+
+void StreamDecoder::on_reply(const ReceivedFrame& frame, const glp_reply& reply) {
+    if (!accounts_.take_other(frame.frame)) { return; }
+    if (options_.observer != nullptr) { options_.observer->on_reply(frame, reply); }
+}
+
+void StreamDecoder::on_unknown(const ReceivedFrame& frame) {
+    if (!accounts_.take_other(frame.frame)) { return; }
+    if (options_.observer != nullptr) { options_.observer->on_unknown(frame); }
+}
+
+void StreamDecoder::on_malformed(const ReceivedFrame& frame, glp_status reason) {
+    if (!accounts_.take_malformed(frame.frame)) { return; }
+    if (options_.observer != nullptr) { options_.observer->on_malformed(frame, reason); }
+}
+
+std::optional<double> StreamDecoder::rate_hz() const {
+    if (const auto estimate = timeline_.rate(run_, run_)) { return estimate->rate_hz; }
+    if (config_ && config_->rate_mHz > 0) { return config_->rate_mHz * 1e-3; }
+    return std::nullopt;
+}
+
+std::vector<Dropout> StreamDecoder::timed_dropouts(const LinkReport& report) const {
+    return timeline_.time_dropouts(report, config_ ? config_->rate_mHz * 1e-3 : 0.0);
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,73 @@
+// A device's byte stream, decoded: accounts of what arrived, times, and if wanted the samples. Live, replayed
+// and stored data go through here alike.
+//
+//     StreamDecoder decoder({.keep_samples = true});
+//     for (...) { decoder.feed(transfer.data, transfer.time); }
+//     GYROLOG_TRY(Recording recording, decoder.take_recording("night"));
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/recording/recording.hpp"
+#include "host/base/bytes.hpp"
+#include "host/base/clock.hpp"
+#include "host/base/result.hpp"
+#include "host/decode/frame_decoder.hpp"
+#include "host/decode/link_accounts.hpp"
+#include "host/decode/recording_builder.hpp"
+#include "host/decode/sample_timeline.hpp"
+
+namespace gyrolog {
+
+struct StreamDecoderOptions {
+    bool keep_samples = false;           // without it, memory does not grow with the stream
+    MessageHandler* observer = nullptr;  // gets every message but the duplicates; may be null
+};
+
+class StreamDecoder : private MessageHandler {
+public:
+    explicit StreamDecoder(StreamDecoderOptions options = {}) : options_(options) {}
+
+    void feed(ByteView bytes, HostTime arrival) { frames_.feed(bytes, arrival, *this); }
+
+    LinkReport report() const { return accounts_.report(frames_); }
+    const SampleTimeline& timeline() const { return timeline_; }
+    // As last told by the board.
+    const std::optional<glp_hello>& hello() const { return hello_; }
+    const std::optional<glp_config>& config() const { return config_; }
+    const std::optional<glp_device_status>& device_status() const { return status_; }
+    // The sensor's rate in the present run: by the stamps, or nominal before there are enough of them.
+    std::optional<double> rate_hz() const;
+    // The report's dropouts with their time from the first sample.
+    std::vector<Dropout> timed_dropouts(const LinkReport& report) const;
+
+    // Only with keep_samples. Empties the store of samples.
+    Result<Recording> take_recording(std::string name) {
+        return builder_.finish(std::move(name), timeline_, report());
+    }
+
+private:
+    void on_hello(const ReceivedFrame& frame, const glp_hello& hello) override;
+    void on_config(const ReceivedFrame& frame, const glp_config& config) override;
+    void on_samples(const ReceivedFrame& frame, const glp_samples& samples) override;
+    void on_status(const ReceivedFrame& frame, const glp_device_status& status) override;
+    void on_event(const ReceivedFrame& frame, const glp_event& event) override;
+    void on_reply(const ReceivedFrame& frame, const glp_reply& reply) override;
+    void on_unknown(const ReceivedFrame& frame) override;
+    void on_malformed(const ReceivedFrame& frame, glp_status reason) override;
+
+    StreamDecoderOptions options_;
+    FrameDecoder frames_;
+    LinkAccounts accounts_;
+    SampleTimeline timeline_;
+    RecordingBuilder builder_;
+    std::optional<glp_hello> hello_;
+    std::optional<glp_config> config_;
+    std::optional<glp_device_status> status_;
+    std::uint32_t run_ = 0;
+};
+
+}  // namespace gyrolog
