@@ -27,6 +27,10 @@
 #include "hal.h"
 #include "mpu9250.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Instants that may wait for the main loop: a power of two, 8 bytes each. The FIFO holds 42 samples of gyro
 /// and accel.
 #ifndef GLP_BOARD_INSTANTS
@@ -132,5 +136,9 @@ void glp_board_on_line_state(glp_board* self, bool dtr);
 void glp_board_on_receive(glp_board* self, const uint8_t* bytes, size_t size);
 /// One turn of the main loop: read the sensor, build frames, feed the endpoint, send what is due.
 void glp_board_poll(glp_board* self);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -14,6 +14,10 @@
 
 #include "hal.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct glp_frame_ring {
     uint8_t* bytes;  ///< Each frame: its size as two bytes, then its wire bytes
     size_t capacity;
@@ -31,5 +35,9 @@ bool glp_frame_ring_put(glp_frame_ring* self, const uint8_t* wire, size_t size, 
 void glp_frame_ring_drop_waiting(glp_frame_ring* self);
 /// Gives the endpoint what it takes. Flushes the endpoint when the ring runs empty.
 void glp_frame_ring_feed(glp_frame_ring* self, const glp_hal* hal);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -10,6 +10,10 @@
 
 #include "hal.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum {
     glp_mpu_smplrt_div = 0x19,         // (25) sample rate = 1 kHz / (1 + SMPLRT_DIV)
     glp_mpu_config = 0x1A,             // (26)
@@ -125,5 +129,9 @@ bool glp_mpu_fifo_level(const glp_hal* hal, size_t* bytes, bool* overflowed);
 /// registers), big endian, to gyro, accel, temperature, little endian. True when a gyro or accel value stands
 /// at the end of its code range (0x7FFF or 0x8000).
 bool glp_mpu_arrange(uint8_t* samples, size_t count, uint8_t layout);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

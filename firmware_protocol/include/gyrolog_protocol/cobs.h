@@ -7,6 +7,10 @@
 
 #include "status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Bytes that `n` plain bytes need at the most once encoded.
 #define GLP_COBS_ENCODED_MAX(n) ((n) + ((n) / 254U) + 1U)
 
@@ -20,5 +24,9 @@ typedef struct glp_cobs_result {
 /// decoder refuses it (SPEC.md, COBS).
 glp_cobs_result glp_cobs_encode(const uint8_t* in, size_t size, uint8_t* out, size_t capacity);
 glp_cobs_result glp_cobs_decode(const uint8_t* in, size_t size, uint8_t* out, size_t capacity);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,8 +6,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// Checksum of `size` bytes. glp_crc32_continue(glp_crc32(a), b) is the checksum of a followed by b.
 uint32_t glp_crc32(const uint8_t* bytes, size_t size);
 uint32_t glp_crc32_continue(uint32_t crc, const uint8_t* bytes, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,6 +11,10 @@
 #include "cobs.h"
 #include "status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define GLP_FRAME_HEADER_BYTES 8U
 #define GLP_FRAME_CRC_BYTES 4U
 #define GLP_FRAME_BODY_MAX 1016U
@@ -64,5 +68,9 @@ glp_cobs_result glp_frame_encode(const glp_frame* frame, uint8_t* wire, size_t c
 /// payload points into it. Status: ok, bad_cobs, bad_length, bad_crc, bad_version.
 glp_status glp_frame_decode(const uint8_t* encoded, size_t size, uint8_t body[GLP_FRAME_BODY_MAX],
                             glp_frame* frame);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -16,6 +16,10 @@
 
 #include "frame.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct glp_stream {
     uint8_t buffer[GLP_FRAME_ENCODED_MAX];  ///< The candidate while it comes in, then its decoded body
     size_t encoded_bytes;                   ///< Of the candidate that is being collected
@@ -38,5 +42,9 @@ size_t glp_stream_push(glp_stream* self, const uint8_t* bytes, size_t size, glp_
 
 /// Bytes that wait for the rest of their frame.
 size_t glp_stream_buffered(const glp_stream* self);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

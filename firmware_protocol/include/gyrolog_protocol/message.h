@@ -15,6 +15,10 @@
 #include "frame.h"
 #include "status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define GLP_UID_BYTES 16U
 #define GLP_FIRMWARE_BYTES 24U
 #define GLP_SENSOR_BYTES 16U
@@ -165,5 +169,9 @@ size_t glp_reply_write(const glp_reply* reply, uint8_t* payload, size_t capacity
 glp_status glp_reply_read(const glp_frame* frame, glp_reply* reply);
 size_t glp_configure_write(const glp_configure* configure, uint8_t* payload, size_t capacity);
 glp_status glp_configure_read(const glp_frame* frame, glp_configure* configure);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -2,6 +2,10 @@
 #ifndef GYROLOG_PROTOCOL_STATUS_H
 #define GYROLOG_PROTOCOL_STATUS_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef enum glp_status {
     glp_status_ok = 0,
     glp_status_bad_cobs,    ///< A code byte points past the end, or a zero stands inside an encoded frame.
@@ -15,5 +19,9 @@ typedef enum glp_status {
 
 /// A constant name such as "bad_crc", as the conformance vectors spell it.
 const char* glp_status_name(glp_status status);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
