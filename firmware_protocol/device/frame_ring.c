@@ -37,25 +37,32 @@ static void advance(glp_frame_ring* self, size_t size) {
     self->used -= size;
 }
 
-static void begin_next_frame(glp_frame_ring* self) {
-    uint8_t prefix[SIZE_BYTES];
-    for (size_t i = 0; i < sizeof prefix; ++i) {
-        prefix[i] = self->bytes[self->begin];
-        advance(self, 1);
-    }
-    self->front_bytes = glp_load_u16(prefix);
+static size_t front_size(const glp_frame_ring* self) {
+    const size_t second = (self->begin + 1U < self->capacity) ? self->begin + 1U : 0U;
+    const uint8_t prefix[SIZE_BYTES] = {self->bytes[self->begin], self->bytes[second]};
+    return glp_load_u16(prefix);
+}
+
+// True when the endpoint took all that was offered.
+static bool give(glp_frame_ring* self, const glp_hal* hal) {
+    const size_t prefix_bytes = (self->front_bytes == 0U) ? SIZE_BYTES : 0U;
+    const size_t left = (self->front_bytes == 0U) ? front_size(self) : self->front_bytes;
+    size_t at = self->begin + prefix_bytes;
+    if (at >= self->capacity) { at -= self->capacity; }
+    const size_t to_edge = self->capacity - at;
+    const size_t offered = (left < to_edge) ? left : to_edge;
+    const size_t accepted = hal->link_write(hal->context, self->bytes + at, offered);
+    // A frame has begun only with its first byte: one that was merely offered may still be dropped.
+    if (accepted == 0U) { return false; }
+    advance(self, prefix_bytes + accepted);
+    self->front_bytes = left - accepted;
+    self->flush_due = true;
+    return accepted == offered;
 }
 
 void glp_frame_ring_feed(glp_frame_ring* self, const glp_hal* hal) {
     while (self->used > 0U) {
-        if (self->front_bytes == 0U) { begin_next_frame(self); }
-        const size_t to_edge = self->capacity - self->begin;
-        const size_t offered = (self->front_bytes < to_edge) ? self->front_bytes : to_edge;
-        const size_t accepted = hal->link_write(hal->context, self->bytes + self->begin, offered);
-        advance(self, accepted);
-        self->front_bytes -= accepted;
-        self->flush_due = self->flush_due || (accepted > 0U);
-        if (accepted < offered) { return; }
+        if (!give(self, hal)) { return; }
     }
     if (self->flush_due) {
         hal->link_flush(hal->context);
