@@ -1,0 +1,279 @@
+#include "analysis/plot/allan_figure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "analysis/plot/number_text.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr double deg_per_rad_here = 180.0 / 3.14159265358979323846;
+constexpr double s_per_h = 3600.0;
+
+// sqrt(2 ln 2 / pi): the level of the flat part over B. IEEE Std 952-1997 C.1.3.
+const double flat_level = std::sqrt(2.0 * std::log(2.0) / 3.14159265358979323846);
+
+constexpr double tau_of_N_s = 1.0;
+constexpr double tau_of_K_s = 3.0;
+
+// A coefficient's mark may lie beside the data, but not so far that the data would shrink to a corner.
+constexpr double mark_beyond_tau = 10.0;
+constexpr double mark_beyond_deviation = 100.0;
+
+const std::vector<double> slope_dash_px{2.0, 5.0};
+const std::vector<double> model_dash_px{14.0, 7.0};
+
+constexpr std::array<Marker, 6> markers{Marker::circle,  Marker::square,        Marker::triangle,
+                                        Marker::diamond, Marker::triangle_down, Marker::hexagon};
+
+bool is_usable(double value) { return std::isfinite(value) && value > 0.0; }
+
+// What the curves cover on paper.
+struct Extent {
+    Range tau_s{0.0, 0.0};
+    Range deviation{0.0, 0.0};
+    bool empty = true;
+
+    void add(Point p) {
+        if (!is_usable(p.x) || !is_usable(p.y)) { return; }
+        if (empty) {
+            tau_s = {p.x, p.x};
+            deviation = {p.y, p.y};
+            empty = false;
+        }
+        tau_s = {std::min(tau_s.lo, p.x), std::max(tau_s.hi, p.x)};
+        deviation = {std::min(deviation.lo, p.y), std::max(deviation.hi, p.y)};
+    }
+    bool is_near(Point p) const {
+        return p.x > tau_s.lo / mark_beyond_tau && p.x < tau_s.hi * mark_beyond_tau &&
+               p.y > deviation.lo / mark_beyond_deviation && p.y < deviation.hi * mark_beyond_deviation;
+    }
+};
+
+// One trace on its way to a panel.
+struct Drafting {
+    const AllanTrace& trace;
+    const DeviationUnit& unit;
+    Colour colour;
+    Marker marker;
+
+    double on_paper(double value) const { return value * unit.per_unit_of_data; }
+
+    double lowest_tau_s() const;
+    Curve measured() const;
+    Curve model() const;
+    // The line sigma * (tau / tau_s)^slope over the range, and where the data are not far away its mark at
+    // (tau_s, sigma).
+    void add_slope(Panel& panel, const char* name, Point mark, double slope, Range tau_range_s,
+                   const Extent& shown) const;
+    void add_slopes(Panel& panel, const Extent& shown) const;
+};
+
+double Drafting::lowest_tau_s() const {
+    const AllanPoint* lowest = nullptr;
+    for (const AllanPoint& p : trace.curve.points) {
+        if (!is_usable(p.tau_s) || !is_usable(p.deviation)) { continue; }
+        if (lowest == nullptr || p.deviation < lowest->deviation) { lowest = &p; }
+    }
+    return lowest == nullptr ? 1.0 : lowest->tau_s;
+}
+
+Curve Drafting::measured() const {
+    Curve curve;
+    bool has_band = false;
+    for (const AllanPoint& p : trace.curve.points) {
+        curve.x.push_back(p.tau_s);
+        curve.y.push_back(on_paper(p.deviation));
+        curve.lo.push_back(on_paper(p.lo));
+        curve.hi.push_back(on_paper(p.hi));
+        has_band = has_band || (is_usable(p.lo) && p.hi > p.lo);
+    }
+    if (!has_band) {
+        curve.lo.clear();
+        curve.hi.clear();
+    }
+    curve.stroke = {colour, 2.5, {}};
+    curve.marker = marker;
+    curve.marker_size_px = 10.0;
+    curve.markers_apart_px = 34.0;
+    return curve;
+}
+
+Curve Drafting::model() const {
+    Curve curve;
+    for (const ModelPoint& p : trace.model) {
+        curve.x.push_back(p.tau_s);
+        curve.y.push_back(on_paper(p.deviation));
+    }
+    curve.stroke = {mixed(colour, colours::ink, 0.45), 2.0, model_dash_px};
+    curve.sets_range = false;
+    return curve;
+}
+
+void Drafting::add_slope(Panel& panel, const char* name, Point mark, double slope, Range tau_range_s,
+                         const Extent& shown) const {
+    Curve line;
+    for (const double tau_s : {tau_range_s.lo, tau_range_s.hi}) {
+        line.x.push_back(tau_s);
+        line.y.push_back(mark.y * std::pow(tau_s / mark.x, slope));
+    }
+    line.stroke = {colour, 1.5, slope_dash_px};
+    line.sets_range = false;
+    panel.curves.push_back(std::move(line));
+    if (shown.is_near(mark)) {
+        panel.callouts.push_back({mark.x, mark.y, name, mixed(colour, colours::ink, 0.25), marker});
+    }
+}
+
+void Drafting::add_slopes(Panel& panel, const Extent& shown) const {
+    if (shown.empty) { return; }
+    const Range all = shown.tau_s;
+    const auto use = [](const std::optional<PlottedCoefficient>& c) { return c && is_usable(c->value); };
+    if (use(trace.N)) {
+        const Point mark{tau_of_N_s, on_paper(trace.N->value)};
+        add_slope(panel, "N", mark, -0.5, {std::min(all.lo, tau_of_N_s), 10.0 * tau_of_N_s}, shown);
+    }
+    if (use(trace.B)) {
+        const Point mark{trace.B->tau_s.value_or(lowest_tau_s()), flat_level * on_paper(trace.B->value)};
+        add_slope(panel, "B", mark, 0.0, {mark.x / 10.0, mark.x * 10.0}, shown);
+    }
+    if (use(trace.K)) {
+        const Point mark{tau_of_K_s, on_paper(trace.K->value)};
+        add_slope(panel, "K", mark, 0.5, {tau_of_K_s / 2.0, std::max(all.hi, tau_of_K_s)}, shown);
+    }
+}
+
+// The table's columns: those for which at least one trace has a value.
+struct Column {
+    std::string header;
+    std::optional<PlottedCoefficient> AllanTrace::*coefficient;
+    double factor;  // from the curve's unit to the header's
+};
+
+std::vector<Column> columns_of(const AllanFigure& allan) {
+    const DeviationUnit& unit = allan.unit;
+    const double to_paper = unit.per_unit_of_data;
+    std::vector<Column> columns{{"N  (" + unit.name + ")/√Hz", &AllanTrace::N, to_paper}};
+    if (unit.deg_per_h > 0.0) {
+        // 1 °/√h = 1 °/h √h, and √h = 60 √s.
+        columns.push_back({"N  °/√h", &AllanTrace::N, to_paper * unit.deg_per_h / std::sqrt(s_per_h)});
+        columns.push_back({"B  °/h", &AllanTrace::B, to_paper * unit.deg_per_h});
+    } else {
+        columns.push_back({"B  " + unit.name, &AllanTrace::B, to_paper});
+    }
+    columns.push_back({"K  (" + unit.name + ")√Hz", &AllanTrace::K, to_paper});
+    columns.erase(std::remove_if(columns.begin(), columns.end(),
+                                 [&](const Column& column) {
+                                     return std::none_of(allan.traces.begin(), allan.traces.end(),
+                                                         [&](const AllanTrace& t) {
+                                                             return (t.*column.coefficient).has_value();
+                                                         });
+                                 }),
+                  columns.end());
+    return columns;
+}
+
+std::string cell(const std::optional<PlottedCoefficient>& coefficient, double factor) {
+    if (!coefficient) { return "–"; }
+    std::optional<double> uncertainty;
+    if (coefficient->uncertainty) { uncertainty = *coefficient->uncertainty * factor; }
+    return number_with_uncertainty(coefficient->value * factor, uncertainty);
+}
+
+// Rows that explain what the curves have in common.
+void add_keys(Panel& panel, const AllanFigure& allan, bool has_band) {
+    const auto key = [&](const std::string& text) -> Curve& {
+        Curve& row = panel.curves.emplace_back();
+        row.sets_range = false;
+        row.legend = {text};
+        row.stroke = {colours::muted_ink, 1.5, {}};
+        return row;
+    };
+    const auto has_model = [](const AllanTrace& trace) { return !trace.model.empty(); };
+    if (std::any_of(allan.traces.begin(), allan.traces.end(), has_model)) {
+        Curve& row = key("model");
+        row.stroke = {colours::ink, 2.0, model_dash_px};
+    }
+    if (has_band) {
+        Curve& row = key(rounded_number(100.0 * allan.traces.front().curve.confidence) + " % confidence");
+        row.lo = row.hi = {0.0};
+        row.stroke.width_px = 0.0;
+    }
+    const auto has_slope = [](const AllanTrace& trace) { return trace.N || trace.B || trace.K; };
+    if (allan.slope_lines && std::any_of(allan.traces.begin(), allan.traces.end(), has_slope)) {
+        Curve& row = key("slopes −½, 0, +½ of N, B, K");
+        row.stroke = {colours::ink, 1.5, slope_dash_px};
+    }
+}
+
+void add_guides(Panel& panel) {
+    const auto is_marked = [&](const char* name) {
+        return std::any_of(panel.callouts.begin(), panel.callouts.end(),
+                           [&](const Callout& callout) { return callout.text == name; });
+    };
+    if (is_marked("N")) { panel.guides.push_back({tau_of_N_s, "1 s"}); }
+    if (is_marked("K")) { panel.guides.push_back({tau_of_K_s, "3 s"}); }
+}
+
+}  // namespace
+
+DeviationUnit DeviationUnit::rad_per_s_as_deg_per_s() { return {"°/s", deg_per_rad_here, s_per_h}; }
+DeviationUnit DeviationUnit::rad_per_s() { return {"rad/s", 1.0, deg_per_rad_here * s_per_h}; }
+
+Figure figure_of(const AllanFigure& allan) {
+    Panel panel;
+    panel.x = {"averaging time τ (s)", ScaleKind::logarithmic, {}};
+    panel.y = {"Allan deviation σ(τ) (" + allan.unit.name + ")", ScaleKind::logarithmic, {}};
+    if (allan.unit.deg_per_h > 0.0) { panel.right = SecondUnit{"σ(τ) (°/h)", allan.unit.deg_per_h}; }
+
+    const std::vector<Column> columns = columns_of(allan);
+    if (!columns.empty()) {
+        panel.legend_header.emplace_back();
+        for (const Column& column : columns) { panel.legend_header.push_back(column.header); }
+    }
+    std::vector<Drafting> draftings;
+    for (const AllanTrace& trace : allan.traces) {
+        const std::size_t i = draftings.size();
+        draftings.push_back(
+            {trace, allan.unit, colours::cycle[i % colours::cycle.size()], markers[i % markers.size()]});
+    }
+    bool has_band = false;
+    if (allan.slope_lines) {
+        Extent shown;
+        for (const AllanTrace& trace : allan.traces) {
+            for (const AllanPoint& p : trace.curve.points) {
+                shown.add({p.tau_s, p.deviation * allan.unit.per_unit_of_data});
+            }
+        }
+        for (const Drafting& drafting : draftings) { drafting.add_slopes(panel, shown); }
+    }
+    for (const Drafting& drafting : draftings) {
+        Curve measured = drafting.measured();
+        has_band = has_band || !measured.lo.empty();
+        measured.legend.push_back(drafting.trace.name);
+        for (const Column& column : columns) {
+            measured.legend.push_back(cell(drafting.trace.*column.coefficient, column.factor));
+        }
+        panel.curves.push_back(std::move(measured));
+        if (!drafting.trace.model.empty()) { panel.curves.push_back(drafting.model()); }
+    }
+    add_keys(panel, allan, has_band);
+    add_guides(panel);
+
+    Figure figure;
+    figure.title = allan.title;
+    figure.source = allan.source;
+    figure.facts = allan.facts;
+    figure.panels.push_back(std::move(panel));
+    figure.width_px = allan.width_px;
+    figure.height_px = allan.height_px;
+    figure.scale = allan.scale;
+    return figure;
+}
+
+Rendering render(const AllanFigure& allan) { return render(figure_of(allan)); }
+
+}  // namespace gyrolog

@@ -1,0 +1,60 @@
+// The Allan deviation figure: curves of one or several axes with their confidence bands, the lines by which
+// N, B and K are read (IEEE Std 952-1997, C.1), a model beside them, and a table of the coefficients.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/allan/allan_curve.hpp"
+#include "analysis/plot/figure.hpp"
+
+namespace gyrolog {
+
+// From the unit of the curve's numbers to the unit on paper.
+struct DeviationUnit {
+    std::string name;  // of the left-hand axis
+    double per_unit_of_data = 1.0;
+    double deg_per_h = 0.0;  // what one unit of `name` is; 0: no angular rate, so no right-hand axis, no °/√h
+
+    static DeviationUnit rad_per_s_as_deg_per_s();  // data in rad/s, drawn in °/s
+    static DeviationUnit rad_per_s();               // data in rad/s, drawn as they are
+    static DeviationUnit as_given(std::string name) { return {std::move(name), 1.0, 0.0}; }
+};
+
+struct PlottedCoefficient {
+    double value = 0.0;  // unit of the curve: times √s for N, as it is for B, over √s for K
+    std::optional<double> uncertainty = {};  // standard uncertainty in the same unit
+    std::optional<double> tau_s = {};        // B: where the curve is flat; absent: where it is least
+};
+
+struct ModelPoint {
+    double tau_s = 0.0;
+    double deviation = 0.0;  // unit of the curve
+};
+
+struct AllanTrace {
+    std::string name;  // "x"
+    AllanCurve curve;
+    std::optional<PlottedCoefficient> N, B, K;
+    std::vector<ModelPoint> model;  // by rising tau
+};
+
+struct AllanFigure {
+    std::string title = "Allan deviation";
+    std::string source;              // file or device
+    std::vector<std::string> facts;  // "1 kHz", "12 h", "43 200 000 samples", "no dropouts"
+    DeviationUnit unit = DeviationUnit::rad_per_s_as_deg_per_s();
+    std::vector<AllanTrace> traces;
+    bool slope_lines = true;
+    int width_px = 1600;
+    int height_px = 1100;
+    double scale = 1.0;
+};
+
+// The figure as panels and curves: to draw it with others, or to change what is not to taste.
+Figure figure_of(const AllanFigure& allan);
+
+Rendering render(const AllanFigure& allan);
+
+}  // namespace gyrolog
