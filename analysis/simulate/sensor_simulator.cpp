@@ -1,8 +1,8 @@
 #include "analysis/simulate/sensor_simulator.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "analysis/simulate/converter.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/stages/stages.hpp"
 
@@ -49,24 +49,17 @@ const SampleBlock& SensorSimulator::next_block() {
     return *block_;
 }
 
-// The converter: clip at the saturation, round to the nearest count (half away from zero), keep to 16 bits.
 void SensorSimulator::convert() {
-    if (lsb_rad_s_ == 0.0) {
-        for (auto& axis : block_->rate_rad_s) {
-            for (double& rate : axis) { rate = std::clamp(rate, -saturation_rad_s_, saturation_rad_s_); }
-        }
-        return;
-    }
-    const double highest = std::min(32767.0, std::floor(saturation_rad_s_ / lsb_rad_s_ + 0.5));
-    const double lowest = -highest - 1.0;  // two's complement reaches one count further down
-    const double counts_per_rad_s = 1.0 / lsb_rad_s_;
     for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (lsb_rad_s_ == 0.0) {
+            for (double& rate : block_->rate_rad_s[axis]) {
+                rate = std::clamp(rate, -saturation_rad_s_, saturation_rad_s_);
+            }
+            continue;
+        }
+        Converter(lsb_rad_s_, saturation_rad_s_)(block_->rate_rad_s[axis], block_->counts[axis]);
         for (std::size_t i = 0; i < block_samples; ++i) {
-            double& rate = block_->rate_rad_s[axis][i];
-            const double clipped = std::min(std::max(rate * counts_per_rad_s, lowest), highest);
-            const auto count = static_cast<std::int32_t>(clipped + std::copysign(0.5, clipped));
-            block_->counts[axis][i] = static_cast<std::int16_t>(count);
-            rate = count * lsb_rad_s_;
+            block_->rate_rad_s[axis][i] = block_->counts[axis][i] * lsb_rad_s_;
         }
     }
 }
