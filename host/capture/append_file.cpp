@@ -1,0 +1,110 @@
+#include "host/capture/append_file.hpp"
+
+#include <cerrno>
+#include <system_error>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace gyrolog {
+namespace {
+
+ErrorCode code_of(int error_number) {
+    switch (error_number) {
+        case ENOSPC:
+        case EDQUOT:
+        case EFBIG:
+            return ErrorCode::disk_full;
+        case ENOENT:
+        case ENOTDIR:
+            return ErrorCode::not_found;
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return ErrorCode::permission_denied;
+        case EEXIST:
+            return ErrorCode::invalid_argument;
+        default:
+            return ErrorCode::storage_failed;
+    }
+}
+
+Error errno_error(const std::string& what) {
+    const int error_number = errno;
+    return {code_of(error_number), what + ": " + std::generic_category().message(error_number)};
+}
+
+class PosixAppendFile final : public AppendFile {
+public:
+    PosixAppendFile(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
+    PosixAppendFile(const PosixAppendFile&) = delete;
+    PosixAppendFile& operator=(const PosixAppendFile&) = delete;
+    ~PosixAppendFile() override {
+        if (descriptor_ >= 0) { ::close(descriptor_); }
+    }
+
+    Result<std::size_t> write(ByteView bytes) override {
+        while (true) {
+            const ssize_t taken = ::write(descriptor_, bytes.data(), bytes.size());
+            if (taken > 0) { return static_cast<std::size_t>(taken); }
+            if (taken == 0) {
+                return Error{ErrorCode::storage_failed, "write '" + path_ + "': nothing was taken"};
+            }
+            if (errno != EINTR) { return errno_error("write '" + path_ + "'"); }
+        }
+    }
+
+    Status truncate(std::uint64_t size_bytes) override {
+        while (::ftruncate(descriptor_, static_cast<off_t>(size_bytes)) != 0) {
+            if (errno != EINTR) { return errno_error("truncate '" + path_ + "'"); }
+        }
+        return {};
+    }
+
+    Status sync() override {
+        while (::fdatasync(descriptor_) != 0) {
+            // A pipe or a device file has nothing to sync.
+            if (errno == EINVAL || errno == EROFS) { return {}; }
+            if (errno != EINTR) { return errno_error("sync '" + path_ + "'"); }
+        }
+        return {};
+    }
+
+    Status close() override {
+        const int descriptor = descriptor_;
+        descriptor_ = -1;
+        // After EINTR the descriptor is gone all the same (Linux).
+        if (descriptor >= 0 && ::close(descriptor) != 0 && errno != EINTR) {
+            return errno_error("close '" + path_ + "'");
+        }
+        return {};
+    }
+
+private:
+    int descriptor_;
+    std::string path_;
+};
+
+Status sync_directory_of(const std::string& path) {
+    const std::size_t slash = path.rfind('/');
+    const std::string directory = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+    const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) { return errno_error("open directory '" + directory + "'"); }
+    const bool synced = ::fsync(descriptor) == 0 || errno == EINVAL;
+    Status status = synced ? Status() : Status(errno_error("sync directory '" + directory + "'"));
+    ::close(descriptor);
+    return status;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<AppendFile>> create_append_file(const std::string& path, IfExists if_exists) {
+    const int existing = if_exists == IfExists::refuse ? O_EXCL : O_TRUNC;
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | existing, 0666);
+    if (descriptor < 0) { return errno_error("create '" + path + "'"); }
+    auto file = std::make_unique<PosixAppendFile>(descriptor, path);
+    GYROLOG_CHECK(sync_directory_of(path));
+    return std::unique_ptr<AppendFile>(std::move(file));
+}
+
+}  // namespace gyrolog

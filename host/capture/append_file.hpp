@@ -1,0 +1,32 @@
+// The end of a file that only grows: all that a writer needs of a disk, and small enough to fake.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "host/base/bytes.hpp"
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+class AppendFile {
+public:
+    virtual ~AppendFile() = default;
+
+    // Returns how many bytes were taken: at least one, and fewer than given when the disk is filling up.
+    // Errors: disk_full, storage_failed.
+    virtual Result<std::size_t> write(ByteView bytes) = 0;
+    virtual Status truncate(std::uint64_t size_bytes) = 0;
+    // Everything written so far survives a loss of power.
+    virtual Status sync() = 0;
+    virtual Status close() = 0;
+};
+
+enum class IfExists { refuse, overwrite };
+
+// The new file's name survives a loss of power, too. Errors: invalid_argument when it exists, not_found,
+// permission_denied, disk_full, storage_failed.
+Result<std::unique_ptr<AppendFile>> create_append_file(const std::string& path, IfExists if_exists);
+
+}  // namespace gyrolog

@@ -1,0 +1,44 @@
+// The JSON that a capture carries in its section header and its checkpoints (FORMAT.md, sections 3 and 5).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "host/base/clock.hpp"
+#include "host/capture/capture_counters.hpp"
+#include "host/transport/byte_source.hpp"
+
+namespace gyrolog {
+
+constexpr std::string_view capture_schema = "gyrolog-capture/1";
+constexpr std::string_view checkpoint_schema = "gyrolog-checkpoint/1";
+
+struct CaptureMetadata {
+    std::string program;  // "gyrolog 0.1.0"
+    SourceIdentity source;
+    HostTime started;  // both clocks at one moment: the file's time stamps are real time by this pair
+};
+
+struct CaptureCheckpoint {
+    HostTime time;
+    std::uint64_t transfers = 0;     // in the file before this checkpoint
+    std::uint64_t stream_bytes = 0;  // bulk IN data in the file before this checkpoint
+    CaptureCounters counters;
+    bool last = false;  // the writer closed the file behind it
+};
+
+// "gyrolog" and its version.
+std::string program_name();
+// "2026-11-21T05:04:55.123456789Z"
+std::string utc_text(std::int64_t realtime_ns);
+
+std::string metadata_json(const CaptureMetadata& metadata);
+std::string checkpoint_json(const CaptureCheckpoint& checkpoint);
+
+// No value when the text is no JSON of the right schema. Fields that are missing keep their defaults.
+std::optional<CaptureMetadata> read_metadata_json(std::string_view text);
+std::optional<CaptureCheckpoint> read_checkpoint_json(std::string_view text);
+
+}  // namespace gyrolog
