@@ -1,0 +1,36 @@
+// What a column of a recording in text means, read from its name: the quantity, its axis, and the unit after
+// it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace gyrolog {
+
+struct CsvColumn {
+    enum class Kind {
+        time_stamp,       // t_s
+        rate,             // gx_dps, gx_rad_s, gx_lsb, gx2_dps
+        angle,            // gx_deg, gx_rad: the integrated rate
+        angle_increment,  // dgx_deg, dgx_rad: since the sample before
+        force,            // ax_g, ax_m_s2, ax_lsb
+        temperature,      // temp_C
+        reference,        // ref_x_dps, ref_x_rad_s, ref_qw
+    };
+    Kind kind = Kind::time_stamp;
+    std::string name;         // as in Column
+    std::string unit;         // of the column in SI; a rate's for angles and increments, too
+    std::string source_unit;  // as in Column; "dps" for angles in degrees
+    double scale = 1.0;       // SI per number; 1 for counts, whose scale the name does not tell
+
+    bool is_gyro() const {
+        return kind == Kind::rate || kind == Kind::angle || kind == Kind::angle_increment;
+    }
+    bool is_counts() const { return source_unit == "lsb"; }
+};
+
+// Nothing for a name that recording.md does not know.
+std::optional<CsvColumn> csv_column(std::string_view header);
+
+}  // namespace gyrolog

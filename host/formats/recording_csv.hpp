@@ -1,0 +1,46 @@
+// A recording as text: one header line, then one line per sample; the unit stands in the column's name.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "analysis/recording/recording.hpp"
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+struct CsvReadOptions {
+    std::optional<double> rate_hz{};  // given by the user: time stamps in the file are then ignored
+    std::optional<double> lsb_dps{};  // scale of gyro columns in counts
+    std::optional<double>
+        lsb_g{};  // scale of accelerometer columns in counts; without it they stay in counts
+    // Gyro counts without lsb_dps are an error, because every unit would be wrong; with this they come as
+    // unit "lsb".
+    bool allow_unscaled_counts = false;
+};
+
+// Numbers keep the unit and the digits that the text has (Column::source_unit). Counts that are whole numbers
+// of 16 bits become counts. An angle becomes a rate: its difference from the sample before, times the rate;
+// so does an increment. The first sample after a hole then has no rate and counts as missing.
+//
+// A row where any gyro field is empty or NaN is a missing sample; in other columns such a field stays NaN.
+// Columns of unknown name are ignored, with one warning that lists them.
+//
+// Errors: malformed (names the line and the column), invalid_argument (what the text lacks and which option
+// gives it), and those of reading a file.
+Result<Recording> read_recording_csv(const std::string& path, const CsvReadOptions& options = {});
+Result<Recording> parse_recording_csv(std::string_view text, std::string name,
+                                      const CsvReadOptions& options = {});
+
+struct CsvWriteOptions {
+    std::string
+        rate_unit;  // "dps" or "rad_s" for gyro and reference rates; empty: as the source had them, else dps
+};
+
+// Time stamps as they came, or index / rate where none did. Compressed by the name's ending. Numbers are the
+// shortest that read back as the same.
+Status write_recording_csv(const Recording& recording, const std::string& path,
+                           const CsvWriteOptions& options = {});
+
+}  // namespace gyrolog

@@ -1,0 +1,103 @@
+#include "host/formats/text_file.hpp"
+
+#include <cerrno>
+
+#include <archive.h>
+#include <archive_entry.h>
+
+namespace gyrolog {
+namespace {
+
+constexpr std::size_t piece_bytes = std::size_t{1} << 18;
+
+archive* handle(void* pointer) { return static_cast<archive*>(pointer); }
+
+Error error_of(archive* file) {
+    const int number = archive_errno(file);
+    const char* text = archive_error_string(file);
+    std::string message = text == nullptr ? "unknown error" : text;
+    switch (number) {
+        case ENOENT:
+            return {ErrorCode::not_found, "no such file"};
+        case EACCES:
+            return {ErrorCode::permission_denied, "permission denied"};
+        case ENOSPC:
+            return {ErrorCode::disk_full, "disk full"};
+        case EIO:
+            return {ErrorCode::storage_failed, std::move(message)};
+        default:
+            return {ErrorCode::failed, std::move(message)};
+    }
+}
+
+}  // namespace
+
+void TextReader::Close::operator()(void* archive) const { archive_read_free(handle(archive)); }
+
+Result<TextReader> TextReader::open(const std::string& path) {
+    TextReader reader;
+    archive* file = archive_read_new();
+    reader.archive_.reset(file);
+    archive_read_support_filter_all(file);
+    archive_read_support_format_raw(file);
+    archive_read_support_format_empty(file);
+    if (archive_read_open_filename(file, path.c_str(), piece_bytes) != ARCHIVE_OK) { return error_of(file); }
+    archive_entry* entry = nullptr;
+    const int header = archive_read_next_header(file, &entry);
+    if (header != ARCHIVE_OK && header != ARCHIVE_EOF) { return error_of(file); }
+    reader.buffer_.resize(header == ARCHIVE_EOF ? 0 : piece_bytes);
+    return reader;
+}
+
+Result<std::string_view> TextReader::read() {
+    if (buffer_.empty()) { return std::string_view(); }
+    const la_ssize_t bytes = archive_read_data(handle(archive_.get()), buffer_.data(), buffer_.size());
+    if (bytes < 0) { return error_of(handle(archive_.get())); }
+    return std::string_view(buffer_.data(), static_cast<std::size_t>(bytes));
+}
+
+void TextWriter::Close::operator()(void* archive) const { archive_write_free(handle(archive)); }
+
+Result<TextWriter> TextWriter::create(const std::string& path) {
+    TextWriter writer;
+    archive* file = archive_write_new();
+    writer.archive_.reset(file);
+    archive_write_set_format_raw(file);
+    if (path.ends_with(".xz")) {
+        archive_write_add_filter_xz(file);
+    } else if (path.ends_with(".gz")) {
+        archive_write_add_filter_gzip(file);
+    } else if (path.ends_with(".zst")) {
+        archive_write_add_filter_zstd(file);
+    } else if (path.ends_with(".bz2")) {
+        archive_write_add_filter_bzip2(file);
+    }
+    // Without this the file would be filled up to a multiple of a tape's block.
+    archive_write_set_bytes_in_last_block(file, 1);
+    if (archive_write_open_filename(file, path.c_str()) != ARCHIVE_OK) { return error_of(file); }
+    archive_entry* entry = archive_entry_new();
+    archive_entry_set_pathname(entry, "text");
+    archive_entry_set_filetype(entry, AE_IFREG);
+    const int status = archive_write_header(file, entry);
+    archive_entry_free(entry);
+    if (status != ARCHIVE_OK) { return error_of(file); }
+    return writer;
+}
+
+Status TextWriter::write(std::string_view text) {
+    while (!text.empty()) {
+        const la_ssize_t bytes = archive_write_data(handle(archive_.get()), text.data(), text.size());
+        if (bytes < 0) { return error_of(handle(archive_.get())); }
+        text.remove_prefix(static_cast<std::size_t>(bytes));
+    }
+    return {};
+}
+
+Status TextWriter::close() {
+    if (archive_write_close(handle(archive_.get())) != ARCHIVE_OK) {
+        return error_of(handle(archive_.get()));
+    }
+    return {};
+}
+
+}  // namespace gyrolog
