@@ -1,41 +1,40 @@
-# Functions that plug boards into the guest. Sourced by the scenarios.
+# Boards that can be plugged into the guest.
 
 gadget=/sys/kernel/config/usb_gadget/board
 
-# wait_for SECONDS COMMAND...: until COMMAND succeeds; fails when it has not done so in time.
-wait_for() {
-    tries=$(($1 * 10))
+# plug_vhci_board SERIAL [OPTION...]: the virtual board on vhci_hcd, in the background as job board-SERIAL. Its accounts
+# are in board-SERIAL.json once it has been stopped.
+plug_vhci_board() {
+    vhci_serial=$1
     shift
-    until "$@" > /dev/null 2>&1; do
-        tries=$((tries - 1))
-        [ $tries -gt 0 ] || return 1
-        sleep 0.1
-    done
+    run_in_background "board-$vhci_serial" vhci_board --serial "$vhci_serial" --report "board-$vhci_serial.json" "$@"
+    wait_for 10 usb_present "$vhci_serial"
 }
 
-# usb_present SERIAL: whether the bus has a device of that serial number.
-usb_present() { grep -qsx "$1" /sys/bus/usb/devices/*/serial; }
-
-# The board on the kernel's own ACM function, with the identity of the real one: usb_identity.h, usb_function.hpp.
-# plug_acm_gadget SERIAL
+# plug_acm_gadget SERIAL [OPTION...]: the same board on the kernel's own ACM function.
 plug_acm_gadget() {
-    mkdir -p $gadget/strings/0x409 $gadget/configs/c.1/strings/0x409 $gadget/functions/acm.0
+    gadget_serial=$1
+    shift
+    mkdir -p $gadget/strings/0x409 $gadget/configs/c.1 $gadget/functions/acm.0
     echo 0x1fc9 > $gadget/idVendor
     echo 0x0083 > $gadget/idProduct
     echo gyrolog > $gadget/strings/0x409/manufacturer
     echo "gyrolog MPU-9250 on an ACM gadget" > $gadget/strings/0x409/product
-    echo "$1" > $gadget/strings/0x409/serialnumber
-    ln -s $gadget/functions/acm.0 $gadget/configs/c.1
+    echo "$gadget_serial" > $gadget/strings/0x409/serialnumber
+    [ -e $gadget/configs/c.1/acm.0 ] || ln -s $gadget/functions/acm.0 $gadget/configs/c.1/acm.0
+    trace_line_state
+    run_in_background "board-$gadget_serial" gadget_board --tty /dev/ttyGS0 \
+        --line-state /sys/kernel/tracing/trace_pipe --report "board-$gadget_serial.json" "$@"
     echo dummy_udc.0 > $gadget/UDC
-    wait_for 10 usb_present "$1"
-    wait_for 10 test -c /dev/ttyACM0
+    wait_for 10 usb_present "$gadget_serial"
 }
 
 unplug_acm_gadget() { echo > $gadget/UDC; }
 
-# The ACM function keeps DTR to itself (f_acm.c, acm_setup): no ioctl on ttyGS0 tells it. A probe on the function that
-# receives the host's SET_CONTROL_LINE_STATE writes it to trace_pipe, one line a request with " value=N".
+# The ACM function keeps DTR to itself: its handler of control requests (acm_setup) stores the value, and nothing on
+# ttyGS0 tells it. A probe on that handler writes each SET_CONTROL_LINE_STATE to trace_pipe, a line with " value=N".
 trace_line_state() {
+    [ ! -e /sys/kernel/tracing/events/kprobes/line_state ] || return 0
     echo 'p:line_state usb_f_acm:acm_setup request=+1($arg2):u8 value=+2($arg2):u16' > /sys/kernel/tracing/kprobe_events
     echo 'request == 0x22' > /sys/kernel/tracing/events/kprobes/line_state/filter
     echo 1 > /sys/kernel/tracing/events/kprobes/line_state/enable

@@ -39,16 +39,19 @@ def boot(work, kernel, archive, share, timeout_s):
                 log.write(f"\nguest stopped after {timeout_s} s\n")
 
 
-def run(programs, work, script, timeout_s):
-    """Boots a guest with `programs` in /bin, runs `script`, returns its exit status; None when the guest did not come
-    to its end. Raises Unavailable when there is nothing to boot."""
+def run(programs, work, script, timeout_s, scenarios=None):
+    """Boots a guest with `programs` in /bin and the scenarios named (all, unless told) in /test/scenarios, runs `script`
+    and returns its exit status; None when the guest did not come to its end. Raises Unavailable when there is nothing to
+    boot."""
     tool("qemu-system-x86_64")
     kernel = kernel_package.obtain(work / "kernel")
     share = work / "share"
     shutil.rmtree(share, ignore_errors=True)
     share.mkdir(parents=True)
     files = {"/test/script.sh": script}
-    files |= {f"/test/{path.relative_to(HERE)}": path for path in sorted(HERE.glob("**/*.sh"))}
+    files |= {f"/test/{path.name}": path for path in HERE.glob("*.sh")}
+    files |= {f"/test/scenarios/{path.name}": path for path in sorted((HERE / "scenarios").glob("*.sh"))
+              if not scenarios or path.stem in scenarios}
     initramfs.write(work / "initramfs.cpio", kernel, HERE / "init", programs, files)
     boot(work, kernel, work / "initramfs.cpio", share, timeout_s)
     status = share / "status"

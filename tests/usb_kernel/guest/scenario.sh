@@ -1,0 +1,58 @@
+# What every scenario uses.
+
+# wait_for SECONDS COMMAND...: until COMMAND succeeds; fails when it has not done so in time.
+wait_for() {
+    tries=$(($1 * 10))
+    shift
+    until "$@" > /dev/null 2>&1; do
+        tries=$((tries - 1))
+        [ $tries -gt 0 ] || return 1
+        sleep 0.1
+    done
+}
+
+# run NAME COMMAND...: what it prints goes to NAME.out and NAME.err, its exit status to NAME.exit. Never fails: the
+# status is judged on the other side.
+run() {
+    run_name=$1
+    shift
+    run_status=0
+    "$@" > "$run_name.out" 2> "$run_name.err" || run_status=$?
+    echo $run_status > "$run_name.exit"
+}
+
+# run_in_background NAME COMMAND...: the same, as a job; its process id is in NAME.pid, and `finish NAME` waits for it.
+run_in_background() {
+    job_name=$1
+    shift
+    "$@" > "$job_name.out" 2> "$job_name.err" &
+    echo $! > "$job_name.pid"
+}
+
+finish() {
+    job_status=0
+    wait "$(cat "$1.pid")" || job_status=$?
+    rm "$1.pid"
+    echo $job_status > "$1.exit"
+}
+
+# stop NAME: asks the job to end, as Ctrl-C does, and waits for it.
+stop() {
+    kill -INT "$(cat "$1.pid")"
+    finish "$1"
+}
+
+# usb_present SERIAL: whether the bus has a device of that serial number.
+usb_present() { grep -qsx "$1" /sys/bus/usb/devices/*/serial; }
+usb_absent() { ! usb_present "$1"; }
+
+# capture_is_running FILE: whether samples reach the file.
+capture_is_running() { [ "$(stat -c %s "$1")" -gt 4096 ]; }
+
+# judge CAPTURE: what the program says about a finished capture, as NAME.check.json and so on.
+judge() {
+    judged=$(basename "$1" .pcapng)
+    run "$judged.check" gyrolog check "$1" --json -
+    run "$judged.info" gyrolog info "$1" --json -
+    run "$judged.analyze" gyrolog analyze "$1" --json "$judged.analysis.json"
+}

@@ -1,0 +1,265 @@
+#!/usr/bin/env python3
+"""The program against the Linux kernel's own USB stack: boots one guest, runs every scenario of guest/scenarios in it,
+then judges what came back. See README.md.
+
+Environment: GYROLOG_BUILD_DIR (programs under test), GYROLOG_GUEST_DIR (kernel and results),
+SCENARIOS (optional: only these, by name, separated by spaces).
+Exit status: 0, 1, or 77 when there is nothing to boot.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE / "guest"))
+
+import guest  # noqa: E402
+import usbmon_record  # noqa: E402
+from kernel_package import Unavailable  # noqa: E402
+
+BUILD = Path(os.environ["GYROLOG_BUILD_DIR"]).resolve()
+WORK = Path(os.environ["GYROLOG_GUEST_DIR"]).resolve()
+SHARE = WORK / "share"
+PROGRAMS = [BUILD / name for name in ("gyrolog", "vhci_board", "gadget_board")]
+
+OK, NO_DEVICE, DEVICE_LOST = 0, 3, 4
+
+
+class Scenario(unittest.TestCase):
+    """One scenario's results. A test that needs what the scenario failed to leave shows the scenario's log."""
+
+    name = ""
+
+    def setUp(self):
+        self.folder = SHARE / self.name
+        if not self.folder.exists():
+            self.skipTest("this scenario was not run")
+
+    def file(self, name):
+        path = self.folder / name
+        if not path.exists():
+            log = self.folder / "log"
+            self.fail(f"{self.name} left no {name}:\n{log.read_text(errors='replace') if log.exists() else ''}")
+        return path
+
+    def text(self, name):
+        return self.file(name).read_text(errors="replace")
+
+    def json(self, name):
+        return json.loads(self.text(name))
+
+    def assert_exit(self, command, expected):
+        status = int(self.text(f"{command}.exit"))
+        self.assertEqual(status, expected, self.text(f"{command}.err"))
+
+    def assert_nothing_missing(self, capture):
+        self.assert_exit(f"{capture}.check", OK)
+        check = self.json(f"{capture}.check.out")
+        self.assertEqual(check["end"], "clean")
+        self.assertEqual(check["frames"]["missing"], 0)
+        self.assertEqual(check["frames"]["corrupted"], 0)
+        self.assertEqual(check["samples"]["missing"], 0)
+        self.assert_bytes_balance(check)
+        return check
+
+    def assert_bytes_balance(self, check):
+        total = check["bytes"]
+        self.assertEqual(total["total"], total["in_frames"] + total["skipped"] + total["buffered"])
+
+    def assert_every_sample_of(self, capture, board, session=-1):
+        """The file holds exactly what the board says it produced between DTR on and DTR off."""
+        check = self.assert_nothing_missing(capture)
+        produced = self.json(f"board-{board}.json")["sessions"][session]
+        self.assertEqual(produced["samples_lost"], 0)
+        self.assertEqual(produced["frames_lost"], 0)
+        self.assertEqual(check["samples"]["good"], produced["samples"])
+
+    def assert_lasts(self, capture, rate_hz, duration_s):
+        """The clock of the sensor may be 1 % off, and the first and last frame are not sharp."""
+        samples = self.json(f"{capture}.check.out")["samples"]["good"]
+        self.assertAlmostEqual(samples, rate_hz * duration_s, delta=0.02 * rate_hz * duration_s + 0.5 * rate_hz)
+
+
+class CaptureFromVhciBoard(Scenario):
+    name = "10_capture_vhci"
+
+    def test_the_board_is_listed_as_ready(self):
+        self.assert_exit("list", OK)
+        device = self.json("list.out")["devices"][0]
+        self.assertEqual((device["uri"], device["serial"], device["state"]), ("usb:VHCI10", "VHCI10", "ready"))
+
+    def test_a_capture_ends_well(self):
+        self.assert_exit("capture", OK)
+
+    def test_it_holds_every_sample_the_board_produced(self):
+        self.assert_every_sample_of("capture", "VHCI10")
+        self.assert_lasts("capture", 1000, 30)
+
+    def test_it_holds_the_bytes_that_usbmon_saw(self):
+        ours = list(usbmon_record.from_pcapng(self.file("capture.pcapng").read_bytes()))
+        kernels = list(usbmon_record.from_usbmon(self.file("usbmon.out").read_bytes()))
+        self.assertGreater(len(ours), 100)
+        self.assertEqual(b"".join(transfer.data for transfer in ours),
+                         b"".join(transfer.data for transfer in kernels))
+
+    def test_cdc_acm_gets_its_terminal_back(self):
+        self.assertEqual(self.text("ttyACM0.state").strip(), "back")
+
+    def test_it_can_be_analysed(self):
+        self.assert_exit("capture.analyze", OK)
+
+    def test_wireshark_opens_it(self):
+        tshark = shutil.which("tshark")
+        if tshark is None:
+            self.skipTest("tshark is not installed")
+        ours = list(usbmon_record.from_pcapng(self.file("capture.pcapng").read_bytes()))
+        answer = subprocess.run(
+            [tshark, "-r", self.file("capture.pcapng"), "-Y",
+             "usb.transfer_type == 3 && usb.endpoint_address.direction == 1 && usb.urb_type == 'C'",
+             "-T", "fields", "-e", "usb.data_len"], capture_output=True, text=True, check=False)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual([int(line) for line in answer.stdout.split()], [len(transfer.data) for transfer in ours])
+
+
+class CaptureFromAcmGadget(Scenario):
+    name = "20_capture_acm_gadget"
+
+    def test_a_capture_ends_well(self):
+        self.assert_exit("capture", OK)
+
+    def test_it_holds_every_sample_the_board_produced(self):
+        self.assert_every_sample_of("capture", "GADGET20")
+        self.assert_lasts("capture", 1000, 30)
+
+    def test_cdc_acm_gets_its_terminal_back(self):
+        self.assertEqual(self.text("ttyACM0.state").strip(), "back")
+
+
+class UnplugVhciBoard(Scenario):
+    name = "30_unplug_vhci"
+
+    def test_the_exit_code_says_that_the_device_is_lost(self):
+        self.assert_exit("capture", DEVICE_LOST)
+
+    def test_what_came_before_is_a_clean_file(self):
+        self.assertEqual(self.json("capture.check.out")["end"], "clean")
+        self.assert_bytes_balance(self.json("capture.check.out"))
+        self.assert_lasts("capture", 1000, 6)
+
+    def test_it_can_be_analysed(self):
+        self.assert_exit("capture.analyze", OK)
+
+
+class UnplugAcmGadget(UnplugVhciBoard):
+    name = "31_unplug_acm_gadget"
+
+    def test_what_came_before_is_a_clean_file(self):
+        check = self.json("capture.check.out")
+        self.assertEqual(check["end"], "clean")
+        self.assert_bytes_balance(check)
+        self.assertGreater(check["samples"]["good"], 2000)
+
+
+class FailingTransfers(Scenario):
+    name = "40_faults"
+
+    def test_stall_babble_and_checksum_error_cost_no_sample(self):
+        self.assert_exit("capture", OK)
+        self.assert_every_sample_of("capture", "VHCI40")
+
+    def test_they_are_in_the_file_as_the_kernel_reported_them(self):
+        ours = usbmon_record.from_pcapng(self.file("capture.pcapng").read_bytes())
+        self.assertLessEqual({-32, -75, -71}, {transfer.status for transfer in ours})
+
+
+class TerminalLine(Scenario):
+    name = "50_cdc_acm_tty"
+
+    def test_it_holds_every_sample_the_board_produced(self):
+        self.assert_exit("capture", OK)
+        self.assert_every_sample_of("capture", "VHCI50")
+        self.assert_lasts("capture", 1000, 10)
+
+
+class Interrupted(Scenario):
+    name = "60_interrupt"
+
+    def test_control_c_closes_the_capture_and_is_no_failure(self):
+        self.assert_exit("capture", OK)
+        self.assert_every_sample_of("capture", "VHCI60")
+
+    def test_a_second_program_is_told_that_the_board_is_in_use(self):
+        self.assert_exit("second", NO_DEVICE)
+        self.assertNotEqual(self.text("second.err").strip(), "")
+
+    def test_cdc_acm_gets_its_terminal_back(self):
+        self.assertEqual(self.text("ttyACM0.state").strip(), "back")
+
+
+class Killed(Scenario):
+    name = "61_killed"
+
+    def test_what_was_written_is_intact(self):
+        check = self.json("killed.check.out")
+        self.assertIn(check["end"], ("clean", "torn_tail"))
+        self.assertEqual(check["samples"]["missing"], 0)
+        self.assertGreater(check["samples"]["good"], 1500)
+
+    def test_the_board_can_be_captured_again(self):
+        self.assert_exit("capture", OK)
+        self.assert_every_sample_of("capture", "VHCI61")
+
+
+class ReaderStopped(Scenario):
+    name = "70_reader_stopped"
+
+    def test_two_seconds_without_the_reader_cost_no_sample(self):
+        self.assert_exit("capture", OK)
+        self.assert_every_sample_of("capture", "VHCI70")
+
+
+class SeveralBoards(Scenario):
+    name = "80_several_boards"
+
+    def test_each_is_listed(self):
+        serials = {device["serial"] for device in self.json("list.out")["devices"]}
+        self.assertEqual(serials, {"VHCI80", "VHCI81", "VHCI82"})
+
+    def test_two_are_captured_at_once(self):
+        for capture, board in (("first", "VHCI80"), ("second", "VHCI82")):
+            self.assert_exit(capture, OK)
+            self.assert_every_sample_of(capture, board)
+
+
+class NoPermission(Scenario):
+    name = "90_no_permission"
+
+    def test_no_device_is_said_so(self):
+        self.assert_exit("none", NO_DEVICE)
+
+    def test_a_device_that_may_not_be_opened_is_said_so_with_the_mend(self):
+        self.assert_exit("denied", NO_DEVICE)
+        self.assertIn("gyrolog.rules", self.text("denied.err"))
+        self.assertEqual(self.json("list.out")["devices"][0]["state"], "no_permission")
+
+
+def main():
+    try:
+        status = guest.run(PROGRAMS, WORK, HERE / "guest" / "run_scenarios.sh", timeout_s=840,
+                           scenarios=os.environ.get("SCENARIOS", "").split())
+    except Unavailable as reason:
+        print(f"skipped: {reason}", file=sys.stderr)
+        return 77
+    log = SHARE / "script.log"
+    print(log.read_text(errors="replace") if log.exists() else "the guest never reached the scenarios", flush=True)
+    result = unittest.main(exit=False, verbosity=2).result
+    return 0 if status == 0 and result.wasSuccessful() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,37 @@
+#include "tools/vhci_board/board_command.hpp"
+
+#include <utility>
+
+namespace gyrolog {
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+void BoardCommand::declare(CLI::App& app) {
+    app.add_option("--serial", serial, "serial number")->capture_default_str();
+    app.add_option("--seed", seed, "of the simulated sensor's noise")->capture_default_str();
+    app.add_option("--rate", rate_hz, "output rate at power-on, in Hz")->check(CLI::PositiveNumber);
+    app.add_option("--report", report_path, "file for the board's own accounts, written at the end");
+}
+
+Result<std::unique_ptr<VirtualBoard>> BoardCommand::power_on(std::uint32_t boot,
+                                                             std::vector<BoardFault> faults) const {
+    VirtualBoardOptions options;
+    options.serial = serial;
+    options.seed = seed + boot - 1;
+    options.rate_hz = rate_hz;
+    options.boot_id = boot;
+    options.faults = std::move(faults);
+    return VirtualBoard::create(std::move(options));
+}
+
+Status BoardCommand::report(const SessionLog& log) const {
+    return report_path.empty() ? Status{} : write_report(report_path, serial, log.sessions());
+}
+
+void catch_stop_signals() {
+    struct sigaction action {};
+    action.sa_handler = [](int signal) { stop_signal = signal; };
+    for (const int signal : {SIGINT, SIGTERM}) { sigaction(signal, &action, nullptr); }
+}
+
+}  // namespace gyrolog

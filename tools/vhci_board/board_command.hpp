@@ -1,0 +1,32 @@
+// What the programs vhci_board and gadget_board have in common: options of the board, signals, the report.
+#pragma once
+
+#include <csignal>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "host/base/result.hpp"
+#include "host/virtual_board/virtual_board.hpp"
+#include "tools/vhci_board/session_log.hpp"
+
+namespace gyrolog {
+
+struct BoardCommand {
+    std::string serial = "SIM0001";
+    std::uint64_t seed = 1;
+    double rate_hz = 0.0;  // 0: the firmware's default, until the host configures it
+    std::string report_path;
+
+    void declare(CLI::App& app);
+    // Powered on. `boot` counts from 1; each boot has an id and a noise of its own.
+    Result<std::unique_ptr<VirtualBoard>> power_on(std::uint32_t boot, std::vector<BoardFault> faults) const;
+    Status report(const SessionLog& log) const;
+};
+
+// Set once the user asks to stop, by SIGINT or SIGTERM.
+extern volatile std::sig_atomic_t stop_signal;
+void catch_stop_signals();
+
+}  // namespace gyrolog
