@@ -1,0 +1,438 @@
+#include "host/session/capture_session.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "host/capture/capture_writer.hpp"
+#include "host/session/transfer_queue.hpp"
+
+namespace gyrolog {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr milliseconds progress_interval(100);
+constexpr milliseconds reply_timeout(1000);
+constexpr milliseconds flush_time(150);  // for the partial frame that a board sends when it is stopped
+constexpr std::int64_t sync_interval_ns = 1'000'000'000;
+constexpr std::uint64_t checkpoint_bytes = std::uint64_t{1} << 20U;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The source's thread hands transfers over here; what finds no room is counted.
+class QueueingSink final : public TransferSink {
+public:
+    QueueingSink(TransferQueue& queue, bool source_waits) : queue_(queue), source_waits_(source_waits) {}
+
+    bool on_transfer(const Transfer& transfer) override {
+        if (transfer.carries_stream() && !transfer.data.empty()) {
+            last_data_ns_.store(clock_ns(CLOCK_MONOTONIC), std::memory_order_relaxed);
+        }
+        if (queue_.push(transfer)) { return true; }
+        if (!source_waits_) {
+            ++transfers_dropped_;
+            bytes_dropped_ += transfer.data.size();
+        }
+        return false;
+    }
+
+    void on_end(SourceEnd end, const std::optional<Error>& error) override {
+        {
+            const std::lock_guard lock(mutex_);
+            end_ = end;
+            error_ = error;
+        }
+        queue_.close();
+    }
+
+    // No value while the source runs.
+    std::optional<SourceEnd> end() const {
+        const std::lock_guard lock(mutex_);
+        return end_;
+    }
+    std::optional<Error> error() const {
+        const std::lock_guard lock(mutex_);
+        return error_;
+    }
+    double silence_s() const {
+        return static_cast<double>(clock_ns(CLOCK_MONOTONIC) - last_data_ns_.load(std::memory_order_relaxed)) * 1e-9;
+    }
+    void restart_silence() { last_data_ns_.store(clock_ns(CLOCK_MONOTONIC)); }
+    std::uint64_t transfers_dropped() const { return transfers_dropped_; }
+    std::uint64_t bytes_dropped() const { return bytes_dropped_; }
+
+private:
+    TransferQueue& queue_;
+    const bool source_waits_;
+    std::atomic<std::int64_t> last_data_ns_{clock_ns(CLOCK_MONOTONIC)};
+    std::atomic<std::uint64_t> transfers_dropped_{0};
+    std::atomic<std::uint64_t> bytes_dropped_{0};
+    mutable std::mutex mutex_;
+    std::optional<SourceEnd> end_;
+    std::optional<Error> error_;
+};
+
+// The writer's thread: drains the queue into the file and into the decoder, and tells the caller's thread what came.
+class WriterThread final : private MessageHandler {
+public:
+    WriterThread(TransferQueue& queue, const QueueingSink& sink, CaptureWriter& writer, const CaptureRequest& request)
+        : queue_(queue),
+          sink_(sink),
+          writer_(writer),
+          request_(request),
+          decoder_({.keep_samples = false, .observer = this}),
+          thread_([this] { run(); }) {}
+    ~WriterThread() override { join(); }
+    WriterThread(const WriterThread&) = delete;
+    WriterThread& operator=(const WriterThread&) = delete;
+
+    // After the queue was closed: waits until everything in it is on disk.
+    void join() {
+        if (thread_.joinable()) { thread_.join(); }
+    }
+
+    // Waits until `wanted(*this)` holds or the time is over; the lock is held while it looks.
+    template <typename Wanted>
+    bool wait(milliseconds time, Wanted&& wanted) {
+        std::unique_lock lock(mutex_);
+        return changed_.wait_for(lock, time, [&] { return wanted(); });
+    }
+    // The three below: inside wait(), or after join().
+    bool has_hello() const { return progress_.hello.has_value(); }
+    bool has_config() const { return progress_.config.has_value(); }
+    bool enough() const { return enough_; }
+    const std::optional<Error>& storage_error() const { return storage_error_; }
+    const std::vector<glp_reply>& replies() const { return replies_; }
+
+    CaptureProgress progress() const {
+        const std::lock_guard lock(mutex_);
+        return progress_;
+    }
+    LinkReport link() const { return decoder_.report(); }  // after join()
+
+private:
+    void run() {
+        while (!queue_.finished()) {
+            queue_.pop(progress_interval).for_each([&](const Transfer& transfer) { take(transfer); });
+            if (clock_ns(CLOCK_MONOTONIC) - last_sync_ns_ >= sync_interval_ns) { checkpoint(false); }
+            publish();
+        }
+        checkpoint(true);
+        publish();
+    }
+
+    void take(const Transfer& transfer) {
+        if (!storage_error_) {
+            if (Status appended = writer_.append(transfer); !appended.ok()) { fail(std::move(appended).error()); }
+        }
+        if (transfer.carries_stream()) {
+            decoder_.feed(transfer.data, transfer.time);
+            bytes_since_checkpoint_ += transfer.data.size();
+        }
+        if (bytes_since_checkpoint_ >= checkpoint_bytes) { checkpoint(false); }
+    }
+
+    void checkpoint(bool last) {
+        const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+        const bool sync_due = last || now_ns - last_sync_ns_ >= sync_interval_ns;
+        bytes_since_checkpoint_ = 0;
+        if (storage_error_) { return; }
+        Status written = writer_.checkpoint(counters());
+        if (written.ok() && sync_due) { written = writer_.sync(); }
+        if (sync_due) { last_sync_ns_ = now_ns; }
+        if (!written.ok()) { fail(std::move(written).error()); }
+    }
+
+    CaptureCounters counters() const {
+        const LinkReport link = decoder_.report();
+        return {.stream_bytes = link.bytes.total,
+                .frames = link.frames.good,
+                .samples = link.samples.good,
+                .frames_missing = link.frames.missing,
+                .samples_missing = link.samples.missing,
+                .transfers_dropped = sink_.transfers_dropped(),
+                .bytes_dropped = sink_.bytes_dropped()};
+    }
+
+    void fail(Error error) {
+        const std::lock_guard lock(mutex_);
+        storage_error_ = std::move(error);
+    }
+
+    void publish() {
+        const LinkReport link = decoder_.report();
+        const std::lock_guard lock(mutex_);
+        progress_.samples = link.samples.good;
+        progress_.samples_missing = link.samples.missing;
+        progress_.dropouts = link.dropouts.size() + link.dropouts_unlisted;
+        progress_.frames_corrupted = link.frames.corrupted;
+        progress_.file_bytes = writer_.bytes_written();
+        progress_.rate_hz = decoder_.rate_hz();
+        progress_.hello = decoder_.hello();
+        progress_.config = decoder_.config();
+        if (latest_ && progress_.config) {
+            progress_.temperature_C = progress_.config->temp_offset_mC * 1e-3 +
+                                      latest_->temperature * 1e-9 * progress_.config->temp_nC_per_lsb;
+        }
+        if (progress_.rate_hz) { progress_.device_s = static_cast<double>(instants_) / *progress_.rate_hz; }
+        replies_.insert(replies_.end(), new_replies_.begin(), new_replies_.end());
+        new_replies_.clear();
+        enough_ = (request_.samples && instants_ >= *request_.samples) ||
+                  (request_.duration_s && progress_.rate_hz &&
+                   static_cast<double>(instants_) >= *request_.duration_s * *progress_.rate_hz);
+        changed_.notify_all();
+    }
+
+    void on_samples(const ReceivedFrame& /*frame*/, const glp_samples& samples) override {
+        latest_ = samples;
+        latest_->samples = nullptr;
+        instants_ = samples.first_index + samples.count;
+    }
+    void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override {
+        if (new_replies_.size() < replies_kept) { new_replies_.push_back(reply); }
+    }
+
+    static constexpr std::size_t replies_kept = 64;
+
+    TransferQueue& queue_;
+    const QueueingSink& sink_;
+    CaptureWriter& writer_;
+    const CaptureRequest& request_;
+
+    // The writer thread's own.
+    StreamDecoder decoder_;
+    std::uint64_t bytes_since_checkpoint_ = 0;
+    std::int64_t last_sync_ns_ = clock_ns(CLOCK_MONOTONIC);
+    std::optional<glp_samples> latest_;
+    std::uint64_t instants_ = 0;  // of the present run, missing ones included
+    std::vector<glp_reply> new_replies_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    CaptureProgress progress_;
+    std::vector<glp_reply> replies_;
+    std::optional<Error> storage_error_;
+    bool enough_ = false;
+
+    std::thread thread_;  // last: starts when everything else is there
+};
+
+// The conversation with the board: quiet, configured, started; and stopped again at the end. A line without control
+// signals (a pty, a bare UART) is started and stopped by commands instead. A source that takes neither (a replayed
+// capture) plays whatever it has.
+class BoardControl {
+public:
+    BoardControl(ByteSource& source, WriterThread& writer, const QueueingSink& sink)
+        : source_(source), writer_(writer), sink_(sink) {}
+
+    Status quiet() {
+        const Status lowered = source_.set_line_state(false);
+        if (lowered.ok()) { return {}; }
+        if (lowered.error().code != ErrorCode::unsupported) { return lowered; }
+        has_line_ = false;
+        const Status stopped = command(glp_frame_stop, {}, Answer::awaited);
+        if (!stopped.ok() && stopped.error().code == ErrorCode::unsupported) {
+            takes_commands_ = false;
+            return {};
+        }
+        // A board that was quiet already, or is still booting, may leave this one unanswered.
+        return stopped.ok() || stopped.error().code == ErrorCode::timeout ? Status() : stopped;
+    }
+
+    Status configure(const glp_configure& wanted) {
+        const bool asked = wanted.rate_mHz != 0 || wanted.dlpf_hz != 0 || wanted.gyro_full_scale_dps != 0 ||
+                           wanted.accel_full_scale_g != 0 || wanted.layout != 0 || wanted.samples_per_frame != 0;
+        if (!asked) { return {}; }
+        if (!takes_commands_) {
+            return Error{ErrorCode::invalid_argument,
+                         source_.identity().uri + " cannot be configured: leave --rate, --full-scale and --dlpf out"};
+        }
+        std::array<std::uint8_t, GLP_FRAME_PAYLOAD_MAX> payload{};
+        const std::size_t size = glp_configure_write(&wanted, payload.data(), payload.size());
+        return command(glp_frame_configure, ByteView(payload).first(size), Answer::awaited);
+    }
+
+    Status start() {
+        if (has_line_) { return source_.set_line_state(true); }
+        if (!takes_commands_) { return {}; }
+        GYROLOG_CHECK(command(glp_frame_start, {}, Answer::awaited));
+        return command(glp_frame_get_hello, {}, Answer::not_awaited);
+    }
+
+    // Whatever goes wrong here, the capture is over anyway.
+    void stop() {
+        if (has_line_) {
+            static_cast<void>(source_.set_line_state(false));
+        } else if (takes_commands_) {
+            static_cast<void>(command(glp_frame_stop, {}, Answer::not_awaited));
+        }
+        if (!source_.can_wait()) { std::this_thread::sleep_for(flush_time); }
+    }
+
+private:
+    enum class Answer { awaited, not_awaited };
+
+    Status command(glp_frame_type type, ByteView payload, Answer answer) {
+        const glp_frame frame{static_cast<std::uint8_t>(type), 0, ++sequence_, payload.data(), payload.size()};
+        std::array<std::uint8_t, GLP_FRAME_WIRE_MAX> wire{};
+        const glp_cobs_result encoded = glp_frame_encode(&frame, wire.data(), wire.size());
+        GYROLOG_CHECK(source_.write(ByteView(wire).first(encoded.size)));
+        if (answer == Answer::not_awaited) { return {}; }
+        std::optional<std::uint8_t> result;
+        writer_.wait(reply_timeout, [&] {
+            for (const glp_reply& reply : writer_.replies()) {
+                if (reply.command_sequence == sequence_ && reply.command_type == type) { result = reply.result; }
+            }
+            return result.has_value() || sink_.end().has_value();
+        });
+        if (!result) {
+            return Error{ErrorCode::timeout, "the board on " + source_.identity().uri + " did not answer a command"};
+        }
+        return refusal(*result);
+    }
+
+    Status refusal(std::uint8_t result) const {
+        switch (result) {
+            case glp_result_ok: return {};
+            case glp_result_bad_value:
+                return Error{ErrorCode::invalid_argument,
+                             "the board on " + source_.identity().uri +
+                                 " does not have this rate, full scale or low-pass (an MPU-9250 has 4 Hz to 1000 Hz in "
+                                 "whole divisions of 1 kHz, or 8000 Hz; 250, 500, 1000 or 2000 °/s; 5, 10, 20, 41, 92, "
+                                 "184, 250 or 3600 Hz or off)"};
+            case glp_result_sensor_fault:
+                return Error{ErrorCode::failed,
+                             "the board on " + source_.identity().uri + " cannot talk to its sensor"};
+            default:
+                return Error{ErrorCode::unsupported, fmt::format("the board on {} refused a command (result {})",
+                                                                 source_.identity().uri, result)};
+        }
+    }
+
+    ByteSource& source_;
+    WriterThread& writer_;
+    const QueueingSink& sink_;
+    bool has_line_ = true;
+    bool takes_commands_ = true;
+    std::uint32_t sequence_ = 0;
+};
+
+constexpr const char* no_hello = "no HELLO and CONFIG frame";
+
+// From a silent board to a stream whose HELLO and CONFIG have come.
+Status begin(ByteSource& source, QueueingSink& sink, WriterThread& writer, BoardControl& control,
+             const CaptureRequest& request) {
+    GYROLOG_CHECK(source.start(sink));
+    GYROLOG_CHECK(control.quiet());
+    GYROLOG_CHECK(control.configure(request.configure));
+    GYROLOG_CHECK(control.start());
+    bool identified = false;
+    writer.wait(milliseconds(static_cast<std::int64_t>(request.hello_timeout_s * 1e3)), [&] {
+        identified = writer.has_hello() && writer.has_config();
+        return identified || sink.end().has_value();
+    });
+    if (identified) { return {}; }
+    // The source may have ended with the frames still in the queue.
+    if (sink.end()) { writer.join(); }
+    if (writer.has_hello() && writer.has_config()) { return {}; }
+    if (const auto error = sink.error()) { return *error; }
+    return Error{ErrorCode::timeout, no_hello};
+}
+
+// What the bytes that did come say about a board that did not identify itself.
+Error explain(const Error& error, const ByteSource& source, const LinkReport& link) {
+    if (error.message != no_hello) { return error; }
+    const std::string& uri = source.identity().uri;
+    if (link.bytes.total == 0) { return {ErrorCode::timeout, uri + ": nothing came after the start"}; }
+    if (link.frames.corrupted_by_reason[glp_status_bad_version] > 0) {
+        return {ErrorCode::unsupported,
+                fmt::format("{} speaks another major version of the protocol than {}: update gyrolog or the firmware",
+                            uri, GLP_PROTOCOL_MAJOR)};
+    }
+    return {ErrorCode::malformed,
+            fmt::format("{}: {} bytes came, but no HELLO and CONFIG frame: this is no gyrolog board, or not its data "
+                        "port",
+                        uri, link.bytes.total)};
+}
+
+// Runs until there is enough, the caller or the source ends it, or the disk refuses.
+CaptureEnd stream_until_end(WriterThread& writer, QueueingSink& sink, const CaptureRequest& request,
+                            const CaptureObserver& observe, std::optional<Error>& error) {
+    sink.restart_silence();
+    const auto start = Clock::now();
+    while (true) {
+        bool enough = false;
+        bool refused = false;
+        writer.wait(progress_interval, [&] {
+            enough = writer.enough();
+            refused = writer.storage_error().has_value();
+            return enough || refused || sink.end().has_value();
+        });
+        CaptureProgress progress = writer.progress();
+        progress.elapsed_s = seconds_since(start);
+        const bool go_on = observe(progress);
+        if (refused) { return CaptureEnd::storage_failed; }
+        if (enough) { return CaptureEnd::complete; }
+        if (const auto end = sink.end()) {
+            error = sink.error();
+            if (*end == SourceEnd::exhausted || *end == SourceEnd::stopped) { return CaptureEnd::complete; }
+            return CaptureEnd::device_lost;
+        }
+        if (!go_on) { return CaptureEnd::interrupted; }
+        if (sink.silence_s() > request.idle_timeout_s) {
+            error = Error{ErrorCode::device_lost, fmt::format("silent for {:g} s", request.idle_timeout_s)};
+            return CaptureEnd::device_lost;
+        }
+    }
+}
+
+}  // namespace
+
+Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request, const CaptureObserver& observe) {
+    GYROLOG_TRY(CaptureWriter writer, CaptureWriter::create(request.path, source.identity(), request.overwrite));
+    TransferQueue queue(request.queue_bytes);
+    QueueingSink sink(queue, source.can_wait());
+    WriterThread thread(queue, sink, writer, request);
+    BoardControl control(source, thread, sink);
+
+    CaptureOutcome outcome;
+    const Status began = begin(source, sink, thread, control, request);
+    if (began.ok()) {
+        outcome.end = stream_until_end(thread, sink, request, observe, outcome.error);
+        control.stop();
+    }
+    // Tear-down, in this order: the source (its last callback closes the queue), the queue, the writer, the file.
+    source.stop();
+    queue.close();
+    thread.join();
+    Status closed = writer.close();
+    if (thread.storage_error()) { closed = *thread.storage_error(); }
+    outcome.link = thread.link();
+    if (!began.ok()) {
+        if (outcome.link.bytes.total == 0) { static_cast<void>(std::remove(request.path.c_str())); }
+        return closed.ok() ? explain(began.error(), source, outcome.link) : closed.error();
+    }
+    if (!closed.ok()) {
+        outcome.end = CaptureEnd::storage_failed;
+        outcome.error = closed.error();
+    }
+    outcome.progress = thread.progress();
+    outcome.transfers_dropped = sink.transfers_dropped();
+    outcome.bytes_dropped = sink.bytes_dropped();
+    outcome.queue_high_water_bytes = queue.high_water_bytes();
+    return outcome;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,72 @@
+// One capture from start to finish: source -> queue -> writer, with the handshake before and the accounts after.
+//
+// Threads: the source's own (pushes transfers, never waits for the disk), the writer's (appends, decodes for the
+// accounts, syncs), the caller's (handshake, progress, stop).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "host/base/result.hpp"
+#include "host/decode/protocol.hpp"
+#include "host/decode/stream_decoder.hpp"
+#include "host/transport/byte_source.hpp"
+
+namespace gyrolog {
+
+struct CaptureRequest {
+    std::string path;
+    bool overwrite = false;
+    std::optional<double> duration_s;       // of device time
+    std::optional<std::uint64_t> samples;   // at least so many sampling instants
+    glp_configure configure{};              // zeros: the board keeps its configuration
+    double hello_timeout_s = 3.0;
+    double idle_timeout_s = 10.0;           // silence that counts as a lost device
+    std::size_t queue_bytes = std::size_t{16} << 20U;
+};
+
+struct CaptureProgress {
+    double elapsed_s = 0.0;  // of host time since the stream began
+    double device_s = 0.0;   // of device time
+    std::optional<double> rate_hz;
+    std::optional<double> temperature_C;
+    std::uint64_t samples = 0;
+    std::uint64_t samples_missing = 0;
+    std::uint64_t dropouts = 0;
+    std::uint64_t frames_corrupted = 0;
+    std::uint64_t file_bytes = 0;
+    std::optional<glp_hello> hello;
+    std::optional<glp_config> config;
+};
+
+enum class CaptureEnd {
+    complete,     // the duration or number of samples asked for, or the source had no more
+    interrupted,  // the caller stopped it
+    device_lost,
+    storage_failed,
+};
+
+struct CaptureOutcome {
+    CaptureEnd end = CaptureEnd::complete;
+    std::optional<Error> error;  // with device_lost and storage_failed
+    CaptureProgress progress;
+    LinkReport link;
+    // Transfers that found the queue full, and their bytes: lost on the host.
+    std::uint64_t transfers_dropped = 0;
+    std::uint64_t bytes_dropped = 0;
+    std::size_t queue_high_water_bytes = 0;
+
+    bool data_lost() const { return !link.complete() || transfers_dropped > 0; }
+};
+
+// Called some ten times a second on the caller's thread; false ends the capture.
+using CaptureObserver = std::function<bool(const CaptureProgress&)>;
+
+// Errors are those before the stream began: the file could not be made, the source not started, no HELLO came, the
+// board refused the configuration. The file is then removed, unless bytes of the stream are in it. Once the stream has
+// begun, whatever ends it, the file is closed and readable and the outcome says what happened.
+Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request, const CaptureObserver& observe);
+
+}  // namespace gyrolog
