@@ -1,0 +1,45 @@
+#include "host/transport/source_uri.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gyrolog {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+
+TEST(SourceUri, EachKindIsUnderstood) {
+    EXPECT_EQ(parse_source_uri("usb:")->kind, SourceUri::Kind::usb);
+    EXPECT_EQ(parse_source_uri("usb:")->rest, "");
+    EXPECT_EQ(parse_source_uri("usb:S1")->rest, "S1");
+    EXPECT_EQ(parse_source_uri("tty:/dev/ttyACM0")->kind, SourceUri::Kind::tty);
+    EXPECT_EQ(parse_source_uri("tty:/dev/ttyACM0")->rest, "/dev/ttyACM0");
+    EXPECT_EQ(parse_source_uri("sim:")->kind, SourceUri::Kind::sim);
+    EXPECT_EQ(parse_source_uri("replay:night.pcapng")->kind, SourceUri::Kind::replay);
+}
+
+TEST(SourceUri, APathMayHoldColonsAndCommas) {
+    EXPECT_EQ(parse_source_uri("replay:a:b,c=d.pcapng")->rest, "a:b,c=d.pcapng");
+}
+
+TEST(SourceUri, SimulationOptionsKeepTheirOrder) {
+    const auto uri = parse_source_uri("sim:rate=1000,seed=7,model=a=b.json,realtime=");
+    ASSERT_TRUE(uri.ok()) << uri.error().message;
+    EXPECT_THAT(uri->options, ElementsAre(Pair("rate", "1000"), Pair("seed", "7"), Pair("model", "a=b.json"),
+                                          Pair("realtime", "")));
+}
+
+TEST(SourceUri, WhatIsNotUnderstoodIsRefusedWithTheFormsThatAre) {
+    for (const char* text : {"", "usb", "/dev/ttyACM0", "serial:x", "tty:", "replay:", "sim:rate", "sim:=5",
+                             "sim:rate=1,rate=2", "sim:rate=1,,seed=2"}) {
+        const auto uri = parse_source_uri(text);
+        ASSERT_FALSE(uri.ok()) << text;
+        EXPECT_EQ(uri.error().code, ErrorCode::invalid_argument) << text;
+        EXPECT_THAT(uri.error().message, HasSubstr("usb:SERIAL")) << text;
+    }
+}
+
+}  // namespace
+}  // namespace gyrolog

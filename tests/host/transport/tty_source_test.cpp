@@ -1,0 +1,183 @@
+// A pseudo-terminal stands for the serial port: it has no DTR, and its other end is the board.
+#include "host/transport/tty_source.hpp"
+
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <gyrolog_protocol/usb_identity.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/support/collecting_sink.hpp"
+
+namespace gyrolog {
+namespace {
+
+using test::CollectingSink;
+
+class TtySourceTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        board_ = posix_openpt(O_RDWR | O_NOCTTY);
+        ASSERT_GE(board_, 0);
+        ASSERT_EQ(grantpt(board_), 0);
+        ASSERT_EQ(unlockpt(board_), 0);
+        path_ = ptsname(board_);
+        auto source = TtySource::open(path_);
+        ASSERT_TRUE(source.ok()) << source.error().message;
+        source_ = std::move(source).value();
+    }
+    void TearDown() override {
+        source_.reset();
+        hang_up();
+    }
+
+    void send(ByteView bytes) const {
+        while (!bytes.empty()) {
+            const ssize_t sent = ::write(board_, bytes.data(), bytes.size());
+            ASSERT_GT(sent, 0);
+            bytes = bytes.subspan(static_cast<std::size_t>(sent));
+        }
+    }
+    // What the board gets within 5 s, up to so many bytes.
+    Bytes receive(std::size_t size) const {
+        Bytes received(size);
+        std::size_t got = 0;
+        pollfd readable{board_, POLLIN, 0};
+        while (got < size && poll(&readable, 1, 5000) > 0) {
+            const ssize_t count = ::read(board_, received.data() + got, size - got);
+            if (count <= 0) { break; }
+            got += static_cast<std::size_t>(count);
+        }
+        received.resize(got);
+        return received;
+    }
+    void hang_up() {
+        if (board_ >= 0) { close(board_); }
+        board_ = -1;
+    }
+
+    int board_ = -1;
+    std::string path_;
+    CollectingSink sink_;
+    std::unique_ptr<TtySource> source_;
+};
+
+Bytes every_byte_many_times(std::size_t size) {
+    Bytes bytes(size);
+    for (std::size_t i = 0; i < size; ++i) { bytes[i] = static_cast<std::uint8_t>(i * 7 + i / 256); }
+    return bytes;
+}
+
+TEST_F(TtySourceTest, EveryByteValueArrivesUntouched) {
+    ASSERT_TRUE(source_->start(sink_).ok());
+    const Bytes sent = every_byte_many_times(100'000);
+    send(sent);
+    EXPECT_TRUE(sink_.wait_for_bytes(sent.size()));
+    source_->stop();
+    EXPECT_EQ(sink_.stream(), sent);
+    EXPECT_EQ(sink_.end(), SourceEnd::stopped);
+}
+
+TEST_F(TtySourceTest, WhatWasWaitingBeforeTheStartIsTold) {
+    send(as_bytes("stale"));
+    ASSERT_TRUE(source_->start(sink_).ok());
+    EXPECT_EQ(as_text(sink_.stream()), "stale");
+}
+
+TEST_F(TtySourceTest, EachReadIsToldAsABulkTransfer) {
+    ASSERT_TRUE(source_->start(sink_).ok());
+    send(as_bytes("frame"));
+    EXPECT_TRUE(sink_.wait_for_bytes(5));
+    source_->stop();
+    const auto told = sink_.told();
+    ASSERT_GE(told.size(), 4U);
+    EXPECT_EQ(told[0].transfer.event, Transfer::Event::submission);
+    EXPECT_EQ(told[0].transfer.endpoint, GLP_USB_ENDPOINT_IN);
+    EXPECT_EQ(told[1].transfer.event, Transfer::Event::completion);
+    EXPECT_EQ(told[1].transfer.id, told[0].transfer.id);
+    EXPECT_EQ(told[1].transfer.status, 0);
+    EXPECT_EQ(told.back().transfer.event, Transfer::Event::completion);
+    EXPECT_EQ(told.back().transfer.status, -ENOENT) << "the read that was waiting is cancelled";
+}
+
+TEST_F(TtySourceTest, APortWithoutDtrSaysSo) {
+    ASSERT_TRUE(source_->start(sink_).ok());
+    EXPECT_EQ(source_->set_line_state(true).error().code, ErrorCode::unsupported);
+}
+
+TEST_F(TtySourceTest, CommandsReachTheBoardUntouched) {
+    ASSERT_TRUE(source_->start(sink_).ok());
+    const Bytes command = every_byte_many_times(1000);
+    ASSERT_TRUE(source_->write(command).ok());
+    EXPECT_EQ(receive(command.size()), command);
+    source_->stop();
+    std::size_t told_bytes = 0;
+    for (const auto& one : sink_.told()) {
+        const bool out = one.transfer.endpoint == GLP_USB_ENDPOINT_OUT;
+        if (out && one.transfer.event == Transfer::Event::submission) { told_bytes += one.data.size(); }
+    }
+    EXPECT_EQ(told_bytes, command.size());
+}
+
+TEST_F(TtySourceTest, ACommandThatTheBoardDoesNotTakeTimesOutWhileTheStreamGoesOn) {
+    ASSERT_TRUE(source_->start(sink_).ok());
+    const Bytes too_much(1 << 20, 0x55);
+    std::thread board([this] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        send(as_bytes("meanwhile"));
+    });
+    const Status written = source_->write(too_much);
+    board.join();
+    ASSERT_FALSE(written.ok());
+    EXPECT_EQ(written.error().code, ErrorCode::timeout);
+    EXPECT_EQ(as_text(sink_.stream()), "meanwhile");
+}
+
+TEST_F(TtySourceTest, AHangUpEndsTheStreamAsDeviceLost) {
+    ASSERT_TRUE(source_->start(sink_).ok());
+    send(as_bytes("last words"));
+    EXPECT_TRUE(sink_.wait_for_bytes(10));
+    hang_up();
+    EXPECT_EQ(sink_.wait_for_end(), SourceEnd::device_lost);
+    EXPECT_THAT(sink_.error_message(), ::testing::HasSubstr("hung up"));
+    EXPECT_EQ(source_->write(as_bytes("x")).error().code, ErrorCode::device_lost);
+    EXPECT_EQ(source_->set_line_state(true).error().code, ErrorCode::device_lost);
+    source_->stop();
+    source_->stop();
+}
+
+TEST_F(TtySourceTest, ASourceCanBeStartedAgain) {
+    for (int round = 0; round < 3; ++round) {
+        CollectingSink sink;
+        ASSERT_TRUE(source_->start(sink).ok());
+        send(as_bytes("again"));
+        EXPECT_TRUE(sink.wait_for_bytes(5));
+        source_->stop();
+        EXPECT_EQ(sink.end(), SourceEnd::stopped);
+    }
+}
+
+TEST_F(TtySourceTest, ASecondReaderIsKeptOut) {
+    ASSERT_EQ(chmod(path_.c_str(), 0666), 0);
+    const bool is_root = geteuid() == 0;  // whom the kernel lets in all the same
+    if (is_root) { ASSERT_EQ(seteuid(65534), 0); }
+    const auto second = TtySource::open(path_);
+    if (is_root) { ASSERT_EQ(seteuid(0), 0); }
+    ASSERT_FALSE(second.ok());
+    EXPECT_EQ(second.error().code, ErrorCode::busy);
+}
+
+TEST(TtySource, AMissingPortAndAPlainFileAreToldApart) {
+    EXPECT_EQ(TtySource::open("/dev/tty-that-is-not-there").error().code, ErrorCode::not_found);
+    EXPECT_EQ(TtySource::open("/dev/null").error().code, ErrorCode::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gyrolog
