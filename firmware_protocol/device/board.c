@@ -558,6 +558,7 @@ static void on_command(glp_board* self, const glp_frame* command) {
         case glp_frame_get_hello:
             send_reply(self, command, glp_result_ok);
             introduce(self);
+            tell_setup(self);
             break;
         case glp_frame_configure:
             on_configure(self, command);
@@ -669,8 +670,4 @@ bool glp_board_init(glp_board* self, const glp_hal* hal, const glp_board_identit
     return known;
 }
 
-bool glp_board_boot(glp_board* self) {
-    const bool ready = prepare_sensor(self);
-    tell_setup(self);
-    return ready;
-}
+bool glp_board_boot(glp_board* self) { return prepare_sensor(self); }

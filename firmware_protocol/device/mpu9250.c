@@ -42,9 +42,10 @@ static bool range_code(uint16_t value, uint16_t base, uint8_t* code) {
 static uint32_t divider_for(uint32_t inside_hz, uint32_t rate_mHz) {
     const uint32_t inside_mHz = inside_hz * 1000U;
     if ((rate_mHz == 0U) || (rate_mHz > inside_mHz)) { return 0; }
-    const uint32_t k = (inside_mHz + rate_mHz / 2U) / rate_mHz;
     const uint32_t k_max = inside_hz / 1000U * 256U;
-    if (k > k_max) { return 0; }
+    uint32_t k = (inside_mHz + rate_mHz / 2U) / rate_mHz;
+    // At the slow end of 32 kHz two neighbours round to the same millihertz.
+    if (k > k_max) { k = k_max; }
     return ((inside_mHz + k / 2U) / k == rate_mHz) ? k : 0U;
 }
 

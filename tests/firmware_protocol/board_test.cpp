@@ -497,6 +497,9 @@ TEST(Board, ARegisterThatReadsBackWrongIsASensorFault) {
     bench.sensor.stuck_bits[glp_mpu_gyro_config] = 0x80;
     EXPECT_FALSE(glp_board_boot(&bench.board));
     glp_board_poll(&bench.board);
+    EXPECT_TRUE(bench.wire.empty());  // nobody has asked yet
+    glp_board_on_line_state(&bench.board, true);
+    glp_board_poll(&bench.board);
     const std::vector<ReceivedFrame> frames = bench.take_frames(glp_frame_event);
     ASSERT_EQ(frames.size(), 1U);
     EXPECT_EQ(frames[0].event().code, glp_event_sensor_fault);
