@@ -8,17 +8,17 @@ namespace {
 
 // A configuration as NXP's CDC example has it, one row a descriptor.
 const Bytes cdc_configuration = {
-    9, 2, 75, 0, 2, 1, 0, 0x80, 50,      // configuration 1, 75 bytes, two interfaces
-    8, 11, 0, 2, 2, 2, 1, 0,             // interface association
-    9, 4, 0, 0, 1, 2, 2, 1, 0,           // interface 0: communications, abstract control model
-    5, 0x24, 0, 0x10, 1,                 // header
-    5, 0x24, 1, 0, 1,                    // call management
-    4, 0x24, 2, 2,                       // abstract control management
-    5, 0x24, 6, 0, 1,                    // union: 0 controls 1
-    7, 5, 0x82, 3, 10, 0, 9,             // interrupt IN
-    9, 4, 1, 0, 2, 10, 0, 0, 0,          // interface 1: data
-    7, 5, 0x81, 2, 64, 0, 0,             // bulk IN
-    7, 5, 0x02, 2, 64, 0, 0,             // bulk OUT
+    9, 2,    75,   0,    2,  1,  0, 0x80, 50,  // configuration 1, 75 bytes, two interfaces
+    8, 11,   0,    2,    2,  2,  1, 0,         // interface association
+    9, 4,    0,    0,    1,  2,  2, 1,    0,   // interface 0: communications, abstract control model
+    5, 0x24, 0,    0x10, 1,                    // header
+    5, 0x24, 1,    0,    1,                    // call management
+    4, 0x24, 2,    2,                          // abstract control management
+    5, 0x24, 6,    0,    1,                    // union: 0 controls 1
+    7, 5,    0x82, 3,    10, 0,  9,            // interrupt IN
+    9, 4,    1,    0,    2,  10, 0, 0,    0,   // interface 1: data
+    7, 5,    0x81, 2,    64, 0,  0,            // bulk IN
+    7, 5,    0x02, 2,    64, 0,  0,            // bulk OUT
 };
 
 constexpr std::size_t at_bulk_in = 61;
@@ -51,8 +51,8 @@ TEST(CdcDescriptors, TheBoardsInterfacesAndEndpointsAreFound) {
 
 TEST(CdcDescriptors, TheUnionSaysWhichDataInterfaceBelongsToTheControl) {
     Bytes two = cdc_configuration;
-    const Bytes foreign = {9, 4, 5, 0, 2, 10, 0, 0, 0,  // interface 5: somebody else's data
-                           7, 5, 0x83, 2, 64, 0, 0, 7, 5, 0x03, 2, 64, 0, 0};
+    const Bytes foreign = {9, 4, 5,    0, 2,  10, 0, 0, 0,  // interface 5: somebody else's data
+                           7, 5, 0x83, 2, 64, 0,  0, 7, 5, 0x03, 2, 64, 0, 0};
     two.insert(two.begin() + at_data_interface, foreign.begin(), foreign.end());
     two[2] = static_cast<std::uint8_t>(two.size());
     const auto layout = parse_cdc_configuration(two);
@@ -75,12 +75,14 @@ TEST(CdcDescriptors, AnythingButOneBulkEndpointEachWayIsUnsupported) {
 TEST(CdcDescriptors, PacketSizesThatUsbDoesNotHaveAreMalformed) {
     EXPECT_EQ(refusal_of(changed(at_bulk_in + 4, 0)), ErrorCode::malformed);
     EXPECT_EQ(refusal_of(changed(at_bulk_in + 4, 65)), ErrorCode::malformed);
-    EXPECT_EQ(refusal_of(changed(at_bulk_out + 2, 0x00)), ErrorCode::malformed) << "endpoint 0 is the control pipe";
+    EXPECT_EQ(refusal_of(changed(at_bulk_out + 2, 0x00)), ErrorCode::malformed)
+        << "endpoint 0 is the control pipe";
 }
 
 TEST(CdcDescriptors, EveryTruncationIsRefusedOrStillHasBothEndpoints) {
     for (std::size_t cut = 0; cut < cdc_configuration.size(); ++cut) {
-        const Bytes prefix(cdc_configuration.begin(), cdc_configuration.begin() + static_cast<std::ptrdiff_t>(cut));
+        const Bytes prefix(cdc_configuration.begin(),
+                           cdc_configuration.begin() + static_cast<std::ptrdiff_t>(cut));
         EXPECT_EQ(refusal_of(prefix), ErrorCode::malformed) << "cut at byte " << cut;
     }
 }

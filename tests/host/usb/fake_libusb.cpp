@@ -90,9 +90,11 @@ int handle_events(const timeval& timeout) {
     libusb_transfer* due = take_due(bus);
     if (due == nullptr) {
         // A silent board is asked again soon; the bus has no other clock.
-        const auto longest = std::chrono::seconds(timeout.tv_sec) + std::chrono::microseconds(timeout.tv_usec);
+        const auto longest =
+            std::chrono::seconds(timeout.tv_sec) + std::chrono::microseconds(timeout.tv_usec);
         const bool busy = !bus.in_flight.empty() || !bus.cancelled.empty();
-        const auto wait = busy ? std::min<std::chrono::microseconds>(longest, std::chrono::microseconds(200)) : longest;
+        const auto wait =
+            busy ? std::min<std::chrono::microseconds>(longest, std::chrono::microseconds(200)) : longest;
         bus.changed.wait_for(lock, wait, [&] { return bus.interrupted; });
         bus.interrupted = false;
         return LIBUSB_SUCCESS;
@@ -198,7 +200,9 @@ libusb_transfer* LIBUSB_CALL libusb_alloc_transfer(int) {
 void LIBUSB_CALL libusb_free_transfer(libusb_transfer* transfer) {
     const std::lock_guard lock(state().mutex);
     if (state().holds(transfer)) { state().complaints.emplace_back("a transfer was freed in flight"); }
-    if (state().allocated.erase(transfer) == 0) { state().complaints.emplace_back("a transfer was freed twice"); }
+    if (state().allocated.erase(transfer) == 0) {
+        state().complaints.emplace_back("a transfer was freed twice");
+    }
     delete transfer;
 }
 

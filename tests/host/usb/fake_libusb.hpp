@@ -1,4 +1,5 @@
-// libusb's transfer calls as a test wants them: defined here, the linker takes these instead of the library's.
+// libusb's transfer calls as a test wants them: defined here, the linker takes these instead of the
+// library's.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +17,12 @@ struct FakeCompletion {
     int received_bytes = 0;  // filled with a running count, modulo 256
 };
 
-// The bus and the kernel behind it. Judges the caller by libusb's rules: a transfer is not submitted twice, not freed
-// while in flight, and every one that was allocated is freed.
+// The bus and the kernel behind it. Judges the caller by libusb's rules: a transfer is not submitted twice,
+// not freed while in flight, and every one that was allocated is freed.
 class FakeUsb {
 public:
-    // What happens to the oldest transfer in flight; nothing while the board is silent. The argument counts the
-    // completions so far. Asked on the event thread.
+    // What happens to the oldest transfer in flight; nothing while the board is silent. The argument counts
+    // the completions so far. Asked on the event thread.
     using Script = std::function<std::optional<FakeCompletion>(std::uint64_t)>;
     // What submitting yields; the argument counts the submissions tried so far.
     using Admission = std::function<int(std::uint64_t)>;
