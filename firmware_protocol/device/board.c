@@ -174,17 +174,13 @@ static void send_samples(glp_board* self) {
     self->frame_samples = 0;
     if (!send(self, glp_frame_samples, self->frame_flags, self->payload, size)) {
         self->lost_samples += samples.count;
+        // What came before this frame comes before the next one, too.
+        self->next_flags |= self->frame_flags & (uint16_t)~glp_flag_saturated;
     }
 }
 
-// Room for the next sample in the frame that is being filled; begins the frame if need be.
+// Where the next sample of the frame that is being filled belongs.
 static uint8_t* place_for_samples(glp_board* self) {
-    if (self->frame_samples == 0U) {
-        self->frame_ticks = instant_at(self, self->instants_done);
-        self->frame_index = self->next_index;
-        self->frame_flags = self->next_flags;
-        self->next_flags = 0;
-    }
     return self->payload + GLP_SAMPLES_HEADER_BYTES + (size_t)self->frame_samples * self->plan.sample_bytes;
 }
 
@@ -196,6 +192,12 @@ static void pass_instants(glp_board* self, uint32_t count) {
 }
 
 static void count_samples(glp_board* self, uint32_t count, bool saturated) {
+    if (self->frame_samples == 0U) {
+        self->frame_ticks = instant_at(self, self->instants_done);
+        self->frame_index = self->next_index;
+        self->frame_flags = self->next_flags;
+        self->next_flags = 0;
+    }
     if (saturated) { self->frame_flags |= glp_flag_saturated; }
     pass_instants(self, count);
     self->frame_samples = (uint8_t)(self->frame_samples + count);

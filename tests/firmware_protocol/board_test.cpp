@@ -270,6 +270,27 @@ TEST(Board, AFailedFifoReadIsABusErrorThatCostsWhatTheFifoHeld) {
     EXPECT_EQ(after->flags, glp_flag_bus_error);
 }
 
+TEST(Board, TheFirstFrameAfterAStartIsMarkedEvenWhenWhatCameBeforeItWasLost) {
+    BenchBoard failing_bus;
+    failing_bus.boot_and_raise_dtr();
+    failing_bus.sensor.fifo_reads_to_fail = 1;
+    failing_bus.run(12);
+    const std::vector<ReceivedFrame> after_error = failing_bus.take_frames(glp_frame_samples);
+    EXPECT_EQ(after_error.front().flags, glp_flag_first_after_start | glp_flag_bus_error);
+
+    BenchBoard full_ring;
+    full_ring.endpoint_room = 0;
+    full_ring.boot_and_raise_dtr();
+    full_ring.board.ring.used = full_ring.board.ring.capacity;  // no room for a first frame
+    full_ring.run(4);
+    full_ring.board.ring.used = 0;
+    full_ring.endpoint_room = SIZE_MAX;
+    full_ring.run(4);
+    const std::vector<ReceivedFrame> after_drop = full_ring.take_frames(glp_frame_samples);
+    EXPECT_EQ(after_drop.front().samples().first_index, 4U);
+    EXPECT_EQ(after_drop.front().flags, glp_flag_first_after_start | glp_flag_ring_overflow);
+}
+
 TEST(Board, ABusThatIsDeadForASecondCostsThatSecondAndNoMore) {
     BenchBoard bench;
     bench.boot_and_raise_dtr();
