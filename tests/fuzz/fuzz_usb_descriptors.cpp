@@ -28,13 +28,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::vector<std::uint8_t> descriptors(
         data, data + size);  // on its own, so that the sanitizers see its end
     judge_layout(descriptors);
-    for (unsigned value = 0; value < 256; ++value) {
-        const auto found = gyrolog::find_configuration(descriptors, static_cast<std::uint8_t>(value));
-        if (!found.ok()) {
-            // The damage that hides one configuration hides them all.
-            if (found.error().code == gyrolog::ErrorCode::malformed && value == 0) { break; }
-            continue;
-        }
+    for (const std::uint8_t value : {0, 1, 2}) {
+        const auto found = gyrolog::find_configuration(descriptors, value);
+        if (!found.ok()) { continue; }
         GYROLOG_REQUIRE(found->data() >= descriptors.data());
         GYROLOG_REQUIRE(found->data() + found->size() <= descriptors.data() + descriptors.size());
         judge_layout(*found);
