@@ -1,0 +1,199 @@
+// What a capture file promises: the good prefix of a torn one, one block's worth of a damaged one, and
+// nothing invented.
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "host/capture/recover.hpp"
+#include "tests/host/capture/made_capture.hpp"
+
+namespace gyrolog {
+namespace {
+
+// Every transfer read is one that was written, in order. Returns how many were left out.
+std::size_t expect_subsequence(const std::vector<KeptTransfer>& read,
+                               const std::vector<KeptTransfer>& written) {
+    std::size_t next = 0;
+    for (const KeptTransfer& transfer : read) {
+        while (next < written.size() && !written[next].same_content(transfer)) { ++next; }
+        if (next == written.size()) {
+            ADD_FAILURE() << "a transfer was invented or out of order: id " << transfer.transfer.id;
+            return written.size();
+        }
+        // Damage below the microsecond is not noticed. The monotonic clock is known by the section header
+        // only.
+        const std::int64_t realtime_ns =
+            made_start.realtime_ns + written[next].transfer.time.monotonic_ns - made_start.monotonic_ns;
+        EXPECT_LT(std::abs(transfer.transfer.time.realtime_ns - realtime_ns), 1000);
+        ++next;
+    }
+    return written.size() - read.size();
+}
+
+TEST(CaptureFile, GivesBackEveryTransferBitForBit) {
+    const MadeCapture made = make_capture(40, 700);
+    const auto read = read_capture(made.bytes);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    ASSERT_EQ(read->transfers.size(), made.transfers.size());
+    for (std::size_t i = 0; i < made.transfers.size(); ++i) {
+        ASSERT_EQ(read->transfers[i], made.transfers[i]) << i;
+        EXPECT_EQ(
+            read->transfers[i].transfer.time.realtime_ns - read->transfers[i].transfer.time.monotonic_ns,
+            made_start.realtime_ns - made_start.monotonic_ns);
+    }
+    EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
+    EXPECT_EQ(read->accounts.failed_transfers, 1U);
+    EXPECT_EQ(read->accounts.foreign_packets, 0U);
+}
+
+TEST(CaptureFile, RemembersWhoWasCaptured) {
+    const auto read = read_capture(make_capture(3, 64).bytes);
+    ASSERT_TRUE(read.ok());
+    ASSERT_TRUE(read->metadata);
+    const SourceIdentity told = made_identity();
+    const SourceIdentity& source = read->metadata->source;
+    EXPECT_EQ(source.uri, told.uri);
+    EXPECT_EQ(source.vendor_id, told.vendor_id);
+    EXPECT_EQ(source.product_id, told.product_id);
+    EXPECT_EQ(source.bus_number, told.bus_number);
+    EXPECT_EQ(source.device_address, told.device_address);
+    EXPECT_EQ(source.manufacturer, told.manufacturer);
+    EXPECT_EQ(source.product, told.product);
+    EXPECT_EQ(source.serial, told.serial);
+    EXPECT_EQ(source.device_descriptor, told.device_descriptor);
+    EXPECT_EQ(source.configuration_descriptor, told.configuration_descriptor);
+    EXPECT_EQ(read->metadata->started.realtime_ns, made_start.realtime_ns);
+    EXPECT_EQ(read->metadata->started.monotonic_ns, made_start.monotonic_ns);
+    ASSERT_TRUE(read->checkpoint);
+    EXPECT_TRUE(read->checkpoint->last);
+    EXPECT_EQ(read->checkpoint->transfers, 9U);
+    EXPECT_EQ(read->checkpoint->stream_bytes, read->accounts.stream_bytes);
+}
+
+TEST(CaptureFile, KeepsItsGoodPrefixWhereverItIsCut) {
+    const MadeCapture made = make_capture(6, 50);
+    for (std::size_t cut = 0; cut <= made.bytes.size(); ++cut) {
+        const Bytes head(made.bytes.begin(), made.bytes.begin() + static_cast<std::ptrdiff_t>(cut));
+        const auto read = read_capture(head);
+        ASSERT_TRUE(read.ok()) << "cut at byte " << cut << ": " << read.error().message;
+        std::size_t complete = 0;
+        while (complete < made.ends.size() && made.ends[complete] <= cut) { ++complete; }
+        ASSERT_EQ(read->transfers.size(), complete) << "cut at byte " << cut;
+        for (std::size_t i = 0; i < complete; ++i) { ASSERT_EQ(read->transfers[i], made.transfers[i]); }
+        ASSERT_TRUE(read->accounts.blocks.balanced()) << "cut at byte " << cut;
+        ASSERT_NE(read->accounts.blocks.end, FileEnd::damaged) << "cut at byte " << cut;
+        const bool whole_blocks = read->accounts.blocks.bytes_in_tail == 0 && cut > 0;
+        ASSERT_EQ(read->accounts.blocks.end, whole_blocks ? FileEnd::clean : FileEnd::torn_tail);
+    }
+}
+
+TEST(CaptureFile, FindsNoPhantomsInAZeroFilledTail) {
+    MadeCapture made = make_capture(6, 50);
+    made.bytes.resize(made.ends[8]);
+    made.bytes.resize(made.ends[8] + 5000, 0);
+    const auto read = read_capture(made.bytes);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(read->transfers.size(), 9U);
+    EXPECT_EQ(read->accounts.blocks.end, FileEnd::torn_tail);
+    EXPECT_EQ(read->accounts.blocks.bytes_in_tail, 5000U);
+}
+
+TEST(CaptureFile, LosesAtMostOneTransferToAnyFlippedBit) {
+    const MadeCapture made = make_capture(6, 50);
+    for (std::size_t bit = 0; bit < made.bytes.size() * 8; ++bit) {
+        Bytes flipped = made.bytes;
+        flipped[bit / 8] = static_cast<std::uint8_t>(flipped[bit / 8] ^ (1U << (bit % 8)));
+        const auto read = read_capture(flipped);
+        ASSERT_TRUE(read.ok()) << "bit " << bit << ": " << read.error().message;
+        const std::size_t lost = expect_subsequence(read->transfers, made.transfers);
+        ASSERT_LE(lost, bit / 8 < made.head_end ? 0U : 1U) << "bit " << bit;
+        ASSERT_TRUE(read->accounts.blocks.balanced()) << "bit " << bit;
+        if (lost > 0) { ASSERT_NE(read->accounts.blocks.end, FileEnd::clean) << "bit " << bit; }
+        if (testing::Test::HasFailure()) { FAIL() << "bit " << bit; }
+    }
+}
+
+TEST(CaptureFile, GoesOnBehindDamageAndSaysWhereItWas) {
+    MadeCapture made = make_capture(20, 300);
+    const std::size_t begin = made.ends[10] + 3;
+    const std::size_t end = made.ends[15] + 7;
+    std::fill(made.bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+              made.bytes.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{0xA5});
+    const auto read = read_capture(made.bytes);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(expect_subsequence(read->transfers, made.transfers), 6U);
+    const BlockAccounts& blocks = read->accounts.blocks;
+    EXPECT_EQ(blocks.end, FileEnd::damaged);
+    ASSERT_EQ(blocks.damage.size(), 1U);
+    EXPECT_LE(blocks.damage[0].offset, begin);
+    EXPECT_EQ(blocks.damage[0].offset + blocks.damage[0].bytes, made.ends[16]);
+    EXPECT_TRUE(blocks.balanced());
+}
+
+TEST(CaptureFile, FindsItsFeetAfterBytesWereCutOut) {
+    MadeCapture made = make_capture(20, 300);
+    const auto from = made.bytes.begin() + static_cast<std::ptrdiff_t>(made.ends[10] + 21);
+    made.bytes.erase(from, from + 5);
+    const auto read = read_capture(made.bytes);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(expect_subsequence(read->transfers, made.transfers), 1U);
+    EXPECT_EQ(read->accounts.blocks.end, FileEnd::damaged);
+}
+
+TEST(CaptureFile, RefusesWhatIsNoCapture) {
+    const auto text = read_capture(Bytes(5000, 'x'));
+    ASSERT_FALSE(text.ok());
+    EXPECT_EQ(text.error().code, ErrorCode::malformed);
+    Bytes big_endian{0x0A, 0x0D, 0x0D, 0x0A, 0, 0, 0, 28, 0x1A, 0x2B, 0x3C, 0x4D};
+    big_endian.resize(28);
+    const auto swapped = read_capture(big_endian);
+    ASSERT_FALSE(swapped.ok());
+    EXPECT_EQ(swapped.error().code, ErrorCode::unsupported);
+}
+
+TEST(CaptureFile, ReadsTwoCapturesInOneFile) {
+    const MadeCapture made = make_capture(5, 60);
+    Bytes joined = made.bytes;
+    joined.insert(joined.end(), made.bytes.begin(), made.bytes.end());
+    const auto read = read_capture(joined);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(read->transfers.size(), 2 * made.transfers.size());
+    EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
+}
+
+TEST(Recovery, KeepsEveryIntactBlockAndNothingElse) {
+    MadeCapture made = make_capture(20, 300);
+    made.bytes[made.ends[10] + 40] ^= 1U;
+    made.bytes.resize(made.bytes.size() - 5);
+    FakeDisk disk;
+    const std::unique_ptr<AppendFile> file = disk.open();
+    const auto report = recover_capture(input_from_memory(made.bytes), *file);
+    ASSERT_TRUE(report.ok());
+    EXPECT_EQ(report->bytes_kept, disk.contents.size());
+    EXPECT_EQ(report->bytes_kept, report->source.bytes_in_blocks);
+    EXPECT_FALSE(report->header_rewritten);
+    EXPECT_TRUE(disk.closed);
+    EXPECT_EQ(disk.synced_bytes, disk.contents.size());
+    const auto read = read_capture(disk.contents);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(expect_subsequence(read->transfers, made.transfers), 1U);
+    EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
+}
+
+TEST(Recovery, WritesANewHeaderWhenTheOldOneIsLost) {
+    MadeCapture made = make_capture(5, 60);
+    made.bytes.erase(made.bytes.begin(), made.bytes.begin() + static_cast<std::ptrdiff_t>(made.head_end - 3));
+    FakeDisk disk;
+    const std::unique_ptr<AppendFile> file = disk.open();
+    const auto report = recover_capture(input_from_memory(made.bytes), *file);
+    ASSERT_TRUE(report.ok()) << report.error().message;
+    EXPECT_TRUE(report->header_rewritten);
+    const auto read = read_capture(disk.contents);
+    ASSERT_TRUE(read.ok());
+    ASSERT_EQ(read->transfers.size(), made.transfers.size());
+    EXPECT_TRUE(read->transfers.back().same_content(made.transfers.back()));
+    EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
+}
+
+}  // namespace
+}  // namespace gyrolog
