@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::vector<std::uint8_t> descriptors(
         data, data + size);  // on its own, so that the sanitizers see its end
     judge_layout(descriptors);
-    for (const std::uint8_t value : {0, 1, 2}) {
+    for (std::uint8_t value = 0; value < 3; ++value) {
         const auto found = gyrolog::find_configuration(descriptors, value);
         if (!found.ok()) { continue; }
         GYROLOG_REQUIRE(found->data() >= descriptors.data());
