@@ -1,6 +1,7 @@
 #include "analysis/allan/allan_deviation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -119,8 +120,8 @@ AllanCurve allan_deviation(const Column& column, std::span<const Segment> segmen
         point.deviation = std::abs(column.scale) *
                           std::sqrt(sums[f] / (2.0 * samples * samples * static_cast<double>(point.terms)));
         law = std::max(law, identify_power_law(averages(signal, m)));
-        point.edf =
-            equivalent_degrees_of_freedom(shares_of(law.value_or(PowerLaw::white_rate)), m, stride, runs);
+        const std::array<PowerLaw, 1> dominating = {law.value_or(PowerLaw::white_rate)};
+        point.edf = DegreesOfFreedom(dominating, m, stride, runs).of(dominating.front());
         const Interval interval = chi_square_interval(point.deviation, point.edf, options.confidence);
         point.lo = interval.lo;
         point.hi = interval.hi;

@@ -21,9 +21,9 @@ namespace gyrolog {
 struct AllanOptions {
     DeviationKind kind = DeviationKind::overlapping;
     PhaseConvention convention = PhaseConvention::sp1065;
-    double confidence = 0.683;    // of the two-sided interval, between 0 and 1
-    std::vector<std::int64_t> m;  // averaging factors; empty: averaging_factors() of the longest segment
-    unsigned threads = 1;         // the result is the same bits for any number
+    double confidence = 0.683;      // of the two-sided interval, between 0 and 1
+    std::vector<std::int64_t> m{};  // averaging factors; empty: averaging_factors() of the longest segment
+    unsigned threads = 1;           // the result is the same bits for any number
 };
 
 // Factors for which the record has no complete difference give no point.

@@ -58,77 +58,69 @@ double correlation(PowerLaw law, double lag, double m) {
     return fourth_difference(covariance, lag / m, 1.0) / fourth_difference(covariance, 0.0, 1.0);
 }
 
-class Correlation {
+// Sums over lags of products rho_a rho_b, for pairs of the laws wanted.
+class LagSums {
 public:
-    Correlation(const VarianceShares& shares, std::int64_t m) : shares_(shares), m_(static_cast<double>(m)) {
-        double total = 0.0;
-        for (const double share : shares_) { total += share; }
-        for (double& share : shares_) { share /= total; }
+    LagSums(std::span<const PowerLaw> laws, std::int64_t m) : laws_(laws), m_(m) {}
+
+    void add(double lag, double weight) {
+        std::array<double, power_laws> rho{};
+        for (const PowerLaw law : laws_) {
+            rho[index_of(law)] = correlation(law, lag, static_cast<double>(m_));
+        }
+        for (const PowerLaw a : laws_) {
+            for (const PowerLaw b : laws_) {
+                sums_[index_of(a)][index_of(b)] += weight * rho[index_of(a)] * rho[index_of(b)];
+            }
+        }
     }
 
-    double squared(double lag) const {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < power_laws; ++i) {
-            if (shares_[i] != 0.0) { sum += shares_[i] * correlation(static_cast<PowerLaw>(i), lag, m_); }
+    // Lags 1 ... last, each with the weight 2 (1 - lag / terms). Near the multiples of m, where rho has its
+    // corners, lag by lag; between, where it is smooth, as integrals over pieces that double in length away
+    // from the corners.
+    void add_lags(std::int64_t last, double terms) {
+        constexpr std::int64_t near = 12;
+        const auto add_one = [&](double lag, double width) { add(lag, 2.0 * width * (1.0 - lag / terms)); };
+        std::int64_t lag = 1;
+        while (lag <= last) {
+            const std::int64_t below = lag / m_ * m_;
+            const std::int64_t corner = (lag + m_ / 2) / m_ * m_;
+            // A piece may be as long as it is far from the corners on both sides.
+            const std::int64_t to_next = below + m_ - near - lag;
+            const std::int64_t length = std::min(std::min(lag - below, (to_next + 1) / 2), last + 1 - lag);
+            if (std::abs(lag - corner) <= near || length <= 6) {
+                add_one(static_cast<double>(lag), 1.0);
+                ++lag;
+                continue;
+            }
+            using Gauss = boost::math::quadrature::gauss<double, 7>;
+            const double half = static_cast<double>(length) / 2.0;
+            const double centre = static_cast<double>(lag) - 0.5 + half;
+            for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+                const double x = Gauss::abscissa()[i];
+                const double width = half * Gauss::weights()[i];
+                add_one(centre + half * x, width);
+                if (x != 0.0) { add_one(centre - half * x, width); }
+            }
+            lag += length;
         }
-        return sum * sum;
     }
+
+    const auto& sums() const { return sums_; }
 
 private:
-    VarianceShares shares_;
-    double m_;
+    std::span<const PowerLaw> laws_;
+    std::int64_t m_;
+    std::array<std::array<double, power_laws>, power_laws> sums_{};
 };
 
-// Sum over lags 1 ... last of (1 - lag / terms) rho^2. Near the multiples of m, where rho has its corners,
-// lag by lag; between, where it is smooth, as integrals over pieces that double in length away from the
-// corners.
-double sum_over_lags(const Correlation& rho, std::int64_t m, std::int64_t last, double terms) {
-    constexpr std::int64_t near = 48;
-    const auto term = [&](double lag) { return (1.0 - lag / terms) * rho.squared(lag); };
-    double sum = 0.0;
-    std::int64_t lag = 1;
-    while (lag <= last) {
-        const std::int64_t corner = (lag + m / 2) / m * m;
-        if (std::abs(lag - corner) <= near) {
-            sum += term(static_cast<double>(lag));
-            ++lag;
-            continue;
-        }
-        // A piece may be as long as it is far from the corners on both sides.
-        const std::int64_t below = lag / m * m;
-        const std::int64_t to_next = below + m - near - lag;
-        const std::int64_t far = std::max<std::int64_t>(1, std::min(lag - below, (to_next + 1) / 2));
-        const std::int64_t end = std::min(last + 1, lag + far);
-        if (end - lag <= 8) {
-            for (; lag < end; ++lag) { sum += term(static_cast<double>(lag)); }
-        } else {
-            sum += boost::math::quadrature::gauss<double, 7>::integrate(term, static_cast<double>(lag) - 0.5,
-                                                                        static_cast<double>(end) - 0.5);
-            lag = end;
+// White angle noise has correlation at two single lags, which pieces would miss.
+void add_white_angle_lags(LagSums& lags, std::int64_t m, std::int64_t last, double terms) {
+    for (const std::int64_t lag : {m, 2 * m}) {
+        if (lag <= last) {
+            lags.add(static_cast<double>(lag), 2.0 * (1.0 - static_cast<double>(lag) / terms));
         }
     }
-    return sum;
-}
-
-// Sum over all lags j, |j| < terms, of (1 - |j| / terms) rho(j stride)^2.
-double squared_correlation(const Correlation& rho, bool white_angle_only, std::int64_t m, std::int64_t stride,
-                           std::int64_t terms) {
-    const auto count = static_cast<double>(terms);
-    const auto term = [&](std::int64_t j) {
-        return (1.0 - static_cast<double>(j) / count) * rho.squared(static_cast<double>(j * stride));
-    };
-    const std::int64_t last = std::min(terms - 1, 4 * m / stride);
-    double sum = 0.0;
-    if (white_angle_only && stride == 1) {  // only two lags are not zero
-        for (const std::int64_t j : {m, 2 * m}) {
-            if (j <= last) { sum += term(j); }
-        }
-    } else if (stride == 1 && m > 256) {
-        sum = sum_over_lags(rho, m, last, count);
-    } else {
-        for (std::int64_t j = 1; j <= last; ++j) { sum += term(j); }
-    }
-    return 1.0 + 2.0 * sum;
 }
 
 std::vector<double> differences(std::span<const double> x) {
@@ -215,12 +207,6 @@ std::optional<PowerLaw> law_by_b1(std::span<const double> averages) {
 
 }  // namespace
 
-VarianceShares shares_of(PowerLaw law) {
-    VarianceShares shares{};
-    shares[index_of(law)] = 1.0;
-    return shares;
-}
-
 std::optional<PowerLaw> identify_power_law(std::span<const double> averages) {
     const auto count = std::ranges::count_if(averages, [](double x) { return !std::isnan(x); });
     if (count < 4) { return std::nullopt; }
@@ -230,20 +216,45 @@ std::optional<PowerLaw> identify_power_law(std::span<const double> averages) {
     return static_cast<PowerLaw>(std::lround(2.0 - std::clamp(*alpha, -2.0, 2.0)));
 }
 
-double equivalent_degrees_of_freedom(const VarianceShares& shares, std::int64_t m, std::int64_t stride,
-                                     std::span<const std::int64_t> terms_of_runs) {
-    const Correlation rho(shares, m);
-    double others = 0.0;
-    for (std::size_t i = 1; i < power_laws; ++i) { others += shares[i]; }
-    double terms = 0.0;
-    double weight = 0.0;
+DegreesOfFreedom::DegreesOfFreedom(std::span<const PowerLaw> laws, std::int64_t m, std::int64_t stride,
+                                   std::span<const std::int64_t> terms_of_runs) {
+    const bool white_angle_only = laws.size() == 1 && laws.front() == PowerLaw::white_angle;
     for (const std::int64_t run : terms_of_runs) {
         if (run <= 0) { continue; }
         const auto count = static_cast<double>(run);
-        terms += count;
-        weight += count * squared_correlation(rho, others == 0.0, m, stride, run);
+        const std::int64_t last = std::min(run - 1, 4 * m / stride);
+        LagSums lags(laws, m);
+        lags.add(0.0, 1.0);
+        if (white_angle_only && stride == 1) {
+            add_white_angle_lags(lags, m, last, count);
+        } else if (stride == 1 && m > 64) {
+            lags.add_lags(last, count);
+        } else {
+            for (std::int64_t j = 1; j <= last; ++j) {
+                lags.add(static_cast<double>(j * stride), 2.0 * (1.0 - static_cast<double>(j) / count));
+            }
+        }
+        terms_ += count;
+        for (std::size_t a = 0; a < power_laws; ++a) {
+            for (std::size_t b = 0; b < power_laws; ++b) { products_[a][b] += count * lags.sums()[a][b]; }
+        }
     }
-    return weight > 0.0 ? terms * terms / weight : 0.0;
+}
+
+double DegreesOfFreedom::of(const VarianceShares& shares) const {
+    double total = 0.0;
+    double sum = 0.0;
+    for (std::size_t a = 0; a < power_laws; ++a) {
+        total += shares[a];
+        for (std::size_t b = 0; b < power_laws; ++b) { sum += shares[a] * shares[b] * products_[a][b]; }
+    }
+    return sum > 0.0 ? terms_ * terms_ * total * total / sum : 0.0;
+}
+
+double DegreesOfFreedom::of(PowerLaw law) const {
+    VarianceShares shares{};
+    shares[index_of(law)] = 1.0;
+    return of(shares);
 }
 
 }  // namespace gyrolog

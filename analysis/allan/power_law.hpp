@@ -22,7 +22,6 @@ inline constexpr std::size_t power_laws = 5;
 
 // How the Allan variance divides among the power laws, indexed by PowerLaw. Need not sum to 1.
 using VarianceShares = std::array<double, power_laws>;
-VarianceShares shares_of(PowerLaw law);
 
 // The dominating power law of a series of contiguous averages (NaN: an average that does not exist).
 // Thirty averages or more: by the lag-1 autocorrelation, differencing while it is too high (NIST SP 1065,
@@ -30,15 +29,28 @@ VarianceShares shares_of(PowerLaw law);
 // variance against Barnes' B1. Fewer, or averages that do not vary: nothing.
 std::optional<PowerLaw> identify_power_law(std::span<const double> averages);
 
-// Equivalent degrees of freedom of the mean of squared Allan differences at averaging factor m, in runs of so
-// many neighbouring differences each, one at every `stride` samples (1: overlapping, m: standard):
+// How many independent differences the overlapping ones are worth: equivalent degrees of freedom of the mean
+// of squared Allan differences at averaging factor m, in runs of so many neighbouring differences each, one
+// at every `stride` samples (1: overlapping, m: standard):
 //
 //   edf = (sum of terms)^2 / sum over runs, lags j of (terms - |j|) rho(j stride)^2
 //
 // rho: autocorrelation of the Allan difference (Greenhall and Riley 2003, "Uncertainty of stability variances
-// based on finite differences", eqs. 9-13; NIST SP 1065 section 5.4.1), summed over all lags instead of by
-// their tables and limited to lags below 4m. Differences of different runs are taken as independent.
-double equivalent_degrees_of_freedom(const VarianceShares& shares, std::int64_t m, std::int64_t stride,
-                                     std::span<const std::int64_t> terms_of_runs);
+// based on finite differences", eqs. 9-13; NIST SP 1065 section 5.4.1), summed over all lags below 4m instead
+// of by their tables. Differences of different runs are taken as independent.
+class DegreesOfFreedom {
+public:
+    // For mixtures of these laws only: the sums over lags are taken here, once.
+    DegreesOfFreedom(std::span<const PowerLaw> laws, std::int64_t m, std::int64_t stride,
+                     std::span<const std::int64_t> terms_of_runs);
+
+    // 0 without any difference.
+    double of(const VarianceShares& shares) const;
+    double of(PowerLaw law) const;
+
+private:
+    std::array<std::array<double, power_laws>, power_laws> products_{};  // sums over lags of rho_a rho_b
+    double terms_ = 0.0;
+};
 
 }  // namespace gyrolog

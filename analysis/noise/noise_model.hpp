@@ -15,11 +15,11 @@ inline constexpr double rad_per_deg = pi / 180.0;
 inline constexpr double deg_per_rad = 180.0 / pi;
 
 struct NoiseCoefficients {
-    double Q_rad = 0.0;             // quantisation noise of the angle
-    double N_rad_per_sqrt_s = 0.0;  // angle random walk = (rad/s)/sqrt(Hz)
-    double B_rad_per_s = 0.0;       // bias instability
+    double Q_rad = 0.0;               // quantisation noise of the angle
+    double N_rad_per_sqrt_s = 0.0;    // angle random walk = (rad/s)/sqrt(Hz)
+    double B_rad_per_s = 0.0;         // bias instability
     double K_rad_per_s_sqrt_s = 0.0;  // rate random walk = (rad/s) sqrt(Hz)
-    double R_rad_per_s2 = 0.0;      // rate ramp
+    double R_rad_per_s2 = 0.0;        // rate ramp
 
     double allan_variance(double tau_s) const;  // (rad/s)^2
     double psd(double f_hz) const;              // two-sided, (rad/s)^2/Hz

@@ -1,0 +1,65 @@
+// Noise coefficients with their uncertainties, fitted to an Allan curve.
+//
+// sigma^2(tau) = 3 Q^2 / tau^2 + N^2 / tau + (2 ln 2 / pi) B^2 + K^2 tau / 3 + R^2 tau^2 / 2
+// (noise_model.hpp) is linear in the squares of the coefficients: non-negative least squares on the measured
+// variances, weighted with edf / (2 sigma^4) of the fitted model (iterated; weights from the measured values
+// would favour points that came out low). Averaging times overlap, so neighbouring points are correlated:
+// uncertainties are the sandwich
+//   (A' W A)^-1 A' W C W A (A' W A)^-1
+// with C the covariance of Allan variance estimates under the fitted model.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "analysis/allan/allan_curve.hpp"
+#include "analysis/noise/noise_model.hpp"
+
+namespace gyrolog {
+
+enum class NoiseTerm { Q, N, B, K, R };
+inline constexpr std::size_t noise_terms = 5;
+inline constexpr std::array<NoiseTerm, noise_terms> all_noise_terms = {
+    NoiseTerm::Q, NoiseTerm::N, NoiseTerm::B, NoiseTerm::K, NoiseTerm::R};
+
+std::string_view name_of(NoiseTerm term);
+
+struct FittedCoefficient {
+    enum class State {
+        identified,        // value, sd, lo and hi hold
+        not_identifiable,  // the record is too short or the term too small: only `upper` holds
+    };
+    State state = State::not_identifiable;
+    double value = 0.0;  // in the curve's unit times s (Q), sqrt(s) (N), 1 (B), 1/sqrt(s) (K), 1/s (R)
+    double sd = 0.0;
+    double lo = 0.0;  // two-sided interval at the fit's confidence
+    double hi = 0.0;
+    double upper = 0.0;  // upper end of that interval, by the scatter a value as large would have
+};
+
+struct NoiseFit {
+    double confidence = 0.683;
+    std::array<FittedCoefficient, noise_terms> terms;  // indexed by NoiseTerm
+    // The best-fitting curve: holds the estimates of terms that are not identifiable as well, so that it is
+    // an unbiased description of the curve and no statement about them.
+    NoiseCoefficients best;
+    // The fewest terms that describe the curve: the least significant is left out and the rest fitted again
+    // until all are significant. What another record of this sensor should be expected to do.
+    NoiseCoefficients sparse;
+    std::size_t points = 0;  // of the curve that were used
+    double worst_residual_sd =
+        0.0;  // the largest departure of a point from the fitted curve, in its standard deviations
+
+    const FittedCoefficient& operator[](NoiseTerm term) const {
+        return terms[static_cast<std::size_t>(term)];
+    }
+};
+
+// A term is identified when its square is more than 1.645 standard deviations above zero.
+// Points without degrees of freedom (a curve from print) are weighted alike, relative to their height, as if
+// each had
+// 50. A curve without points gives no identified term and upper limits of 0.
+NoiseFit fit_noise(const AllanCurve& curve, double confidence = 0.683);
+
+}  // namespace gyrolog

@@ -1,0 +1,193 @@
+#include "analysis/simulate/sensor_simulator.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "analysis/simulate/converter.hpp"
+#include "analysis/simulate/effects/effects.hpp"
+
+namespace gyrolog {
+namespace {
+
+std::uint64_t fnv1a(std::uint64_t hash, const void* bytes, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) {
+        hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * 0x100000001B3U;
+    }
+    return hash;
+}
+
+std::uint64_t hash_of_counts(SensorSimulator& simulator, int blocks) {
+    std::uint64_t hash = 0xCBF29CE484222325U;
+    for (int i = 0; i < blocks; ++i) {
+        for (const auto& axis : simulator.next_block().counts) {
+            hash = fnv1a(hash, axis.data(), sizeof axis);
+        }
+    }
+    return hash;
+}
+
+double mean(const std::array<double, block_samples>& values) {
+    double sum = 0.0;
+    for (const double value : values) { sum += value; }
+    return sum / static_cast<double>(values.size());
+}
+
+SensorModel quiet_model() {
+    SensorModel model;
+    model.saturation_rad_s = 1e9;
+    return model;
+}
+
+TEST(SensorSimulator, ASeedGivesTheSameCountsOnEveryMachine) {
+    SensorSimulator simulator(typical_mpu9250(), 100.0, 7);
+    EXPECT_EQ(hash_of_counts(simulator, 16), 0x0U);
+}
+
+TEST(SensorSimulator, AnotherSeedGivesAnotherSensor) {
+    SensorSimulator first(typical_mpu9250(), 100.0, 7);
+    SensorSimulator second(typical_mpu9250(), 100.0, 8);
+    EXPECT_NE(hash_of_counts(first, 1), hash_of_counts(second, 1));
+}
+
+TEST(SensorSimulator, TheMeanIsTheTurnOnBias) {
+    SensorModel model = quiet_model();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        model.axes[axis].bias_rad_s = 0.1 * static_cast<double>(axis + 1);
+        model.axes[axis].noise.N_rad_per_sqrt_s = 1e-3;
+    }
+    SensorSimulator simulator(model, 100.0, 1);
+    const SampleBlock& block = simulator.next_block();
+    const double sd = 1e-3 * std::sqrt(100.0 / block_samples);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(mean(block.rate_rad_s[axis]), model.axes[axis].bias_rad_s, 4.0 * sd);
+    }
+}
+
+TEST(SensorSimulator, AxesAreIndependent) {
+    SensorModel model = quiet_model();
+    for (AxisModel& axis : model.axes) {
+        axis.noise.N_rad_per_sqrt_s = 0.1;
+        axis.noise.B_rad_per_s = 0.1;
+    }
+    SensorSimulator simulator(model, 100.0, 1);
+    double xy = 0.0;
+    double xx = 0.0;
+    for (int i = 0; i < 100; ++i) {
+        const SampleBlock& block = simulator.next_block();
+        for (std::size_t k = 1; k < block_samples; ++k) {  // differences: the slow part would need many seeds
+            const double x = block.rate_rad_s[0][k] - block.rate_rad_s[0][k - 1];
+            const double y = block.rate_rad_s[1][k] - block.rate_rad_s[1][k - 1];
+            xy += x * y;
+            xx += x * x;
+        }
+    }
+    EXPECT_NEAR(xy / xx, 0.0, 4.0 * std::sqrt(1.5 / (100.0 * block_samples)));
+}
+
+TEST(SensorSimulator, TheTemperatureWandersSlowlyAboutTheModelsReference) {
+    SensorModel model = quiet_model();
+    model.temperature =
+        TemperatureModel{.reference_C = 40.0, .bias_rad_s_per_C = {0.01, 0.0, -0.02}, .scale_per_C = {}};
+    SensorSimulator simulator(model, 100.0, 3);
+    for (int i = 0; i < 50; ++i) {
+        const SampleBlock& block = simulator.next_block();
+        for (std::size_t k = 0; k < block_samples; ++k) {
+            const double offset_C = block.temperature_C[k] - 40.0;
+            ASSERT_LT(std::fabs(offset_C), 2.5);  // five times its standard deviation
+            ASSERT_NEAR(block.rate_rad_s[0][k], 0.01 * offset_C, 1e-12);
+            ASSERT_NEAR(block.rate_rad_s[2][k], -0.02 * offset_C, 1e-12);
+        }
+    }
+}
+
+TEST(SensorSimulator, RatesAreWholeCountsClippedAtTheSaturation) {
+    SensorModel model = quiet_model();
+    model.lsb_rad_s = 0.01;
+    model.saturation_rad_s = 1.0;
+    model.axes[0].noise.N_rad_per_sqrt_s = 1.0;
+    SensorSimulator simulator(model, 1.0, 1);
+    const SampleBlock& block = simulator.next_block();
+    int highest = 0;
+    int lowest = 0;
+    for (std::size_t i = 0; i < block_samples; ++i) {
+        const int count = block.counts[0][i];
+        ASSERT_EQ(block.rate_rad_s[0][i], count * 0.01);
+        highest = std::max(highest, count);
+        lowest = std::min(lowest, count);
+    }
+    EXPECT_EQ(highest, 100);
+    EXPECT_EQ(lowest, -101);
+}
+
+TEST(Converter, RoundsHalfAwayFromZeroAndStaysWithinSixteenBits) {
+    const Converter converter(1.0, 1e9);
+    EXPECT_EQ(converter(0.49), 0);
+    EXPECT_EQ(converter(0.5), 1);
+    EXPECT_EQ(converter(-0.5), -1);
+    EXPECT_EQ(converter(1.5), 2);
+    EXPECT_EQ(converter(-2.5), -3);
+    EXPECT_EQ(converter(1e8), 32767);
+    EXPECT_EQ(converter(-1e8), -32768);
+}
+
+EffectModel effect_of(std::string name, std::map<std::string, double> params) {
+    return {.effect = std::move(name), .axes = {"x"}, .params = std::move(params), .carried_json = {}};
+}
+
+TEST(Effects, AnUnknownEffectOrAMissingParameterIsRefusedByName) {
+    SensorModel model = quiet_model();
+    EXPECT_EQ(simulation_refusal(model), std::nullopt);
+    model.effects = {effect_of("phase_of_the_moon", {})};
+    EXPECT_EQ(simulation_refusal(model), "effect 'phase_of_the_moon' cannot be simulated by this version");
+    model.effects = {effect_of("bias_step", {{"at_s", 1.0}})};
+    EXPECT_EQ(simulation_refusal(model), "effect 'bias_step' lacks its parameter 'step_dps'");
+    model.effects = {effect_of("bias_step", {{"at_s", 1.0}, {"step_dps", 1.0}})};
+    model.effects[0].axes = {"w"};
+    EXPECT_EQ(simulation_refusal(model), "effect 'bias_step' names an axis 'w' that is not x, y or z");
+}
+
+TEST(Effects, ABiasStepComesAtItsTimeOnItsAxisOnly) {
+    SensorModel model = quiet_model();
+    model.effects = {effect_of("bias_step", {{"at_s", 2.0}, {"step_dps", 10.0}})};
+    SensorSimulator simulator(model, 100.0, 1);
+    const SampleBlock& block = simulator.next_block();
+    EXPECT_EQ(block.rate_rad_s[0][199], 0.0);
+    EXPECT_EQ(block.rate_rad_s[0][200], 10.0 * rad_per_deg);
+    EXPECT_EQ(block.rate_rad_s[1][200], 0.0);
+}
+
+TEST(Effects, ARampGrowsByItsSlopeEverySecond) {
+    SensorModel model = quiet_model();
+    model.effects = {effect_of("rate_ramp", {{"ramp_dps_per_s", 3.0}})};
+    SensorSimulator simulator(model, 100.0, 1);
+    simulator.next_block();
+    EXPECT_NEAR(simulator.next_block().rate_rad_s[0][0], 3.0 * rad_per_deg * 10.24, 1e-12);
+}
+
+TEST(Effects, GaussMarkovNoiseHasItsVarianceFromTheStartAndItsCorrelationTime) {
+    SensorModel model = quiet_model();
+    model.effects = {effect_of("gauss_markov", {{"sigma_dps", 1.0}, {"tau_s", 0.1}})};
+    double first = 0.0;
+    double variance = 0.0;
+    double at_tau = 0.0;
+    constexpr unsigned seeds = 1000;
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+        SensorSimulator simulator(model, 100.0, seed);
+        const auto& x = simulator.next_block().rate_rad_s[0];
+        first += x[0] * x[0] / seeds;
+        for (std::size_t i = 0; i + 10 < block_samples; ++i) {
+            variance += x[i] * x[i] / (seeds * (block_samples - 10.0));
+            at_tau += x[i] * x[i + 10] / (seeds * (block_samples - 10.0));
+        }
+    }
+    const double sigma2 = rad_per_deg * rad_per_deg;
+    EXPECT_NEAR(first / sigma2, 1.0, 4.0 * std::sqrt(2.0 / seeds));
+    // One independent value in about 2 tau: 50 a block.
+    EXPECT_NEAR(variance / sigma2, 1.0, 4.0 * std::sqrt(2.0 / (50.0 * seeds)));
+    EXPECT_NEAR(at_tau / variance, std::exp(-1.0), 4.0 * std::sqrt(1.0 / (50.0 * seeds)));
+}
+
+}  // namespace
+}  // namespace gyrolog
