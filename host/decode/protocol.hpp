@@ -6,4 +6,5 @@ extern "C" {
 #include <gyrolog_protocol/frame_stream.h>
 #include <gyrolog_protocol/message.h>
 #include <gyrolog_protocol/status.h>
+#include <gyrolog_protocol/version.h>
 }

@@ -18,7 +18,7 @@ add_library(gyrolog_settings INTERFACE)
 # A simulated sample must be the same bits with both compilers: no contraction to fused multiply-add.
 target_compile_options(gyrolog_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wformat=2
-  -Wnull-dereference -Werror -ffp-contract=off
+  -Werror -ffp-contract=off
   $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast -Woverloaded-virtual -Wnon-virtual-dtor>)
 target_include_directories(gyrolog_settings INTERFACE ${CMAKE_SOURCE_DIR})
 target_link_libraries(gyrolog_settings INTERFACE Threads::Threads)
@@ -26,8 +26,8 @@ if(GYROLOG_SANITIZE)
   target_compile_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all)
   target_link_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE})
-  # GCC's -Wnull-dereference and -Wmaybe-uninitialized misfire on instrumented code.
-  target_compile_options(gyrolog_settings INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized)
+  # -Wmaybe-uninitialized misfires on instrumented code.
+  target_compile_options(gyrolog_settings INTERFACE -Wno-maybe-uninitialized)
 endif()
 if(GYROLOG_FUZZ)
   target_compile_options(gyrolog_settings INTERFACE -fsanitize=fuzzer-no-link)

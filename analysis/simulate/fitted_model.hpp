@@ -1,0 +1,14 @@
+// The sensor model that an analysis hands on: what was identified, with its uncertainty, and nothing else.
+#pragma once
+
+#include "analysis/noise/analyze.hpp"
+#include "analysis/recording/recording.hpp"
+#include "analysis/simulate/sensor_model.hpp"
+
+namespace gyrolog {
+
+// Of the first gyro on each axis. A term that was not identified is 0: the simulation shall not have what the record
+// does not show. Needs a report in rad/s (not counts without a scale).
+SensorModel fitted_model(const AnalysisReport& report, const Recording& recording);
+
+}  // namespace gyrolog

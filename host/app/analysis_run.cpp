@@ -1,0 +1,116 @@
+#include "host/app/analysis_run.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "analysis/noise/analyze.hpp"
+#include "analysis/plot/allan_figure.hpp"
+#include "analysis/simulate/fitted_model.hpp"
+#include "host/app/command.hpp"
+#include "host/app/quantity.hpp"
+#include "host/app/recording_input.hpp"
+#include "host/app/result_output.hpp"
+#include "host/base/file_output.hpp"
+#include "host/formats/analysis_json.hpp"
+#include "host/formats/analysis_text.hpp"
+#include "host/formats/model_json.hpp"
+
+namespace gyrolog {
+namespace {
+
+Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
+    AnalysisOptions options;
+    options.confidence = request.confidence;
+    if (request.deviation == name_of(DeviationKind::standard)) { options.kind = DeviationKind::standard; }
+    if (request.convention == name_of(PhaseConvention::matlab)) { options.convention = PhaseConvention::matlab; }
+    if (!request.factors.empty()) { GYROLOG_TRY(options.m, parse_whole_numbers(request.factors)); }
+    options.threads = 0;
+    return options;
+}
+
+std::optional<PlottedCoefficient> plotted(const NoiseFit& fit, NoiseTerm term) {
+    const FittedCoefficient& coefficient = fit[term];
+    if (coefficient.state != FittedCoefficient::State::identified) { return std::nullopt; }
+    return PlottedCoefficient{coefficient.value, coefficient.sd};
+}
+
+AllanTrace trace_of(const AxisReport& axis) {
+    AllanTrace trace;
+    trace.name = axis.axis;
+    trace.curve = axis.curve;
+    trace.N = plotted(axis.fit, NoiseTerm::N);
+    trace.B = plotted(axis.fit, NoiseTerm::B);
+    trace.K = plotted(axis.fit, NoiseTerm::K);
+    const NoiseCoefficients fitted = axis.fit.identified();
+    for (const AllanPoint& point : axis.curve.points) {
+        const double variance = fitted.allan_variance(point.tau_s);
+        if (variance > 0.0) { trace.model.push_back({point.tau_s, std::sqrt(variance)}); }
+    }
+    return trace;
+}
+
+AllanFigure figure_of(const AnalysisReport& report, const std::string& source) {
+    AllanFigure figure;
+    figure.source = source;
+    figure.facts = {fmt::format("{:.6g} Hz", report.rate_hz), format_duration(report.duration_s),
+                    format_count(report.samples) + " samples",
+                    report.samples_missing == 0
+                        ? std::string("none missing")
+                        : fmt::format("{} missing in {} dropouts", report.samples_missing, report.dropouts)};
+    if (report.unit.name == "lsb") { figure.unit = DeviationUnit::as_given("lsb"); }
+    for (const AxisReport& axis : report.axes) { figure.traces.push_back(trace_of(axis)); }
+    return figure;
+}
+
+Status write_plot(const AllanFigure& figure, const std::string& path) {
+    const Rendering rendering = render(figure);
+    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
+    return write_file(path, rendering.png);
+}
+
+Status write_results(Console& console, const AnalysisRequest& request, const Recording& recording,
+                     const AnalysisReport& report) {
+    if (!request.json_path.empty()) { GYROLOG_CHECK(write_json(console, request.json_path, analysis_json(report))); }
+    if (!request.plot_path.empty()) {
+        GYROLOG_CHECK(write_plot(figure_of(report, request.recording_path), request.plot_path));
+    }
+    if (!request.model_path.empty()) {
+        if (report.unit.name == "lsb") {
+            return Error{ErrorCode::invalid_argument,
+                         "a model needs rates, and this recording has counts: give their scale with --lsb-dps"};
+        }
+        GYROLOG_CHECK(write_model(fitted_model(report, recording), request.model_path));
+    }
+    if (request.json_path != "-") { console.out << analysis_text(report) << std::flush; }
+    for (const std::string* path : {&request.json_path, &request.plot_path, &request.model_path}) {
+        if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
+    }
+    return {};
+}
+
+}  // namespace
+
+ExitCode analyze_to_files(Console& console, const char* command, const AnalysisRequest& request) {
+    const auto options = options_of(request);
+    if (!options.ok()) { return report_error(console, command, options.error()); }
+    const auto recording = read_recording({request.recording_path, request.rate_hz, request.lsb_dps});
+    if (!recording.ok()) {
+        report_error(console, command, recording.error());
+        return recording.error().code == ErrorCode::invalid_argument ? ExitCode::usage : ExitCode::failed;
+    }
+    const AnalysisReport report = analyze(*recording, *options);
+    for (const std::string& warning : report.warnings) {
+        console.err << "gyrolog " << command << ": warning: " << warning << '\n';
+    }
+    if (report.axes.empty()) {
+        return report_error(console, command,
+                            {ErrorCode::failed, request.recording_path + ": there is no angular rate to analyse"});
+    }
+    const Status written = write_results(console, request, *recording, report);
+    return written.ok() ? ExitCode::ok : report_error(console, command, written.error());
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,30 @@
+// From a recording's file to its report, plot and model.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/app/console.hpp"
+#include "host/app/exit_code.hpp"
+
+namespace gyrolog {
+
+struct AnalysisRequest {
+    std::string recording_path;
+    std::string json_path;   // "-" is standard output; empty: not wanted
+    std::string plot_path;
+    std::string model_path;
+    std::string deviation = "overlapping";
+    std::string convention = "sp1065";
+    std::string factors;  // "1,10,100"; empty: the default list
+    std::optional<double> rate_hz;
+    std::optional<double> lsb_dps;
+    double confidence = 0.683;
+};
+
+// Prints the report for people on `out`, unless the JSON goes there.
+ExitCode analyze_to_files(Console& console, const char* command, const AnalysisRequest& request);
+
+}  // namespace gyrolog

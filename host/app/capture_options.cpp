@@ -1,0 +1,56 @@
+#include "host/app/capture_options.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "host/app/quantity.hpp"
+
+namespace gyrolog {
+namespace {
+
+Result<std::uint16_t> parse_dlpf(const std::string& text) {
+    if (text == "off") { return std::uint16_t{GLP_DLPF_OFF}; }
+    std::uint16_t bandwidth_hz = 0;
+    const auto [rest, problem] = std::from_chars(text.data(), text.data() + text.size(), bandwidth_hz);
+    if (problem != std::errc() || rest != text.data() + text.size() || bandwidth_hz == 0) {
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("--dlpf '{}': write a bandwidth in Hz (5, 10, 20, 41, 92, 184, 250, 3600) or off", text)};
+    }
+    return bandwidth_hz;
+}
+
+}  // namespace
+
+void CaptureOptions::declare(CLI::App& app) {
+    app.add_option("--device", device,
+                   "usb: (the only board), usb:SERIAL, tty:PATH, sim:KEY=VALUE,... or replay:FILE")
+        ->type_name("URI")
+        ->capture_default_str();
+    app.add_option("--duration", duration, "Stop after this time: 90s, 15m, 6h, 1d")->type_name("T");
+    app.add_option("--samples", samples, "Stop after this many samples")->type_name("N")->check(CLI::PositiveNumber);
+    app.add_option("--rate", rate_hz, "Output rate of the sensor")->type_name("HZ")->check(CLI::PositiveNumber);
+    app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")->type_name("DPS");
+    app.add_option("--dlpf", dlpf, "The sensor's low-pass filter: bandwidth, or off")->type_name("HZ|off");
+    app.add_flag("--force", force, "Replace a file that exists");
+}
+
+Result<CaptureRequest> CaptureOptions::request() const {
+    CaptureRequest request;
+    request.overwrite = force;
+    request.samples = samples;
+    if (!duration.empty()) { GYROLOG_TRY(request.duration_s, parse_duration_s(duration)); }
+    if (!dlpf.empty()) { GYROLOG_TRY(request.configure.dlpf_hz, parse_dlpf(dlpf)); }
+    if (full_scale_dps) { request.configure.gyro_full_scale_dps = *full_scale_dps; }
+    if (rate_hz) {
+        const double rate_mHz = std::round(*rate_hz * 1e3);
+        if (!(rate_mHz >= 1.0 && rate_mHz <= 4e9)) {
+            return Error{ErrorCode::invalid_argument, fmt::format("--rate {:g}: out of range", *rate_hz)};
+        }
+        request.configure.rate_mHz = static_cast<std::uint32_t>(rate_mHz);
+    }
+    return request;
+}
+
+}  // namespace gyrolog

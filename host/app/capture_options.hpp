@@ -1,0 +1,27 @@
+// The options that every capturing command has, and what they ask of the board.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "host/base/result.hpp"
+#include "host/session/capture_session.hpp"
+
+namespace gyrolog {
+
+struct CaptureOptions {
+    std::string device = "usb:";
+    std::string duration;
+    std::optional<std::uint64_t> samples;
+    std::optional<double> rate_hz;
+    std::optional<std::uint16_t> full_scale_dps;
+    std::string dlpf;
+    bool force = false;
+
+    void declare(CLI::App& app);
+    // Without the path. Error invalid_argument names the option.
+    Result<CaptureRequest> request() const;
+};
+
+}  // namespace gyrolog

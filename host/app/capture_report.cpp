@@ -1,0 +1,223 @@
+#include "host/app/capture_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "host/app/live_view.hpp"
+#include "host/app/quantity.hpp"
+
+namespace gyrolog {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(FileEnd end) {
+    switch (end) {
+        case FileEnd::clean: return "clean";
+        case FileEnd::torn_tail: return "torn_tail";
+        case FileEnd::damaged: return "damaged";
+    }
+    return "";
+}
+
+std::string hex(const std::uint8_t* bytes, std::size_t size) {
+    std::string text;
+    for (std::size_t i = 0; i < size; ++i) { text += fmt::format("{:02x}", bytes[i]); }
+    return text;
+}
+
+// Sampling instants at the sensor's own rate; without a rate there is no length.
+double duration_s(const LoadedCapture& capture, const LinkReport& link) {
+    const auto rate_hz = capture.decoder->rate_hz();
+    return rate_hz ? static_cast<double>(link.samples.good + link.samples.missing) / *rate_hz : 0.0;
+}
+
+std::string started_utc(const LoadedCapture& capture) {
+    const HostTime started = capture.metadata ? capture.metadata->started : capture.first_data;
+    return started.realtime_ns == 0 ? "" : utc_text(started.realtime_ns);
+}
+
+Json reasons_json(const LinkReport& link) {
+    Json reasons = Json::object();
+    for (std::size_t reason = 0; reason < link.frames.corrupted_by_reason.size(); ++reason) {
+        if (const std::uint64_t count = link.frames.corrupted_by_reason[reason]; count > 0) {
+            reasons[glp_status_name(static_cast<glp_status>(reason))] = count;
+        }
+    }
+    return reasons;
+}
+
+// One row of a table: what, how much, and a remark.
+std::string row(std::string_view what, std::uint64_t count, std::string_view remark = "") {
+    return fmt::format("  {:<22}{:>16}{}{}\n", what, format_count(count), remark.empty() ? "" : "  ", remark);
+}
+
+std::string end_text(const std::string& path, const BlockAccounts& file) {
+    switch (file.end) {
+        case FileEnd::clean: return "clean";
+        case FileEnd::torn_tail:
+            return fmt::format("torn tail: the writer died there. {} bytes at the end are in no whole block; all "
+                               "before them is intact",
+                               format_count(file.bytes_in_tail));
+        case FileEnd::damaged:
+            return fmt::format("damaged: {} bytes in {} places, with intact blocks behind them. Run `gyrolog recover "
+                               "{} -o NEW` to keep the intact part",
+                               format_count(file.bytes_damaged + file.bytes_in_tail), file.damaged_ranges, path);
+    }
+    return "";
+}
+
+}  // namespace
+
+bool nothing_missing(const LoadedCapture& capture) {
+    return capture.decoder->report().complete() && capture.file.truncated_transfers == 0;
+}
+
+Json check_json(const std::string& path, const LoadedCapture& capture) {
+    const LinkReport link = capture.decoder->report();
+    const BlockAccounts& file = capture.file.blocks;
+    Json dropouts = Json::array();
+    for (const Dropout& dropout : capture.decoder->timed_dropouts(link)) {
+        dropouts.push_back({{"at_s", dropout.at_s}, {"samples", dropout.samples}, {"cause", dropout.cause}});
+    }
+    return {{"schema", "gyrolog-check/1"},
+            {"file", path},
+            {"end", name_of(file.end)},
+            {"bytes",
+             {{"total", link.bytes.total},
+              {"in_frames", link.bytes.in_frames},
+              {"skipped", link.bytes.skipped},
+              {"buffered", link.bytes.buffered}}},
+            {"frames",
+             {{"good", link.frames.good},
+              {"missing", link.frames.missing},
+              {"duplicated", link.frames.duplicated},
+              {"corrupted", link.frames.corrupted}}},
+            {"samples", {{"good", link.samples.good}, {"missing", link.samples.missing}}},
+            {"dropouts", dropouts},
+            {"dropouts_unlisted", link.dropouts_unlisted},
+            {"corrupted_by_reason", reasons_json(link)},
+            {"lost_on_device", {{"samples", link.samples.lost_on_device}, {"frames", link.frames.lost_on_device}}},
+            {"boots", link.boots},
+            {"runs", link.runs},
+            {"file_bytes",
+             {{"total", file.bytes_total},
+              {"in_blocks", file.bytes_in_blocks},
+              {"damaged", file.bytes_damaged},
+              {"in_tail", file.bytes_in_tail}}},
+            {"transfers", {{"total", capture.file.transfers}, {"failed", capture.file.failed_transfers}}}};
+}
+
+std::string check_text(const std::string& path, const LoadedCapture& capture) {
+    const LinkReport link = capture.decoder->report();
+    std::string text = path + "\n";
+    text += fmt::format("  end of file: {}\n", end_text(path, capture.file.blocks));
+    text += row("bytes of the stream", link.bytes.total);
+    text += row("  in frames", link.bytes.in_frames);
+    text += row("  skipped", link.bytes.skipped,
+                link.bytes_skipped_at_head > 0
+                    ? fmt::format("{} of them before the first frame", format_count(link.bytes_skipped_at_head))
+                    : "");
+    text += row("  buffered", link.bytes.buffered, link.bytes.buffered > 0 ? "a frame that was cut off" : "");
+    text += row("frames good", link.frames.good);
+    text += row("  missing", link.frames.missing);
+    text += row("  duplicated", link.frames.duplicated);
+    text += row("  corrupted", link.frames.corrupted);
+    text += row("samples good", link.samples.good);
+    text += row("  missing", link.samples.missing);
+    constexpr std::size_t shown = 20;
+    const std::vector<Dropout> dropouts = capture.decoder->timed_dropouts(link);
+    for (std::size_t i = 0; i < std::min(shown, dropouts.size()); ++i) {
+        text += fmt::format("  dropout at {:.3f} s: {} samples, {}\n", dropouts[i].at_s, dropouts[i].samples,
+                            dropouts[i].cause);
+    }
+    if (const std::uint64_t more = dropouts.size() + link.dropouts_unlisted; more > shown) {
+        text += fmt::format("  and {} more dropouts (--json lists them)\n", more - shown);
+    }
+    text += nothing_missing(capture) ? "  nothing is missing\n" : "  something is missing\n";
+    return text;
+}
+
+Json info_json(const std::string& path, const LoadedCapture& capture) {
+    const LinkReport link = capture.decoder->report();
+    Json board = Json::object();
+    if (capture.metadata) {
+        const SourceIdentity& source = capture.metadata->source;
+        board["uri"] = source.uri;
+        board["vid"] = fmt::format("{:04x}", source.vendor_id);
+        board["pid"] = fmt::format("{:04x}", source.product_id);
+        board["product"] = source.product;
+        board["serial"] = source.serial;
+    }
+    if (const auto& hello = capture.decoder->hello()) {
+        board["firmware"] = hello->firmware;
+        board["uid"] = hex(hello->uid, sizeof hello->uid);
+        board["boot_id"] = hello->boot_id;
+        board["protocol"] = fmt::format("{}.{}", hello->protocol_major, hello->protocol_minor);
+        board["tick_hz"] = hello->tick_hz;
+    }
+    Json sensor = Json::object();
+    if (const auto& hello = capture.decoder->hello()) { sensor["name"] = hello->sensor; }
+    if (const auto& config = capture.decoder->config()) {
+        sensor["rate_hz"] = config->rate_mHz * 1e-3;
+        if (const auto rate_hz = capture.decoder->rate_hz()) { sensor["measured_rate_hz"] = *rate_hz; }
+        sensor["full_scale_dps"] = config->gyro_full_scale_dps;
+        sensor["accel_full_scale_g"] = config->accel_full_scale_g;
+        if (config->dlpf_hz == 0) {
+            sensor["dlpf"] = "off";
+        } else {
+            sensor["dlpf"] = config->dlpf_hz;
+        }
+        sensor["registers"] = hex(config->registers, sizeof config->registers);
+    }
+    return {{"schema", "gyrolog-info/1"},
+            {"file", path},
+            {"board", board},
+            {"sensor", sensor},
+            {"started", started_utc(capture)},
+            {"duration_s", duration_s(capture, link)},
+            {"samples", link.samples.good},
+            {"samples_missing", link.samples.missing},
+            {"end", name_of(capture.file.blocks.end)},
+            {"file_bytes", capture.file.blocks.bytes_total},
+            {"program", capture.metadata ? capture.metadata->program : ""}};
+}
+
+std::string info_text(const std::string& path, const LoadedCapture& capture) {
+    const LinkReport link = capture.decoder->report();
+    const auto& hello = capture.decoder->hello();
+    const auto& config = capture.decoder->config();
+    std::string text = path + "\n";
+    const auto line = [&](const char* what, const std::string& value) {
+        if (!value.empty()) { text += fmt::format("  {:<10} {}\n", what, value); }
+    };
+    if (capture.metadata) {
+        const SourceIdentity& source = capture.metadata->source;
+        line("board", fmt::format("{}{}{}", source.product.empty() ? source.uri : source.product,
+                                  source.serial.empty() ? "" : ", serial ", source.serial));
+        line("device", source.uri);
+    }
+    if (hello) {
+        line("firmware", fmt::format("{}, protocol {}.{}", hello->firmware, hello->protocol_major,
+                                     hello->protocol_minor));
+    }
+    if (hello && config) { line("sensor", describe_sensor(*hello, *config)); }
+    line("started", started_utc(capture));
+    const auto rate_hz = capture.decoder->rate_hz();
+    if (rate_hz) {
+        line("length", fmt::format("{}, {} samples at {:.4f} Hz", format_duration(duration_s(capture, link)),
+                                   format_count(link.samples.good), *rate_hz));
+    }
+    line("missing", fmt::format("{} samples in {} dropouts", format_count(link.samples.missing),
+                                link.dropouts.size() + link.dropouts_unlisted));
+    line("file", fmt::format("{}, {}", format_bytes(capture.file.blocks.bytes_total),
+                             end_text(path, capture.file.blocks)));
+    if (!hello) { line("note", "no HELLO frame: this capture does not say what it is a capture of"); }
+    return text;
+}
+
+}  // namespace gyrolog

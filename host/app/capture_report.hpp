@@ -1,0 +1,22 @@
+// What a stored capture holds and whether it is whole, as JSON and for people.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "host/session/load_capture.hpp"
+
+namespace gyrolog {
+
+// gyrolog-check/1 and gyrolog-info/1. `path` is what the user typed.
+nlohmann::ordered_json check_json(const std::string& path, const LoadedCapture& capture);
+nlohmann::ordered_json info_json(const std::string& path, const LoadedCapture& capture);
+
+std::string check_text(const std::string& path, const LoadedCapture& capture);
+std::string info_text(const std::string& path, const LoadedCapture& capture);
+
+// Nothing of what the board sent is known to be missing.
+bool nothing_missing(const LoadedCapture& capture);
+
+}  // namespace gyrolog

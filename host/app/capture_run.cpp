@@ -1,0 +1,93 @@
+#include "host/app/capture_run.hpp"
+
+#include <fmt/format.h>
+
+#include "host/app/command.hpp"
+#include "host/app/live_view.hpp"
+#include "host/app/quantity.hpp"
+#include "host/session/open_source.hpp"
+
+namespace gyrolog {
+namespace {
+
+void sum_up(Console& console, const CaptureOutcome& outcome, const std::string& path) {
+    const LinkReport& link = outcome.link;
+    console.err << fmt::format("  {}: {} samples in {}, {}\n", path, format_count(link.samples.good),
+                               format_duration(outcome.progress.device_s), format_bytes(outcome.progress.file_bytes));
+    if (link.samples.missing > 0 || link.frames.missing > 0) {
+        console.err << fmt::format("  missing: {} samples in {} dropouts, {} frames; run `gyrolog check {}` for each\n",
+                                   format_count(link.samples.missing),
+                                   link.dropouts.size() + link.dropouts_unlisted, link.frames.missing, path);
+    }
+    if (link.frames.corrupted > 0) {
+        console.err << fmt::format("  {} damaged frames were refused\n", link.frames.corrupted);
+    }
+    if (outcome.transfers_dropped > 0) {
+        console.err << fmt::format("  {} transfers ({}) found the queue full and were lost on this computer\n",
+                                   outcome.transfers_dropped, format_bytes(outcome.bytes_dropped));
+    }
+}
+
+ExitCode exit_code_of(const CaptureOutcome& outcome) {
+    switch (outcome.end) {
+        case CaptureEnd::device_lost: return ExitCode::device_lost;
+        case CaptureEnd::storage_failed: return gyrolog::exit_code_of(*outcome.error);
+        case CaptureEnd::complete:
+        case CaptureEnd::interrupted: break;
+    }
+    return outcome.data_lost() ? ExitCode::data_lost : ExitCode::ok;
+}
+
+// A board that cannot be opened, for whatever reason, is "no device" to a script.
+ExitCode exit_code_of_opening(const Error& error) {
+    switch (error.code) {
+        case ErrorCode::not_found:
+        case ErrorCode::permission_denied:
+        case ErrorCode::busy:
+        case ErrorCode::timeout: return ExitCode::no_device;
+        default: return gyrolog::exit_code_of(error);
+    }
+}
+
+}  // namespace
+
+CaptureResult capture_to_file(Console& console, const char* command, const CaptureOptions& options,
+                              const std::string& path, bool real_time) {
+    CaptureResult result;
+    auto request = options.request();
+    if (!request.ok()) {
+        result.code = report_error(console, command, request.error());
+        return result;
+    }
+    request->path = path;
+    auto source = open_source(options.device, {request->duration_s, request->samples}, real_time);
+    if (!source.ok()) {
+        report_error(console, command, source.error());
+        result.code = exit_code_of_opening(source.error());
+        return result;
+    }
+    console.err << "capturing from " << (*source)->identity().uri << " to " << path << '\n';
+    LiveView view(console);
+    const auto outcome = run_capture(**source, *request, [&](const CaptureProgress& progress) {
+        view.show(progress);
+        return !console.stop_wanted();
+    });
+    view.finish();
+    if (!outcome.ok()) {
+        report_error(console, command, outcome.error());
+        result.code = exit_code_of_opening(outcome.error());
+        return result;
+    }
+    result.file_written = true;
+    result.link = outcome->link;
+    result.code = exit_code_of(*outcome);
+    if (outcome->error) {
+        console.err << "gyrolog " << command << ": " << outcome->error->message
+                    << (outcome->end == CaptureEnd::device_lost ? "; the board is lost, what came before is saved\n"
+                                                                 : "; what was written before is saved\n");
+    }
+    sum_up(console, *outcome, path);
+    return result;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,23 @@
+// A capture as the user sees it: announced, watched, summed up.
+#pragma once
+
+#include <string>
+
+#include "host/app/capture_options.hpp"
+#include "host/app/console.hpp"
+#include "host/app/exit_code.hpp"
+
+namespace gyrolog {
+
+struct CaptureResult {
+    ExitCode code = ExitCode::ok;
+    bool file_written = false;  // there is a closed, readable capture
+    LinkReport link;
+};
+
+// Opens the device, captures to `path` until it is enough or the user stops it, and says on `err` what came of it.
+// `command` is the name that errors are reported under.
+CaptureResult capture_to_file(Console& console, const char* command, const CaptureOptions& options,
+                              const std::string& path, bool real_time);
+
+}  // namespace gyrolog

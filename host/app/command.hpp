@@ -1,0 +1,39 @@
+// A command of the program: one file each, one line in command_line.cpp.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+#include "host/app/console.hpp"
+#include "host/app/exit_code.hpp"
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+// What a parsed command line is to do.
+using Action = std::function<ExitCode(Console&)>;
+
+// Declares a command's options on `app` and returns what to do once they are parsed.
+using CommandSetup = Action (*)(CLI::App& app);
+
+struct Command {
+    const char* name;
+    const char* summary;
+    CommandSetup setup;
+};
+
+// Each in its command_NAME.cpp.
+Action setup_analyze(CLI::App& app);
+Action setup_capture(CLI::App& app);
+Action setup_check(CLI::App& app);
+Action setup_info(CLI::App& app);
+Action setup_list(CLI::App& app);
+Action setup_recover(CLI::App& app);
+// The program without a command: find the board, capture, analyse.
+Action setup_bench_session(CLI::App& app);
+
+// "gyrolog NAME: message" on err, and the exit code that goes with the error.
+ExitCode report_error(Console& console, const char* command, const Error& error);
+
+}  // namespace gyrolog

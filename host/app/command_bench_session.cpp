@@ -1,0 +1,68 @@
+// The program without a command: find the board, capture with a live view, on Ctrl-C close the file and analyse it.
+
+#include <ctime>
+#include <memory>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "host/app/analysis_run.hpp"
+#include "host/app/capture_run.hpp"
+#include "host/app/command.hpp"
+
+namespace gyrolog {
+namespace {
+
+struct Options {
+    CaptureOptions capture;
+    std::string path;
+};
+
+// "gyrolog-20261121-143005", in the folder where the user stands.
+std::string name_by_time() {
+    std::tm now{};
+    const std::time_t seconds = std::time(nullptr);
+    localtime_r(&seconds, &now);
+    return fmt::format("gyrolog-{:%Y%m%d-%H%M%S}", now);
+}
+
+std::string without_extension(const std::string& path) {
+    const std::string ending = ".pcapng";
+    return path.ends_with(ending) ? path.substr(0, path.size() - ending.size()) : path;
+}
+
+ExitCode bench_session(Console& console, Options options) {
+    if (options.path.empty()) { options.path = name_by_time() + ".pcapng"; }
+    if (console.progress) { console.err << "Ctrl-C stops, closes the file and analyses it\n"; }
+    const CaptureResult captured = capture_to_file(console, "", options.capture, options.path, true);
+    if (!captured.file_written) {
+        if (captured.code == ExitCode::no_device) {
+            console.err << "without a board: `gyrolog --device sim:` runs a virtual one\n";
+        }
+        return captured.code;
+    }
+    if (captured.link.samples.good == 0) {
+        console.err << "there is nothing to analyse\n";
+        return captured.code == ExitCode::ok ? ExitCode::failed : captured.code;
+    }
+    AnalysisRequest request;
+    request.recording_path = options.path;
+    request.json_path = without_extension(options.path) + ".json";
+    request.plot_path = without_extension(options.path) + ".png";
+    request.model_path = without_extension(options.path) + ".model.json";
+    const ExitCode analysed = analyze_to_files(console, "analyze", request);
+    // The capture's own verdict comes first: a lost device stays a lost device however well its data analyse.
+    return captured.code == ExitCode::ok ? analysed : captured.code;
+}
+
+}  // namespace
+
+Action setup_bench_session(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    app.add_option("-o,--output", options->path, "The capture to write (default: gyrolog-DATE-TIME.pcapng)")
+        ->type_name("FILE");
+    options->capture.declare(app);
+    return [options](Console& console) { return bench_session(console, *options); };
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,53 @@
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "host/app/capture_report.hpp"
+#include "host/app/command.hpp"
+#include "host/app/result_output.hpp"
+
+namespace gyrolog {
+namespace {
+
+struct Options {
+    std::string path;
+    std::string json;
+};
+
+std::shared_ptr<Options> declare(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    app.add_option("FILE", options->path, "A capture (.pcapng)")->required();
+    app.add_option("--json", options->json, "Write the answer as JSON to FILE (- for standard output)")
+        ->type_name("FILE");
+    return options;
+}
+
+ExitCode tell(Console& console, const char* command, const Options& options,
+              nlohmann::ordered_json (*as_json)(const std::string&, const LoadedCapture&),
+              std::string (*as_text)(const std::string&, const LoadedCapture&), ExitCode when_missing) {
+    const auto capture = load_capture(options.path, false);
+    if (!capture.ok()) { return report_error(console, command, capture.error()); }
+    if (!options.json.empty()) {
+        if (const Status written = write_json(console, options.json, as_json(options.path, *capture)); !written.ok()) {
+            return report_error(console, command, written.error());
+        }
+    }
+    if (options.json != "-") { console.out << as_text(options.path, *capture); }
+    return nothing_missing(*capture) ? ExitCode::ok : when_missing;
+}
+
+}  // namespace
+
+Action setup_check(CLI::App& app) {
+    const auto options = declare(app);
+    return [options](Console& console) {
+        return tell(console, "check", *options, check_json, check_text, ExitCode::data_lost);
+    };
+}
+
+Action setup_info(CLI::App& app) {
+    const auto options = declare(app);
+    return [options](Console& console) { return tell(console, "info", *options, info_json, info_text, ExitCode::ok); };
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,58 @@
+#include "host/app/command_line.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "host/app/command.hpp"
+#include "host/capture/capture_metadata.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::array commands{
+    Command{"list", "Show the boards that are plugged in, and why one cannot be used", setup_list},
+    Command{"capture", "Record a board's stream to a file", setup_capture},
+    Command{"info", "Tell what is in a capture", setup_info},
+    Command{"check", "Account for every byte, frame and sample of a capture", setup_check},
+    Command{"recover", "Save the intact part of a damaged capture", setup_recover},
+    Command{"analyze", "Work out Allan deviation, noise coefficients and bias", setup_analyze},
+};
+
+}  // namespace
+
+ExitCode report_error(Console& console, const char* command, const Error& error) {
+    console.err << "gyrolog" << (*command == '\0' ? "" : " ") << command << ": " << error.message << '\n';
+    return exit_code_of(error);
+}
+
+ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
+    CLI::App app{
+        "gyrolog: an inertial test bench. Without a command it finds the board, captures with a live view,\n"
+        "and on Ctrl-C closes the file and analyses it.",
+        "gyrolog"};
+    app.set_version_flag("--version", program_name());
+    app.require_subcommand(0, 1);
+    app.get_formatter()->column_width(34);
+    Action action = setup_bench_session(app);
+    std::vector<Action> actions;
+    actions.reserve(commands.size());
+    for (const Command& command : commands) {
+        CLI::App* sub = app.add_subcommand(command.name, command.summary);
+        sub->get_formatter()->column_width(34);
+        actions.push_back(command.setup(*sub));
+        sub->callback([&action, &actions, i = actions.size() - 1] { action = actions[i]; });
+    }
+    try {
+        std::reverse(arguments.begin(), arguments.end());  // CLI11 takes its vector back to front
+        app.parse(std::move(arguments));
+    } catch (const CLI::Success& wanted) {  // --help, --version
+        app.exit(wanted, console.out, console.err);
+        return ExitCode::ok;
+    } catch (const CLI::ParseError& wrong) {
+        console.err << "gyrolog: " << wrong.what() << "\nrun `gyrolog --help` to see what there is\n";
+        return ExitCode::usage;
+    }
+    return action(console);
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,69 @@
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "host/app/command.hpp"
+#include "host/app/result_output.hpp"
+#include "host/usb/usb_board.hpp"
+
+namespace gyrolog {
+namespace {
+
+struct Options {
+    std::string json;
+};
+
+nlohmann::ordered_json list_json(const UsbSurvey& survey) {
+    auto devices = nlohmann::ordered_json::array();
+    for (const UsbBoard& board : survey.boards) {
+        devices.push_back({{"uri", board.uri()},
+                           {"vid", fmt::format("{:04x}", board.vendor_id)},
+                           {"pid", fmt::format("{:04x}", board.product_id)},
+                           {"serial", board.serial},
+                           {"state", board_state_name(board.state)},
+                           {"why", board.why}});
+    }
+    return {{"schema", "gyrolog-list/1"}, {"devices", devices}};
+}
+
+void print_list(std::ostream& out, const UsbSurvey& survey) {
+    for (const UsbBoard& board : survey.boards) {
+        out << fmt::format("{:<20} {:04x}:{:04x}  {:<28} {}\n", board.uri(), board.vendor_id, board.product_id,
+                           board.product.empty() ? "(name not readable)" : board.product,
+                           board_state_name(board.state));
+        if (!board.why.empty()) { out << "    " << board.why << '\n'; }
+    }
+}
+
+ExitCode list(Console& console, const Options& options) {
+    auto usb = UsbContext::create();
+    if (!usb.ok()) { return report_error(console, "list", usb.error()); }
+    const auto survey = survey_usb(**usb);
+    if (!survey.ok()) { return report_error(console, "list", survey.error()); }
+    if (!options.json.empty()) {
+        if (const Status written = write_json(console, options.json, list_json(*survey)); !written.ok()) {
+            return report_error(console, "list", written.error());
+        }
+    }
+    if (options.json != "-") { print_list(console.out, *survey); }
+    if (survey->boards.empty()) {
+        const auto none = choose_board(*survey, "");
+        console.err << "gyrolog list: " << none.error().message << '\n';
+    }
+    const bool usable = std::ranges::any_of(
+        survey->boards, [](const UsbBoard& board) { return board.state == BoardState::ready; });
+    return usable ? ExitCode::ok : ExitCode::no_device;
+}
+
+}  // namespace
+
+Action setup_list(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    app.add_option("--json", options->json, "Write the answer as JSON to FILE (- for standard output)")
+        ->type_name("FILE");
+    return [options](Console& console) { return list(console, *options); };
+}
+
+}  // namespace gyrolog

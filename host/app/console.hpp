@@ -1,0 +1,18 @@
+// Where a command speaks: results on `out`, which may be piped, everything else on `err`.
+#pragma once
+
+#include <atomic>
+#include <ostream>
+
+namespace gyrolog {
+
+struct Console {
+    std::ostream& out;                      // the result and nothing else
+    std::ostream& err;                      // messages, warnings, errors, progress
+    bool progress = false;                  // err is a terminal: a line may be redrawn
+    const std::atomic<int>* signal = nullptr;  // set to the signal's number once the user wants to stop
+
+    bool stop_wanted() const { return signal != nullptr && signal->load() != 0; }
+};
+
+}  // namespace gyrolog

@@ -1,0 +1,76 @@
+#include "host/app/quantity.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gyrolog {
+
+Result<double> parse_duration_s(std::string_view text) {
+    double value = 0.0;
+    const auto [rest, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const std::string_view unit(rest, static_cast<std::size_t>(text.data() + text.size() - rest));
+    double factor = 0.0;
+    if (unit.empty() || unit == "s") { factor = 1.0; }
+    if (unit == "m" || unit == "min") { factor = 60.0; }
+    if (unit == "h") { factor = 3600.0; }
+    if (unit == "d") { factor = 86400.0; }
+    const double duration_s = value * factor;
+    if (problem != std::errc() || factor == 0.0 || !(duration_s > 0.0) || !std::isfinite(duration_s)) {
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("'{}' is no duration: write 90, 90s, 15m, 6h or 1d", text)};
+    }
+    return duration_s;
+}
+
+Result<std::vector<std::int64_t>> parse_whole_numbers(std::string_view text) {
+    std::vector<std::int64_t> numbers;
+    const char* at = text.data();
+    const char* const end = text.data() + text.size();
+    while (true) {
+        std::int64_t number = 0;
+        const auto [rest, problem] = std::from_chars(at, end, number);
+        if (problem != std::errc() || number < 1 || (rest != end && *rest != ',')) {
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("'{}' is no list of whole numbers from 1 up: write 1,10,100", text)};
+        }
+        numbers.push_back(number);
+        if (rest == end) { return numbers; }
+        at = rest + 1;
+    }
+}
+
+std::string format_elapsed(double duration_s) {
+    const auto seconds = static_cast<std::int64_t>(duration_s);
+    return fmt::format("{}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60);
+}
+
+std::string format_bytes(std::uint64_t bytes) {
+    constexpr std::array units{"B", "kB", "MB", "GB", "TB"};
+    auto value = static_cast<double>(bytes);
+    std::size_t unit = 0;
+    while (value >= 999.5 && unit + 1 < units.size()) {
+        value /= 1000.0;
+        ++unit;
+    }
+    return fmt::format("{:.3g} {}", value, units[unit]);
+}
+
+std::string format_duration(double duration_s) {
+    if (duration_s >= 2.0 * 86400.0) { return fmt::format("{:.3g} d", duration_s / 86400.0); }
+    if (duration_s >= 2.0 * 3600.0) { return fmt::format("{:.3g} h", duration_s / 3600.0); }
+    if (duration_s >= 2.0 * 60.0) { return fmt::format("{:.3g} min", duration_s / 60.0); }
+    return fmt::format("{:.3g} s", duration_s);
+}
+
+std::string format_count(std::uint64_t count) {
+    std::string digits = std::to_string(count);
+    for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
+        digits.insert(static_cast<std::size_t>(at), 1, ',');
+    }
+    return digits;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,31 @@
+// Quantities as the user types them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+// "90", "90s", "15m", "6h", "1d", also with a fraction: seconds, more than 0.
+Result<double> parse_duration_s(std::string_view text);
+
+// "1,10,100": positive whole numbers.
+Result<std::vector<std::int64_t>> parse_whole_numbers(std::string_view text);
+
+// 3723.4 as "1:02:03".
+std::string format_elapsed(double duration_s);
+
+// 123456789 as "123 MB": decimal multiples, three digits.
+std::string format_bytes(std::uint64_t bytes);
+
+// 43200 as "12 h", 655.1 as "10.9 min": one unit, three digits.
+std::string format_duration(double duration_s);
+
+// 4320000 as "4,320,000".
+std::string format_count(std::uint64_t count);
+
+}  // namespace gyrolog

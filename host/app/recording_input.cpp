@@ -1,0 +1,37 @@
+#include "host/app/recording_input.hpp"
+
+#include <fmt/format.h>
+
+#include "host/formats/recording_csv.hpp"
+#include "host/session/load_capture.hpp"
+
+namespace gyrolog {
+namespace {
+
+Result<Recording> read_capture(const RecordingInput& input) {
+    GYROLOG_TRY(LoadedCapture capture, load_capture(input.path, true));
+    auto recording = capture.decoder->take_recording(input.path);
+    if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
+    if (capture.file.blocks.end == FileEnd::damaged) {
+        recording->warnings.push_back(fmt::format(
+            "the file is damaged in {} places; the samples lost there count as missing", capture.file.blocks.damaged_ranges));
+    }
+    if (input.rate_hz) {
+        recording->rate_hz = *input.rate_hz;
+        recording->rate_sd_hz.reset();
+    }
+    return recording;
+}
+
+}  // namespace
+
+Result<Recording> read_recording(const RecordingInput& input) {
+    if (looks_like_capture(input.path)) { return read_capture(input); }
+    CsvReadOptions options;
+    options.rate_hz = input.rate_hz;
+    options.lsb_dps = input.lsb_dps;
+    options.allow_unscaled_counts = true;
+    return read_recording_csv(input.path, options);
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,20 @@
+// A RECORDING argument of the command line: a capture, or text.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "analysis/recording/recording.hpp"
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+struct RecordingInput {
+    std::string path;
+    std::optional<double> rate_hz;  // overrides the file's own
+    std::optional<double> lsb_dps;  // scale of text columns in counts
+};
+
+Result<Recording> read_recording(const RecordingInput& input);
+
+}  // namespace gyrolog

@@ -1,0 +1,42 @@
+#include "host/app/quantity.hpp"
+
+#include <gtest/gtest.h>
+
+namespace gyrolog {
+namespace {
+
+TEST(Quantity, DurationsTakeEveryUnitOfTheManual) {
+    EXPECT_DOUBLE_EQ(parse_duration_s("90").value(), 90.0);
+    EXPECT_DOUBLE_EQ(parse_duration_s("90s").value(), 90.0);
+    EXPECT_DOUBLE_EQ(parse_duration_s("15m").value(), 900.0);
+    EXPECT_DOUBLE_EQ(parse_duration_s("6h").value(), 21600.0);
+    EXPECT_DOUBLE_EQ(parse_duration_s("1d").value(), 86400.0);
+    EXPECT_DOUBLE_EQ(parse_duration_s("1.5h").value(), 5400.0);
+}
+
+TEST(Quantity, RefusesWhatIsNoDuration) {
+    for (const char* text : {"", "h", "-5s", "0", "5 m", "5parsecs", "nan", "inf", "1e400h", "5mm"}) {
+        EXPECT_FALSE(parse_duration_s(text).ok()) << text;
+    }
+}
+
+TEST(Quantity, WholeNumbersAreSeparatedByCommas) {
+    EXPECT_EQ(parse_whole_numbers("1,10,100").value(), (std::vector<std::int64_t>{1, 10, 100}));
+    for (const char* text : {"", "1,", ",1", "0", "-1", "1.5", "1;2", "1, 2", "99999999999999999999"}) {
+        EXPECT_FALSE(parse_whole_numbers(text).ok()) << text;
+    }
+}
+
+TEST(Quantity, SpeaksInRoundedUnits) {
+    EXPECT_EQ(format_elapsed(3723.4), "1:02:03");
+    EXPECT_EQ(format_bytes(999), "999 B");
+    EXPECT_EQ(format_bytes(999'700), "1 MB");
+    EXPECT_EQ(format_bytes(123'456'789), "123 MB");
+    EXPECT_EQ(format_duration(43200.0), "12 h");
+    EXPECT_EQ(format_duration(655.1), "10.9 min");
+    EXPECT_EQ(format_count(4'320'000), "4,320,000");
+    EXPECT_EQ(format_count(999), "999");
+}
+
+}  // namespace
+}  // namespace gyrolog
