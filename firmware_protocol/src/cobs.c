@@ -21,21 +21,28 @@ bool glp_cobs_begin(glp_cobs_encoder* self, uint8_t* out, size_t capacity) {
 }
 
 bool glp_cobs_put(glp_cobs_encoder* self, const uint8_t* bytes, size_t size) {
-    for (size_t i = 0; i < size; ++i) {
-        if (!self->open && !open_group(self)) { return false; }
+    // A byte written may lie anywhere, so the compiler would load every field again after each: hence the
+    // copy.
+    glp_cobs_encoder local = *self;
+    bool fits = true;
+    for (size_t i = 0; (i < size) && fits; ++i) {
+        if (!local.open) { fits = open_group(&local); }
+        if (!fits) { break; }
         if (bytes[i] == 0U) {
-            self->out[self->code_at] = self->code;
-            if (!open_group(self)) { return false; }
-            continue;
-        }
-        if (self->size == self->capacity) { return false; }
-        self->out[self->size++] = bytes[i];
-        if (++self->code == FULL_CODE) {
-            self->out[self->code_at] = FULL_CODE;
-            self->open = false;
+            local.out[local.code_at] = local.code;
+            fits = open_group(&local);
+        } else if (local.size == local.capacity) {
+            fits = false;
+        } else {
+            local.out[local.size++] = bytes[i];
+            if (++local.code == FULL_CODE) {
+                local.out[local.code_at] = FULL_CODE;
+                local.open = false;
+            }
         }
     }
-    return true;
+    *self = local;
+    return fits;
 }
 
 void glp_cobs_end(glp_cobs_encoder* self) {
@@ -52,44 +59,55 @@ glp_cobs_result glp_cobs_encode(const uint8_t* in, size_t size, uint8_t* out, si
     return (glp_cobs_result){glp_status_ok, encoder.size};
 }
 
-// Copies up to 254 bytes towards lower addresses of the same buffer, or between buffers. False at a zero
-// byte.
-static bool copy_group(uint8_t* out, const uint8_t* in, size_t size) {
+static bool has_zero(const uint8_t* bytes, size_t size) {
 #if __STDC_HOSTED__
-    // Sensor counts hold a zero every few bytes: a call costs more than the bytes it moves.
-    if (size >= 16U) {
-        if (memchr(in, 0, size) != NULL) { return false; }
-        memmove(out, in, size);
-        return true;
-    }
-#endif
+    return memchr(bytes, 0, size) != NULL;
+#else
     for (size_t i = 0; i < size; ++i) {
-        if (in[i] == 0U) { return false; }
-        out[i] = in[i];
+        if (bytes[i] == 0U) { return true; }
     }
-    return true;
+    return false;
+#endif
+}
+
+// Bytes up to the end of the next full group, or to the end of all; 0 when a code byte claims more than there
+// is.
+static size_t section_size(const uint8_t* in, size_t size) {
+    size_t at = 0;
+    uint8_t code = 0;
+    while ((at < size) && (code != FULL_CODE)) {
+        code = in[at];
+        if (code > size - at) { return 0; }
+        at += code;
+    }
+    return at;
+}
+
+// Within a section each code byte stands just where the zero in front of its group belongs, one place on: the
+// section is moved in one piece and its codes, which lead from one to the next, become zeros.
+static void decode_section(const uint8_t* in, size_t size, uint8_t* out) {
+    size_t at = (size_t)in[0] - 1U;
+    memmove(out, in + 1, size - 1U);
+    while (at < size - 1U) {
+        const uint8_t code = out[at];
+        out[at] = 0U;
+        at += code;
+    }
 }
 
 glp_cobs_result glp_cobs_decode(const uint8_t* in, size_t size, uint8_t* out, size_t capacity) {
     const glp_cobs_result refused = {glp_status_bad_cobs, 0};
-    if (size == 0U) { return refused; }
+    if ((size == 0U) || has_zero(in, size)) { return refused; }
     size_t written = 0;
-    bool after_full_group = false;
     for (size_t at = 0; at < size;) {
-        const uint8_t code = in[at++];
-        const size_t group = (size_t)code - 1U;
-        if ((code == 0U) || (group > size - at)) { return refused; }
         // An empty group at the very end says "no zero here". Behind a full group that was said already.
-        if (after_full_group && (group == 0U) && (at == size)) { return refused; }
-        if (group > capacity - written) { return (glp_cobs_result){glp_status_no_space, 0}; }
-        if (!copy_group(out + written, in + at, group)) { return refused; }
-        at += group;
-        written += group;
-        after_full_group = (code == FULL_CODE);
-        if (!after_full_group && (at < size)) {
-            if (written == capacity) { return (glp_cobs_result){glp_status_no_space, 0}; }
-            out[written++] = 0U;
-        }
+        if ((at > 0U) && (size - at == 1U) && (in[at] == 1U)) { return refused; }
+        const size_t section = section_size(in + at, size - at);
+        if (section == 0U) { return refused; }
+        if (section - 1U > capacity - written) { return (glp_cobs_result){glp_status_no_space, 0}; }
+        decode_section(in + at, section, out + written);
+        at += section;
+        written += section - 1U;
     }
     return (glp_cobs_result){glp_status_ok, written};
 }
