@@ -302,6 +302,15 @@ std::string_view name_of(NoiseTerm term) {
     return names[static_cast<std::size_t>(term)];
 }
 
+NoiseCoefficients NoiseFit::identified() const {
+    const auto value = [&](NoiseTerm term) {
+        const FittedCoefficient& fitted = (*this)[term];
+        return fitted.state == FittedCoefficient::State::identified ? fitted.value : 0.0;
+    };
+    return {value(NoiseTerm::Q), value(NoiseTerm::N), value(NoiseTerm::B), value(NoiseTerm::K),
+            value(NoiseTerm::R)};
+}
+
 NoiseFit fit_noise(const AllanCurve& curve, double confidence) {
     NoiseFit fit;
     fit.confidence = confidence;

@@ -54,6 +54,8 @@ struct NoiseFit {
     const FittedCoefficient& operator[](NoiseTerm term) const {
         return terms[static_cast<std::size_t>(term)];
     }
+    // The identified terms as they are reported; 0 for the others.
+    NoiseCoefficients identified() const;
 };
 
 // A term is identified when its square is more than 1.645 standard deviations above zero.

@@ -21,7 +21,8 @@ double median(std::vector<double> values) {
 
 std::string text_of(double value) {
     std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4).ptr;
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4).ptr;
     return {text.data(), end};
 }
 
@@ -51,13 +52,15 @@ bool steps_are_whole_periods(std::span<const double> t_s, double period_s) {
         if (periods < dropout_periods ? off < 0.5 : off < 0.2) { ++near; }
     }
     const double steps = static_cast<double>(t_s.size() - 1);
-    // Bursts can hit whole multiples of their inner step by chance, but then most of the record would be missing.
+    // Bursts can hit whole multiples of their inner step by chance, but then most of the record would be
+    // missing.
     const double mean_periods = (t_s.back() - t_s.front()) / (steps * period_s);
     return static_cast<double>(near) >= 0.9 * steps && mean_periods < 2.0;
 }
 
-// Rows where a step exceeds 1.5 periods, and how many samples are missing there. The levels of the stamps before and
-// after are compared, not the step itself: one late stamp makes a long step followed by short ones.
+// Rows where a step exceeds 1.5 periods, and how many samples are missing there. The levels of the stamps
+// before and after are compared, not the step itself: one late stamp makes a long step followed by short
+// ones.
 struct Jump {
     std::size_t row = 0;  // first row after
     std::int64_t missing = 0;
@@ -96,8 +99,8 @@ struct Line {
     double period_sd_s = 0.0;
 };
 
-// A robust line of stamp over grid index: medians of up to 256 blocks, then weighted least squares that lets blocks
-// far from the line (a stall of the host) count less (Huber's weights).
+// A robust line of stamp over grid index: medians of up to 256 blocks, then weighted least squares that lets
+// blocks far from the line (a stall of the host) count less (Huber's weights).
 Line fit_line(std::span<const double> t_s, std::span<const double> index, double period_s) {
     const std::size_t blocks = std::clamp<std::size_t>(t_s.size() / 16, 2, 256);
     std::vector<double> x;
@@ -112,7 +115,8 @@ Line fit_line(std::span<const double> t_s, std::span<const double> index, double
             sum_x += index[i];
         }
         x.push_back(sum_x / static_cast<double>(end - begin));
-        // With two or three stamps in all, a block median would be one of its stamps at the mean index of both.
+        // With two or three stamps in all, a block median would be one of its stamps at the mean index of
+        // both.
         if (t_s.size() < 64) {
             double sum_y = 0.0;
             for (const double ahead : ahead_s) { sum_y += ahead; }
@@ -152,7 +156,8 @@ Line fit_line(std::span<const double> t_s, std::span<const double> index, double
             squares += weight[b] * residual[b] * residual[b];
             if (b > 0) { neighbours += std::sqrt(weight[b] * weight[b - 1]) * residual[b] * residual[b - 1]; }
         }
-        // Neighbouring blocks share the clock's wander: a positive correlation means fewer independent blocks.
+        // Neighbouring blocks share the clock's wander: a positive correlation means fewer independent
+        // blocks.
         const double correlation = squares > 0.0 ? std::clamp(neighbours / squares, 0.0, 0.9) : 0.0;
         const double degrees = static_cast<double>(blocks > 2 ? blocks - 2 : 1);
         slope_variance = squares / degrees / sxx * (1.0 + correlation) / (1.0 - correlation);
@@ -226,8 +231,8 @@ Grid grid_from_stamps(std::span<const double> t_s) {
     for (std::size_t i = 1; i < t_s.size(); ++i) {
         const double step_s = t_s[i] - t_s[i - 1];
         if (step_s <= -clock_set_back_s) {
-            grid.failure = "the time stamps step back by " + text_of(-step_s) + " s at row " + std::to_string(i + 1) +
-                           ": cut the recording there, or give the rate";
+            grid.failure = "the time stamps step back by " + text_of(-step_s) + " s at row " +
+                           std::to_string(i + 1) + ": cut the recording there, or give the rate";
             return grid;
         }
         if (!(step_s > 0.0)) { ++not_after; }
@@ -272,8 +277,8 @@ void punch_holes(Grid& grid, const std::vector<bool>& present) {
             open = true;
         }
     }
-    // A hole that was there before keeps its cause and takes in the rows that went beside it; one at either end of the
-    // record is no hole.
+    // A hole that was there before keeps its cause and takes in the rows that went beside it; one at either
+    // end of the record is no hole.
     std::vector<Dropout> dropouts;
     for (std::size_t k = 1; k < kept.size(); ++k) {
         const std::int64_t begin = kept[k - 1].first_index + static_cast<std::int64_t>(kept[k - 1].count);

@@ -1,7 +1,9 @@
-// From time stamps to a uniform grid of sampling instants: what the stamps mean, the rate, and where samples are missing.
+// From time stamps to a uniform grid of sampling instants: what the stamps mean, the rate, and where samples
+// are missing.
 //
-// The rate is the slope of a robust line through the stamps of the whole record, never a difference of neighbouring
-// stamps: those carry the jitter of the host, and bursts make even their median wrong by a factor.
+// The rate is the slope of a robust line through the stamps of the whole record, never a difference of
+// neighbouring stamps: those carry the jitter of the host, and bursts make even their median wrong by a
+// factor.
 #pragma once
 
 #include <cstddef>
@@ -25,18 +27,19 @@ struct Grid {
     std::string failure;  // why the stamps give no grid; empty when they do
 };
 
-// Stamps are taken as sampling instants when nine in ten of their steps are near whole periods. Then a step of more
-// than 1.5 periods that later stamps do not make up for is a dropout of round(step / period) - 1 samples.
-// Otherwise they are arrival times: the mean rate is read from them, dropouts cannot be, and a warning says so.
-// A stamp that repeats or steps back by less than a second makes the stamps arrival times too (with a warning).
-// Fails when there are fewer than two stamps, or the clock was set back by a second or more.
+// Stamps are taken as sampling instants when nine in ten of their steps are near whole periods. Then a step
+// of more than 1.5 periods that later stamps do not make up for is a dropout of round(step / period) - 1
+// samples. Otherwise they are arrival times: the mean rate is read from them, dropouts cannot be, and a
+// warning says so. A stamp that repeats or steps back by less than a second makes the stamps arrival times
+// too (with a warning). Fails when there are fewer than two stamps, or the clock was set back by a second or
+// more.
 Grid grid_from_stamps(std::span<const double> t_s);
 
 // The grid of `rows` samples without stamps, taken at a rate that somebody gave.
 Grid grid_from_rate(std::size_t rows, double rate_hz);
 
-// Takes rows out of a grid whose samples turned out to be missing, each at its true place: `present[i]` tells whether
-// row i stays. Afterwards the segments count the rows that stay.
+// Takes rows out of a grid whose samples turned out to be missing, each at its true place: `present[i]` tells
+// whether row i stays. Afterwards the segments count the rows that stay.
 void punch_holes(Grid& grid, const std::vector<bool>& present);
 
 }  // namespace gyrolog

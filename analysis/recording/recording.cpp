@@ -9,7 +9,8 @@ std::size_t Column::size() const {
 }
 
 double Column::value(std::size_t i) const {
-    return std::visit([&](const auto& values) { return static_cast<double>(values[i]) * scale + offset; }, data);
+    return std::visit([&](const auto& values) { return static_cast<double>(values[i]) * scale + offset; },
+                      data);
 }
 
 std::vector<double> Column::values() const {

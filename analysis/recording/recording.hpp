@@ -1,5 +1,5 @@
-// A recording as the analysis sees it: columns of numbers on a uniform grid of sampling instants, with holes where
-// samples are missing. Where it came from (capture, text, simulation) is no longer visible.
+// A recording as the analysis sees it: columns of numbers on a uniform grid of sampling instants, with holes
+// where samples are missing. Where it came from (capture, text, simulation) is no longer visible.
 #pragma once
 
 #include <array>
@@ -14,15 +14,16 @@
 
 namespace gyrolog {
 
-// One quantity. The data stay as the source had them, sensor counts as integers and real numbers in the source's own
-// unit, so that nothing is rounded on the way in; value() = data * scale + offset is in SI.
+// One quantity. The data stay as the source had them, sensor counts as integers and real numbers in the
+// source's own unit, so that nothing is rounded on the way in; value() = data * scale + offset is in SI.
 struct Column {
     std::string name;  // the quantity and its axis, without a unit: "gx", "gx2", "ax", "temp", "ref_x"
     std::string unit;  // of value(): "rad/s", "m/s^2", "degC"; "lsb" where the scale of counts is not known
     std::variant<std::vector<std::int16_t>, std::vector<double>> data;
-    double scale = 1.0;         // `unit` per number in data
-    double offset = 0.0;        // value at 0; only a temperature has one
-    std::string source_unit{};  // of data, as a text column's name ends: "dps", "rad_s", "lsb", "g"; may be empty
+    double scale = 1.0;   // `unit` per number in data
+    double offset = 0.0;  // value at 0; only a temperature has one
+    std::string
+        source_unit{};  // of data, as a text column's name ends: "dps", "rad_s", "lsb", "g"; may be empty
 
     std::size_t size() const;
     bool is_counts() const { return data.index() == 0; }
@@ -47,7 +48,8 @@ enum class StampKind {
 struct Dropout {
     double at_s = 0.0;         // from the recording's first sample
     std::int64_t samples = 0;  // missing
-    std::string cause;         // "sensor_fifo_overflow", "bus_error", "ring_overflow", "link", "time_stamps", "empty_fields"
+    std::string
+        cause;  // "sensor_fifo_overflow", "bus_error", "ring_overflow", "link", "time_stamps", "empty_fields"
 };
 
 // Segments are in order and do not overlap on the grid; every row belongs to exactly one.
@@ -58,12 +60,13 @@ struct Recording {
     std::optional<double> rate_sd_hz;       // one sigma of the estimate
     std::optional<double> stamp_jitter_s;   // one sigma of the stamps about the fitted grid
     StampKind stamps = StampKind::none;
-    std::vector<double> t_s;                // stamps as they came, one a row; empty with StampKind::none, and where
-                                            // the segments hold all that the stamps said (a capture)
-    std::vector<Column> columns;            // gyro first; its values are finite, others may hold NaN for "not known"
+    std::vector<double> t_s;      // stamps as they came, one a row; empty with StampKind::none, and where
+                                  // the segments hold all that the stamps said (a capture)
+    std::vector<Column> columns;  // gyro first; its values are finite, others may hold NaN for "not known"
     std::vector<Segment> segments;
     std::vector<Dropout> dropouts;
-    std::vector<std::string> warnings;      // for the user: what was odd about the data and what was done about it
+    std::vector<std::string>
+        warnings;  // for the user: what was odd about the data and what was done about it
 
     std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
     const Column* find(std::string_view column_name) const;

@@ -294,6 +294,11 @@ TEST(Figure, RefusesWhatCannotBeDrawnAndSaysWhy) {
     figure = figure_with({}, ScaleKind::linear);
     figure.scale = nan;
     EXPECT_FALSE(render(figure).ok());
+    for (const Range range : {Range{1.0, 1.0}, Range{2.0, 1.0}, Range{nan, 1.0}, Range{1e20, 1e20 + 1e5}}) {
+        figure = figure_with({}, ScaleKind::linear);
+        figure.panels[0].y.range = range;
+        EXPECT_THAT(render(figure).problem, HasSubstr("not a range"));
+    }
 }
 
 TEST(Figure, LongTitlesAndSourcesAreShortenedNotCutOff) {

@@ -190,12 +190,13 @@ TEST(RangeFinder, IgnoresWhatTheScaleCannotShow) {
 }
 
 TEST(RangeFinder, GivesASingleValueSomeRoom) {
-    for (const double value : {-3.0, 0.0, 1e-9, 1e12}) {
+    for (const double value : {-3.0, 0.0, 5e-324, 1e-9, 1e12, 1e250}) {
         RangeFinder finder(ScaleKind::linear);
         finder.add(value);
         const Range range = finder.padded(0.05, 0.0);
         EXPECT_LT(range.lo, value);
         EXPECT_GT(range.hi, value);
+        EXPECT_TRUE(can_scale(ScaleKind::linear, range)) << value;
     }
     RangeFinder finder(ScaleKind::logarithmic);
     finder.add(91.22945);
