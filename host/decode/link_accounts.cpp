@@ -1,7 +1,7 @@
 #include "host/decode/link_accounts.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <utility>
 
 namespace gyrolog {
 namespace {
@@ -13,17 +13,10 @@ constexpr std::size_t dropouts_kept = 100'000;
 // grid.
 constexpr std::uint64_t implausible_jump = std::uint64_t{1} << 40U;
 
+constexpr std::uint64_t sensor_fifo_bytes = 512;  // of an MPU-9250
+
 constexpr std::uint16_t cause_flags =
     glp_flag_sensor_fifo_overflow | glp_flag_bus_error | glp_flag_ring_overflow;
-
-std::uint64_t fingerprint(const glp_frame& frame) {
-    // Ticks and indices stand at the front of a payload, so its first bytes tell two frames apart.
-    std::array<std::uint64_t, 3> words{};
-    std::memcpy(words.data(), frame.payload, std::min(frame.payload_bytes, sizeof(words)));
-    std::uint64_t hash = frame.type | (std::uint64_t{frame.flags} << 8U) | (frame.payload_bytes << 24U);
-    for (const std::uint64_t word : words) { hash = (hash ^ word) * 0x9E3779B97F4A7C15U; }
-    return hash;
-}
 
 DropoutCause cause_of(std::uint16_t flags) {
     if ((flags & glp_flag_sensor_fifo_overflow) != 0) { return DropoutCause::sensor_fifo_overflow; }
@@ -69,50 +62,48 @@ std::string_view dropout_cause_name(DropoutCause cause) {
     return "device";
 }
 
+// SPEC.md, section 5: a number that is not larger is a duplicate or a stale frame, whatever is in it; only
+// HELLO can say that the numbers have begun again.
 bool LinkAccounts::take_number(const glp_frame& frame, bool new_boot) {
     ++intact_;
-    const Fingerprint mark{fingerprint(frame), frame.sequence, true};
-    Fingerprint& slot = recent_[frame.sequence % recent_.size()];
-    const bool expected = next_sequence_ && frame.sequence == *next_sequence_;
-    if (!expected && slot.used && slot.sequence == mark.sequence && slot.value == mark.value) {
+    const std::uint32_t jump = next_sequence_ && !new_boot ? frame.sequence - *next_sequence_ : 0U;
+    if (jump >= 0x8000'0000U) {
         ++frames_.duplicated;
         return false;
     }
-    slot = mark;
-
-    if (next_sequence_ && !expected) {
-        const std::uint32_t jump = frame.sequence - *next_sequence_;
-        const bool went_back = jump >= 0x8000'0000U;
-        if (went_back || new_boot) {
-            begin_boot();
-        } else {
-            frames_.missing += jump;
-            frames_missing_ += jump;
-        }
-    } else if (new_boot) {
-        begin_boot();
-    }
+    if (new_boot) { begin_boot(); }
     next_sequence_ = frame.sequence + 1U;
+    frames_missing_ += jump;
+    frames_.missing += frames_before_hello_;
+    frames_before_hello_ = 0;
+    if (frame.type == glp_frame_hello) {
+        frames_before_hello_ = jump;
+        return true;
+    }
+    frames_.missing += jump;
     return true;
 }
 
 void LinkAccounts::begin_boot() {
     ++boot_;
     booted_since_samples_ = true;
-    boot_id_.reset();
     status_lost_frames_.reset();
     told_flags_ = 0;
     frames_missing_ = 0;
 }
 
 bool LinkAccounts::take_hello(const glp_frame& frame, const glp_hello& hello) {
-    if (!take_number(frame, boot_id_ && *boot_id_ != hello.boot_id)) { return false; }
+    const bool went_back = next_sequence_ && frame.sequence - *next_sequence_ >= 0x8000'0000U;
+    const bool new_boot = boot_id_ ? *boot_id_ != hello.boot_id : went_back;
+    if (!take_number(frame, new_boot)) { return false; }
     boot_id_ = hello.boot_id;
     return true;
 }
 
 bool LinkAccounts::take_config(const glp_frame& frame, const glp_config& config) {
+    const std::uint64_t before_hello = frames_before_hello_;
     if (!take_number(frame, false)) { return false; }
+    keep_open(before_hello);
     frame_samples_ = std::max<std::uint64_t>(frame_samples_, config.samples_per_frame);
     return true;
 }
@@ -131,16 +122,38 @@ bool LinkAccounts::take_status(const glp_frame& frame, const glp_device_status& 
         frames_.lost_on_device += counted_up(*status_lost_frames_, status.lost_frames);
     }
     status_lost_frames_ = status.lost_frames;
-    if (status.streaming != 0) { tail_ = Tail{status.next_index, frame_samples_ - 1, status.lost_samples}; }
+    if (status.streaming != 0) { tail_ = Tail{status.next_index, pending_max(), status.lost_samples}; }
     return true;
 }
 
+// Of the instants that have passed, those of a frame that is not full and of the sensor's FIFO are not lost
+// yet.
+std::uint64_t LinkAccounts::pending_max() const {
+    const std::size_t sample_bytes = glp_sample_bytes(layout_);
+    return frame_samples_ - 1 + (sample_bytes > 0 ? sensor_fifo_bytes / sample_bytes : 0);
+}
+
 bool LinkAccounts::take_event(const glp_frame& frame, const glp_event& event) {
+    const std::uint64_t before_hello = frames_before_hello_;
     if (!take_number(frame, false)) { return false; }
     told_flags_ = static_cast<std::uint16_t>(told_flags_ | flag_of_event(event.code));
-    if (event.code == glp_event_started) { start_seen_ = true; }
-    if (event.code == glp_event_stopped) { tail_ = Tail{event.index, 0, lost_samples_}; }
+    if (event.code == glp_event_started) {
+        keep_open(before_hello);
+        frames_.dropped_at_start += std::exchange(frames_before_hello_, 0);
+        start_seen_ = true;
+        status_lost_frames_ = 0;
+    }
+    if (event.code == glp_event_stopped) {
+        tail_ = Tail{event.index, 0, static_cast<std::uint32_t>(event.value)};
+    }
     return true;
+}
+
+// A start is HELLO, CONFIG, EVENT started (SPEC.md, section 8), before which the board throws away what was
+// waiting. Numbers left out before a HELLO are missing only if something else follows.
+void LinkAccounts::keep_open(std::uint64_t before_hello) {
+    frames_before_hello_ = before_hello;
+    frames_.missing -= before_hello;
 }
 
 bool LinkAccounts::begins_grid(const glp_frame& frame, const glp_samples& samples) const {
@@ -160,14 +173,12 @@ void LinkAccounts::begin_run(std::uint64_t next_index, std::uint32_t lost_sample
 std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, const glp_samples& samples) {
     if (!take_number(frame, false)) { return std::nullopt; }
 
-    bool continues_grid = in_run_;
     if (begins_grid(frame, samples)) {
         const bool start_was_in_stream =
             in_run_ || start_seen_ || (frame.flags & glp_flag_first_after_start) != 0;
         const bool from_zero = start_was_in_stream && samples.first_index < implausible_jump;
         enter(tail_gap());
         begin_run(from_zero ? 0 : samples.first_index, from_zero ? 0 : samples.lost_samples);
-        continues_grid = false;
     } else if (samples.config_generation != generation_ || samples.layout != layout_ ||
                (frame.flags & glp_flag_time_discontinuity) != 0) {
         ++run_;
@@ -191,7 +202,7 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
     told_flags_ = 0;
     booted_since_samples_ = false;
     tail_.reset();
-    return SamplePlace{boot_, run_, continues_grid};
+    return SamplePlace{boot_, run_};
 }
 
 // The board's part of a gap comes first: it counted exactly that many. The rest was lost on the way, if
@@ -211,10 +222,12 @@ std::vector<LinkDropout> LinkAccounts::split(std::uint64_t missing, std::uint64_
 }
 
 std::vector<LinkDropout> LinkAccounts::tail_gap() const {
-    if (!in_run_ || !tail_ || tail_->next_index <= next_index_ + tail_->pending) { return {}; }
-    const std::uint64_t missing = tail_->next_index - next_index_ - tail_->pending;
-    if (missing >= implausible_jump) { return {}; }
-    return split(missing, lost_unplaced_ + counted_up(lost_samples_, tail_->lost_samples), 0);
+    if (!in_run_ || !tail_ || tail_->next_index <= next_index_) { return {}; }
+    const std::uint64_t passed = tail_->next_index - next_index_;
+    if (passed >= implausible_jump) { return {}; }
+    const std::uint64_t lost = lost_unplaced_ + counted_up(lost_samples_, tail_->lost_samples);
+    const std::uint64_t missing = std::max(passed - std::min(passed, tail_->pending), std::min(passed, lost));
+    return missing > 0 ? split(missing, lost, 0) : std::vector<LinkDropout>();
 }
 
 void LinkAccounts::enter(const std::vector<LinkDropout>& gap) {
@@ -233,6 +246,7 @@ LinkReport LinkAccounts::report(const FrameDecoder& decoder) const {
     report.bytes = decoder.bytes();
     report.bytes_skipped_at_head = decoder.bytes_skipped_at_head();
     report.frames = frames_;
+    report.frames.missing += frames_before_hello_;
     for (std::size_t reason = 0; reason < glp_status_count; ++reason) {
         report.frames.corrupted_by_reason[reason] = decoder.rejected()[reason] + decoder.malformed()[reason];
         report.frames.corrupted += report.frames.corrupted_by_reason[reason];

@@ -41,9 +41,11 @@ struct LinkDropout {
 };
 
 struct FrameAccounts {
-    std::uint64_t good = 0;        // intact, well formed, new
-    std::uint64_t missing = 0;     // numbers left out
-    std::uint64_t duplicated = 0;  // intact, but came before
+    std::uint64_t good = 0;     // intact, well formed, new
+    std::uint64_t missing = 0;  // numbers left out
+    std::uint64_t dropped_at_start =
+        0;  // numbers left out where the board throws away what was waiting: not missing
+    std::uint64_t duplicated = 0;  // intact, but not new: came before, or stale
     std::uint64_t corrupted =
         0;  // refused candidates and malformed messages; a missing number usually goes with one
     std::array<std::uint64_t, glp_status_count> corrupted_by_reason{};
@@ -74,7 +76,6 @@ struct LinkReport {
 struct SamplePlace {
     std::uint32_t boot = 0;
     std::uint32_t run = 0;
-    bool continues_grid = false;  // the run's indices go on from the run before it
 };
 
 // Each take_ call is given one frame, in the order of arrival. False or no value means: this frame is a
@@ -101,15 +102,11 @@ private:
         std::uint64_t pending = 0;
         std::uint32_t lost_samples = 0;
     };
-    // Enough of a frame to know it again.
-    struct Fingerprint {
-        std::uint64_t value = 0;
-        std::uint32_t sequence = 0;
-        bool used = false;
-    };
 
     bool take_number(const glp_frame& frame, bool new_boot);
     void begin_boot();
+    void keep_open(std::uint64_t before_hello);
+    std::uint64_t pending_max() const;
     void begin_run(std::uint64_t next_index, std::uint32_t lost_samples);
     bool begins_grid(const glp_frame& frame, const glp_samples& samples) const;
     std::vector<LinkDropout> split(std::uint64_t missing, std::uint64_t lost, std::uint16_t flags) const;
@@ -120,7 +117,7 @@ private:
     std::uint64_t intact_ = 0;
     std::uint64_t malformed_ = 0;  // of the intact ones that were new
     std::optional<std::uint32_t> next_sequence_;
-    std::array<Fingerprint, 256> recent_{};
+    std::uint64_t frames_before_hello_ = 0;  // left out, and perhaps thrown away by a start
     std::optional<std::uint32_t> boot_id_;
     std::uint32_t boot_ = 0;
     bool booted_since_samples_ = false;

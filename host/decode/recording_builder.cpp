@@ -14,7 +14,7 @@ constexpr double rate_tolerance = 0.03;       // the sensor's clock is good to 1
 constexpr double longest_pause_s = 1e9;
 
 bool same_setting(const glp_config& a, const glp_config& b) {
-    return a.layout == b.layout && a.rate_mHz == b.rate_mHz &&
+    return a.layout == b.layout && a.rate_mHz == b.rate_mHz && a.decimation == b.decimation &&
            a.gyro_full_scale_dps == b.gyro_full_scale_dps && a.accel_full_scale_g == b.accel_full_scale_g &&
            a.dlpf_hz == b.dlpf_hz && a.gyro_ndps_per_lsb == b.gyro_ndps_per_lsb &&
            a.accel_pg_per_lsb == b.accel_pg_per_lsb && a.temp_nC_per_lsb == b.temp_nC_per_lsb &&
@@ -106,8 +106,7 @@ void RecordingBuilder::append(const SamplePlace& place, const glp_samples& sampl
         samples.first_index - pieces.back().first_index == pieces.back().count) {
         pieces.back().count += samples.count;
     } else {
-        pieces.push_back(
-            {place.boot, place.run, place.continues_grid, samples.first_index, current_.rows, samples.count});
+        pieces.push_back({place.boot, place.run, samples.first_index, current_.rows, samples.count});
     }
     current_.rows += samples.count;
 }
@@ -137,19 +136,18 @@ std::vector<RecordingBuilder::RunOrigin> RecordingBuilder::place_on_grid(const s
             const RunOrigin& before = origins.back();
             const Segment& last = recording.segments.back();
             const std::int64_t end = last.first_index + static_cast<std::int64_t>(last.count);
-            std::int64_t grid = before.grid_index(piece.first_index);
-            if (!piece.continues_grid) {
-                const std::uint64_t end_index =
-                    before.first_index + static_cast<std::uint64_t>(end - before.grid);
-                const auto from = timeline.device_time_s(before.run, end_index, recording.rate_hz);
-                const auto to = timeline.device_time_s(piece.run, piece.first_index, recording.rate_hz);
-                const double pause_s = from && to ? *to - *from : -1.0;
-                grid = end + std::llround(std::clamp(pause_s, 0.0, longest_pause_s) * recording.rate_hz);
-                if (pause_s < 0.0) {
-                    recording.warnings.emplace_back("a restart's pause is not known: joined without one");
-                }
+            const std::uint64_t end_index =
+                before.first_index + static_cast<std::uint64_t>(end - before.grid);
+            const auto from = timeline.device_time_s(before.run, end_index, recording.rate_hz);
+            const auto to = timeline.device_time_s(piece.run, piece.first_index, recording.rate_hz);
+            std::int64_t grid = end;
+            if (from && to) {
+                grid += std::llround(std::clamp(*to - *from, 0.0, longest_pause_s) * recording.rate_hz);
+            } else {
+                recording.warnings.emplace_back(
+                    "the pause before a restart is not known: joined without one");
             }
-            origins.push_back({piece.run, piece.first_index, std::max(grid, end)});
+            origins.push_back({piece.run, piece.first_index, grid});
         }
         recording.segments.push_back(
             {piece.first, piece.count, origins.back().grid_index(piece.first_index)});
@@ -218,6 +216,10 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
     for (const Quantity& quantity : quantities(stretch.layout, *stretch.config)) {
         recording.columns.push_back({quantity.name, quantity.unit, std::move(stretch.fields[field++]),
                                      quantity.scale, quantity.offset});
+    }
+    if (stretch.config->decimation > 1) {
+        recording.warnings.push_back("the board took every " + std::to_string(stretch.config->decimation) +
+                                     "th sample without a filter: faster noise is folded in");
     }
     if (stretch.pieces.front().boot != stretch.pieces.back().boot) {
         recording.warnings.emplace_back("the board was reset: the pause is known by the host's clock only");

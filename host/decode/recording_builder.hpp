@@ -38,7 +38,6 @@ private:
     struct Piece {
         std::uint32_t boot = 0;
         std::uint32_t run = 0;
-        bool continues_grid = false;
         std::uint64_t first_index = 0;  // in its run
         std::size_t first = 0;          // row
         std::size_t count = 0;

@@ -45,13 +45,9 @@ void SampleTimeline::take_hello(const glp_hello& hello) {
 
 // The counter may go round more than once while nothing is sampled: the host's clock then says how often. It
 // never takes a turn away, because a source that does not wait is faster than its own time.
-std::int64_t SampleTimeline::ticks_since_last(const glp_samples& samples, std::uint16_t flags,
-                                              std::int64_t arrival_ns) const {
+std::int64_t SampleTimeline::ticks_since_last(const glp_samples& samples, std::int64_t arrival_ns) const {
     const double host_s = static_cast<double>(arrival_ns - arrival_ns_) * 1e-9;
     const double tick_hz = tick_hz_.value_or(0);
-    if ((flags & glp_flag_time_discontinuity) != 0) {
-        return static_cast<std::int64_t>(std::clamp(host_s * tick_hz, 0.0, 1e18));
-    }
     const std::uint64_t step = (samples.first_ticks - *raw_ticks_) & tick_mask_;
     if (step > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) / 4) { return 0; }
     double turns = 0.0;
@@ -64,8 +60,7 @@ std::int64_t SampleTimeline::ticks_since_last(const glp_samples& samples, std::u
     return static_cast<std::int64_t>(step) + (turned < 1e18 ? static_cast<std::int64_t>(turned) : 0);
 }
 
-void SampleTimeline::take_samples(const SamplePlace& place, const glp_samples& samples, std::uint16_t flags,
-                                  HostTime arrival) {
+void SampleTimeline::take_samples(const SamplePlace& place, const glp_samples& samples, HostTime arrival) {
     // A damaged file may claim any time; far from the ends of the type, differences cannot overflow.
     constexpr std::int64_t far_ns = std::numeric_limits<std::int64_t>::max() / 4;
     const std::int64_t arrival_ns = std::clamp(arrival.monotonic_ns, -far_ns, far_ns);
@@ -74,7 +69,7 @@ void SampleTimeline::take_samples(const SamplePlace& place, const glp_samples& s
         boots_.push_back({place.boot, arrival_ns});
         ticks_ = 0;
     } else {
-        const std::int64_t step = ticks_since_last(samples, flags, arrival_ns);
+        const std::int64_t step = ticks_since_last(samples, arrival_ns);
         if (step > std::numeric_limits<std::int64_t>::max() / 2 - ticks_) { return; }
         ticks_ += step;
     }

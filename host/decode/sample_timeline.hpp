@@ -41,8 +41,7 @@ struct HostClockFit {
 class SampleTimeline {
 public:
     void take_hello(const glp_hello& hello);
-    void take_samples(const SamplePlace& place, const glp_samples& samples, std::uint16_t flags,
-                      HostTime arrival);
+    void take_samples(const SamplePlace& place, const glp_samples& samples, HostTime arrival);
 
     // Over runs first_run ... last_run, which must have one configuration. No value without three stamps or
     // tick_hz.
@@ -80,8 +79,7 @@ private:
         std::int64_t arrival_ns = 0;  // of its first SAMPLES frame
     };
 
-    std::int64_t ticks_since_last(const glp_samples& samples, std::uint16_t flags,
-                                  std::int64_t arrival_ns) const;
+    std::int64_t ticks_since_last(const glp_samples& samples, std::int64_t arrival_ns) const;
     void keep(Run& run, const Stamp& stamp) const;
     const Run* find(std::uint32_t number) const;
     double start_of(const Run& run) const;  // device time of its first sample

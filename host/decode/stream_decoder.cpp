@@ -20,7 +20,7 @@ void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& sa
     const std::optional<SamplePlace> place = accounts_.take_samples(frame.frame, samples);
     if (!place) { return; }
     run_ = place->run;
-    timeline_.take_samples(*place, samples, frame.frame.flags, frame.arrival);
+    timeline_.take_samples(*place, samples, frame.arrival);
     if (options_.keep_samples) { builder_.take_samples(*place, samples); }
     if (options_.observer != nullptr) { options_.observer->on_samples(frame, samples); }
 }

@@ -1,0 +1,216 @@
+// From a stream to columns, segments and times.
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/host/decode/made_stream.hpp"
+
+namespace gyrolog {
+namespace {
+
+const std::vector<std::int16_t>& counts(const Recording& recording, std::string_view name) {
+    const Column* column = recording.find(name);
+    EXPECT_NE(column, nullptr) << name;
+    return std::get<std::vector<std::int16_t>>(column->data);
+}
+
+TEST(DecodedRecording, HoldsEveryCountInItsColumn) {
+    Listening link;
+    link.begin();
+    link.hear_samples(99);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(recording->name, "bench");
+    EXPECT_EQ(recording->rows(), 1600U);
+    const char* names[] = {"gx", "gy", "gz", "ax", "ay", "az"};
+    for (std::size_t field = 0; field < 6; ++field) {
+        const auto& column = counts(*recording, names[field]);
+        for (std::size_t i = 0; i < column.size(); ++i) { ASSERT_EQ(column[i], made_value(i, field)); }
+    }
+    EXPECT_EQ(counts(*recording, "temp"), std::vector<std::int16_t>(1600, 100));
+    ASSERT_EQ(recording->segments.size(), 1U);
+    EXPECT_EQ(recording->segments[0].count, 1600U);
+    EXPECT_TRUE(recording->dropouts.empty());
+    EXPECT_TRUE(recording->warnings.empty());
+}
+
+TEST(DecodedRecording, GivesValuesInTheirUnits) {
+    Listening link;
+    link.begin();
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    // One count at 500 deg/s full scale is 1/65.5 deg/s; at 8 g it is 1/4096 g (MPU-9250 product
+    // specification, tables 1 and 2). The temperature is counts/333.87 + 21 degC (register map, 4.23).
+    EXPECT_NEAR(recording->find("gy")->value(3), made_value(3, 1) / 65.5 * std::numbers::pi / 180.0, 1e-6);
+    EXPECT_NEAR(recording->find("az")->value(3), made_value(3, 5) / 4096.0 * 9.80665, 1e-9);
+    EXPECT_NEAR(recording->find("temp")->value(0), 100 / 333.87 + 21.0, 1e-6);
+}
+
+TEST(DecodedRecording, LeavesAHoleOfTheTrueLengthForADropout) {
+    Listening link;
+    link.begin();
+    link.hear_samples(9);
+    link.board.lose_samples(12);
+    link.hear(link.board.samples_frame(glp_flag_sensor_fifo_overflow));
+    link.hear_samples(200);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    ASSERT_EQ(recording->segments.size(), 2U);
+    EXPECT_EQ(recording->segments[1].first, 160U);
+    EXPECT_EQ(recording->segments[1].first_index, 172);
+    EXPECT_EQ(recording->missing_samples(), 12);
+    ASSERT_EQ(recording->dropouts.size(), 1U);
+    EXPECT_EQ(recording->dropouts[0].samples, 12);
+    EXPECT_EQ(recording->dropouts[0].cause, "sensor_fifo_overflow");
+    EXPECT_NEAR(recording->dropouts[0].at_s, 160 / 1003.0, 1e-5);
+    EXPECT_EQ(counts(*recording, "gx")[160], made_value(172, 0));
+}
+
+TEST(DecodedRecording, EstimatesTheSensorsRateWithinItsUncertainty) {
+    Listening link;
+    link.begin();
+    link.hear_samples(1000);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    ASSERT_TRUE(recording->rate_sd_hz);
+    EXPECT_EQ(recording->nominal_rate_hz, 1000.0);
+    EXPECT_EQ(recording->stamps, StampKind::sampling);
+    EXPECT_LT(std::abs(recording->rate_hz - 1003.0), 5.0 * *recording->rate_sd_hz);
+    // 1001 stamps of 1 us over 16 s: sd of the slope is (1 us / sqrt(12)) / (16 s / sqrt(12) * sqrt(1001)) =
+    // 2e-9.
+    EXPECT_NEAR(*recording->rate_sd_hz / 1003.0, 2e-9, 1e-9);
+}
+
+TEST(DecodedRecording, SetsARestartApartByTheBoardsTicks) {
+    Listening link;
+    link.begin();
+    link.hear_samples(99);
+    link.hear(link.board.event_frame(glp_event_stopped));
+    link.board.restart(1600 / 1003.0 + 7.25);
+    link.hear(link.board.samples_frame(glp_flag_first_after_start));
+    link.hear_samples(99);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    ASSERT_EQ(recording->segments.size(), 2U);
+    EXPECT_EQ(recording->segments[1].first_index, std::llround(1600 + 7.25 * 1003.0));
+    EXPECT_TRUE(recording->dropouts.empty());
+}
+
+TEST(DecodedRecording, SetsAResetApartByTheHostsClock) {
+    Listening link;
+    link.begin();
+    link.hear_samples(99);
+    link.board.hello.boot_id = 2;
+    link.board.sequence = 0;
+    link.board.restart(30.0);
+    link.board.ticks_offset = static_cast<std::uint64_t>(-29'000'000LL);
+    link.begin();
+    link.hear_samples(99);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    ASSERT_EQ(recording->segments.size(), 2U);
+    EXPECT_NEAR(static_cast<double>(recording->segments[1].first_index), 30.0 * 1003.0, 2.0);
+    ASSERT_EQ(recording->warnings.size(), 1U);
+}
+
+TEST(DecodedRecording, KeepsTheLongestConfigurationAndNamesTheRest) {
+    Listening link;
+    link.begin();
+    link.hear_samples(9);
+    link.board.config.generation = 2;
+    link.board.config.gyro_ndps_per_lsb = 60'975'610;
+    link.hear(link.board.config_frame());
+    link.hear_samples(50);
+    link.board.config.generation = 3;
+    link.board.layout = link.board.config.layout = glp_layout_gyro;
+    link.hear(link.board.config_frame());
+    link.hear_samples(20);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_EQ(recording->rows(), 800U);
+    EXPECT_EQ(recording->segments[0].first_index, 0);
+    EXPECT_NEAR(recording->columns[0].scale, 60'975'610e-9 * std::numbers::pi / 180.0, 1e-15);
+    ASSERT_EQ(recording->warnings.size(), 1U);
+    EXPECT_NE(recording->warnings[0].find("480 samples"), std::string::npos);
+    EXPECT_EQ(counts(*recording, "gx")[0], made_value(160, 0));
+}
+
+TEST(DecodedRecording, LearnsTheScaleOfEarlierSamplesWhenItJoinsAStream) {
+    Listening link;
+    link.hear_samples(10);
+    link.hear(link.board.hello_frame());
+    link.hear(link.board.config_frame());
+    link.hear_samples(10);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_EQ(recording->rows(), 320U);
+}
+
+TEST(DecodedRecording, RefusesToGuessAScale) {
+    Listening link;
+    link.hear_samples(10);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_FALSE(recording.ok());
+    EXPECT_EQ(recording.error().code, ErrorCode::malformed);
+}
+
+TEST(SampleTimeline, FollowsTicksThatGoRound) {
+    Listening link;
+    link.board.hello.tick_bits = 32;
+    link.board.ticks_offset = 0xFFFF'FFFFU - 3'000'000U;
+    link.begin();
+    link.hear_samples(1000);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_NEAR(recording->rate_hz, 1003.0, 1e-4);
+    EXPECT_LT(*recording->stamp_jitter_s, 1e-6);
+}
+
+TEST(SampleTimeline, AsksTheHostHowOftenTicksWentRoundInAPause) {
+    Listening link;
+    link.begin();
+    link.hear_samples(99);
+    const double pause_s = 3.0 * 4294.967296 + 100.0;
+    link.board.restart(1600 / 1003.0 + pause_s);
+    link.hear(link.board.samples_frame(glp_flag_first_after_start));
+    link.hear_samples(99);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    ASSERT_EQ(recording->segments.size(), 2U);
+    EXPECT_EQ(recording->segments[1].first_index, std::llround(1600 + pause_s * recording->rate_hz));
+}
+
+TEST(SampleTimeline, FindsTheBoardsClockUnderLateArrivals) {
+    Listening link;
+    link.board.host_ratio = 1.0 + 40e-6;
+    std::mt19937 random(3);
+    std::exponential_distribution<double> late(1.0 / 0.004);
+    link.begin();
+    for (int i = 0; i < 20000; ++i) {
+        link.board.delay_s = 0.001 + late(random);
+        link.hear(link.board.samples_frame());
+    }
+    const auto fit = link.decoder.timeline().host_clock();
+    ASSERT_TRUE(fit);
+    EXPECT_LT(fit->ratio_sd, 1e-6);
+    EXPECT_LT(std::abs(fit->ratio - link.board.host_ratio), 5.0 * fit->ratio_sd);
+    // Device time 0 is host time 100 s; the smallest delay adds to it. The frame is stamped by hear() a
+    // period after its last sample.
+    EXPECT_NEAR(fit->offset_s, 100.0 + 0.001 + 1.0 / 1003.0, 5.0 * fit->offset_sd_s + 1e-4);
+}
+
+TEST(SampleTimeline, ItsMemoryDoesNotGrowWithTheStream) {
+    Listening link;
+    link.begin();
+    link.hear_samples(30'000);
+    const auto rate = link.decoder.timeline().rate(0, 0);
+    ASSERT_TRUE(rate);
+    EXPECT_LE(rate->stamps, 1024U);
+    EXPECT_GE(rate->stamps, 512U);
+    EXPECT_NEAR(rate->rate_hz, 1003.0, 5.0 * rate->sd_hz);
+}
+
+}  // namespace
+}  // namespace gyrolog
