@@ -27,7 +27,7 @@ if(GYROLOG_SANITIZE)
     -fno-sanitize-recover=all)
   target_link_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE})
   # -Wmaybe-uninitialized misfires on instrumented code.
-  target_compile_options(gyrolog_settings INTERFACE -Wno-maybe-uninitialized)
+  target_compile_options(gyrolog_settings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
 if(GYROLOG_FUZZ)
   target_compile_options(gyrolog_settings INTERFACE -fsanitize=fuzzer-no-link)
