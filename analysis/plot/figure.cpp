@@ -32,6 +32,14 @@ std::string problem_with(const Figure& figure) {
     const double least_height_px = (130.0 + 230.0 * static_cast<double>(figure.panels.size())) * figure.scale;
     const bool fits = figure.width_px >= least_width_px && figure.height_px >= least_height_px &&
                       figure.width_px <= largest_px && figure.height_px <= largest_px;
+    for (const Panel& panel : figure.panels) {
+        for (const AxisSpec* axis : {&panel.x, &panel.y}) {
+            if (axis->range && !can_scale(axis->kind, *axis->range)) {
+                return "draw an axis from " + std::to_string(axis->range->lo) + " to " +
+                       std::to_string(axis->range->hi) + ": not a range";
+            }
+        }
+    }
     if (fits) { return {}; }
     return "draw a figure of " + size_text(figure.width_px, figure.height_px) +
            " pixels: with letters of this scale " + size_text(least_width_px, least_height_px) + " to " +

@@ -67,7 +67,7 @@ std::string rounded_number(double value, int significant_digits) {
 
 std::string number_with_uncertainty(double value, std::optional<double> uncertainty) {
     const bool usable = uncertainty && std::isfinite(*uncertainty) && *uncertainty > 0.0 &&
-                        std::isfinite(value) && *uncertainty > 1e-6 * std::fabs(value);
+                        std::isfinite(value) && *uncertainty > 1e-12 * std::fabs(value);
     if (!usable) { return rounded_number(value); }
     const int uncertainty_exponent = decimal_exponent(*uncertainty, 2);
     const int value_exponent = value == 0.0 ? uncertainty_exponent : decimal_exponent(std::fabs(value), 3);

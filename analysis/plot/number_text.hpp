@@ -15,7 +15,7 @@ std::string fixed_decimal(double value, int decimals);
 std::string rounded_number(double value, int significant_digits = 3);
 
 // The short form of GUM:2008 7.2.2 example 2, two digits of the standard uncertainty: "5.12(13)×10⁻³".
-// Without a usable uncertainty, or one below a millionth of the value, three digits of the value alone.
+// Without a usable uncertainty, or one beyond what a double can tell apart, three digits of the value alone.
 std::string number_with_uncertainty(double value, std::optional<double> uncertainty);
 
 }  // namespace gyrolog

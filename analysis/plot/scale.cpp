@@ -148,6 +148,15 @@ bool keep_apart(const Ticks& ticks, const Scale& scale, double min_apart_px,
 
 }  // namespace
 
+bool can_scale(ScaleKind kind, Range range) {
+    const double largest = std::max(std::fabs(range.lo), std::fabs(range.hi));
+    if (!(largest <= 10.0 * largest_shown) || !(range.hi > range.lo)) { return false; }
+    if (kind == ScaleKind::logarithmic) {
+        return range.lo >= 0.1 / largest_shown && range.hi / range.lo > 1.0 + 1e-9;
+    }
+    return range.hi - range.lo > 1e-10 * largest && range.hi - range.lo > 0.1 / largest_shown;
+}
+
 double Scale::pixel(double value) const {
     if (!std::isfinite(value)) { return std::numeric_limits<double>::quiet_NaN(); }
     if (kind == ScaleKind::linear) {
@@ -179,7 +188,8 @@ Ticks fit_ticks(const Scale& scale, double min_apart_px,
 
 void RangeFinder::add(double value) {
     if (!(std::fabs(value) <= largest_shown)) { return; }
-    if (kind_ == ScaleKind::logarithmic && value < 1.0 / largest_shown) { return; }
+    if (std::fabs(value) < 1.0 / largest_shown) { value = 0.0; }
+    if (kind_ == ScaleKind::logarithmic && value <= 0.0) { return; }
     if (!found_) { found_ = Range{value, value}; }
     found_->lo = std::min(found_->lo, value);
     found_->hi = std::max(found_->hi, value);

