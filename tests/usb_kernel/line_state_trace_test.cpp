@@ -7,8 +7,10 @@ namespace {
 
 // As a 6.1 kernel wrote them while a terminal was opened and closed.
 constexpr std::string_view opened_and_closed =
-    "          <idle>-0       [001] dNs2.     2.939961: line_state: (acm_setup+0x0/0x1aa [usb_f_acm]) request=34 value=3\n"
-    "          <idle>-0       [001] d.s2.     2.944460: line_state: (acm_setup+0x0/0x1aa [usb_f_acm]) request=34 value=0\n";
+    "          <idle>-0       [001] dNs2.     2.939961: line_state: (acm_setup+0x0/0x1aa [usb_f_acm]) "
+    "request=34 value=3\n"
+    "          <idle>-0       [001] d.s2.     2.944460: line_state: (acm_setup+0x0/0x1aa [usb_f_acm]) "
+    "request=34 value=0\n";
 
 TEST(LineStateTrace, TellsTheValueOfEachRequest) {
     LineStateTrace trace;

@@ -11,15 +11,17 @@ namespace {
 Bytes words(std::initializer_list<std::uint32_t> values) {
     Bytes bytes;
     for (const std::uint32_t value : values) {
-        for (const unsigned shift : {24U, 16U, 8U, 0U}) { bytes.push_back(static_cast<std::uint8_t>(value >> shift)); }
+        for (const unsigned shift : {24U, 16U, 8U, 0U}) {
+            bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+        }
     }
     return bytes;
 }
 
 // The exchange printed in the kernel's "USB/IP protocol", section Example.
 Bytes published_interrupt_in() {
-    return words({0x00000001, 0x00000d05, 0x0001000f, 0x00000001, 0x00000001, 0x00000200, 0x00000040, 0xffffffff,
-                  0x00000000, 0x00000004, 0x00000000, 0x00000000});
+    return words({0x00000001, 0x00000d05, 0x0001000f, 0x00000001, 0x00000001, 0x00000200, 0x00000040,
+                  0xffffffff, 0x00000000, 0x00000004, 0x00000000, 0x00000000});
 }
 
 Bytes published_interrupt_out() {
@@ -64,7 +66,8 @@ TEST(UsbIp, ReadsThePublishedExchange) {
 }
 
 TEST(UsbIp, AnswersLikeThePublishedExchange) {
-    // The published replies hold 0xffffffff as start frame, which has a meaning for isochronous transfers only.
+    // The published replies hold 0xffffffff as start frame, which has a meaning for isochronous transfers
+    // only.
     const Bytes published = words({0x00000003, 0x00000d06, 0, 0, 0, 0, 0x00000040, 0xffffffff, 0, 0, 0, 0});
     Bytes reply;
     append_submit_reply(reply, 0xd06, 0, 64, {});
@@ -86,7 +89,9 @@ TEST(UsbIp, ReadsTheSameCommandsHoweverTheStreamIsCut) {
             while (const auto command = next(reader)) {
                 ++commands;
                 EXPECT_EQ(std::holds_alternative<Unlink>(*command), commands == 2) << "cut at " << cut;
-                if (const auto* given_up = std::get_if<Unlink>(&*command)) { EXPECT_EQ(given_up->target, 0xd05U); }
+                if (const auto* given_up = std::get_if<Unlink>(&*command)) {
+                    EXPECT_EQ(given_up->target, 0xd05U);
+                }
             }
         }
         EXPECT_EQ(commands, 2U) << "cut at " << cut;

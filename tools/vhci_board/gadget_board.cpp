@@ -1,5 +1,5 @@
-// The virtual board behind the kernel's own ACM gadget function: a USB device whose descriptors, requests and packets
-// are the kernel's. The gadget itself is set up through configfs by whoever starts this program.
+// The virtual board behind the kernel's own ACM gadget function: a USB device whose descriptors, requests and
+// packets are the kernel's. The gadget itself is set up through configfs by whoever starts this program.
 #include <iostream>
 #include <string>
 
@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
     std::string line_state_path = "/sys/kernel/tracing/trace_pipe";
     command.declare(app);
     app.add_option("--tty", tty_path, "device side of the serial gadget")->capture_default_str();
-    app.add_option("--line-state", line_state_path, "trace pipe that tells the host's SET_CONTROL_LINE_STATE requests")
+    app.add_option("--line-state", line_state_path,
+                   "trace pipe that tells the host's SET_CONTROL_LINE_STATE requests")
         ->capture_default_str();
     CLI11_PARSE(app, argc, argv);
 

@@ -6,8 +6,8 @@
 
 namespace gyrolog {
 
-// The firmware counts from each start and keeps the counts after a stop. A start that follows a stop between two looks
-// (a CONFIGURE restarts the stream) shows by instants that count from 0 again.
+// The firmware counts from each start and keeps the counts after a stop. A start that follows a stop between
+// two looks (a CONFIGURE restarts the stream) shows by instants that count from 0 again.
 void SessionLog::observe(const VirtualBoard& board) {
     const std::uint64_t instants = board.sampling_instants();
     const bool restarted = streaming_ && instants < instants_;

@@ -31,7 +31,9 @@ private:
     std::vector<StreamingSession> sessions_;
 };
 
-// {"schema": "gyrolog-board-report/1", "serial": "S1", "sessions": [{"samples": 30012, "samples_lost": 0, ...}]}
-Status write_report(const std::string& path, const std::string& serial, const std::vector<StreamingSession>& sessions);
+// {"schema": "gyrolog-board-report/1", "serial": "S1", "sessions": [{"samples": 30012, "samples_lost": 0,
+// ...}]}
+Status write_report(const std::string& path, const std::string& serial,
+                    const std::vector<StreamingSession>& sessions);
 
 }  // namespace gyrolog

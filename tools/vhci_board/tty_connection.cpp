@@ -8,11 +8,10 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <gyrolog_protocol/usb_identity.h>
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>
-
-#include <gyrolog_protocol/usb_identity.h>
 
 #include "host/base/clock.hpp"
 #include "host/virtual_board/usb_function.hpp"
@@ -45,7 +44,9 @@ private:
 
 Result<Descriptor> open_for_polling(const std::string& path, int flags) {
     Descriptor file(::open(path.c_str(), flags | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
-    if (file.number() < 0) { return Error{ErrorCode::failed, "open '" + path + "': " + std::strerror(errno)}; }
+    if (file.number() < 0) {
+        return Error{ErrorCode::failed, "open '" + path + "': " + std::strerror(errno)};
+    }
     return file;
 }
 
@@ -70,7 +71,8 @@ public:
     }
 
     void set_line_state(unsigned value) {
-        function_.control({0x21, GLP_CDC_SET_CONTROL_LINE_STATE, static_cast<std::uint8_t>(value), 0, 0, 0, 0, 0}, {});
+        function_.control(
+            {0x21, GLP_CDC_SET_CONTROL_LINE_STATE, static_cast<std::uint8_t>(value), 0, 0, 0, 0, 0}, {});
         log_.observe(board_);
     }
 
@@ -131,8 +133,9 @@ private:
 
 }  // namespace
 
-Status serve_tty_connection(VirtualBoard& board, const std::string& tty_path, const std::string& line_state_path,
-                            SessionLog& log, const volatile std::sig_atomic_t& stop) {
+Status serve_tty_connection(VirtualBoard& board, const std::string& tty_path,
+                            const std::string& line_state_path, SessionLog& log,
+                            const volatile std::sig_atomic_t& stop) {
     GYROLOG_TRY(const Descriptor trace, open_for_polling(line_state_path, O_RDONLY));
     GYROLOG_TRY(Descriptor tty, open_tty(tty_path));
     TtyFeeder feeder(board, log);

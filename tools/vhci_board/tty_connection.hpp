@@ -10,9 +10,10 @@
 
 namespace gyrolog {
 
-// `line_state_path`: a trace_pipe with the probe that LineStateTrace reads. The terminal hangs up when the host is
-// gone; it is opened again for the next one, with DTR low until that host raises it.
-Status serve_tty_connection(VirtualBoard& board, const std::string& tty_path, const std::string& line_state_path,
-                            SessionLog& log, const volatile std::sig_atomic_t& stop);
+// `line_state_path`: a trace_pipe with the probe that LineStateTrace reads. The terminal hangs up when the
+// host is gone; it is opened again for the next one, with DTR low until that host raises it.
+Status serve_tty_connection(VirtualBoard& board, const std::string& tty_path,
+                            const std::string& line_state_path, SessionLog& log,
+                            const volatile std::sig_atomic_t& stop);
 
 }  // namespace gyrolog

@@ -87,8 +87,8 @@ bool UrbServer::fail_by_fault(double streaming_s) {
 }
 
 void UrbServer::complete_front(int status, ByteView data) {
-    usbip::append_submit_reply(replies_, bulk_in_.front().sequence, status, static_cast<std::uint32_t>(data.size()),
-                               data);
+    usbip::append_submit_reply(replies_, bulk_in_.front().sequence, status,
+                               static_cast<std::uint32_t>(data.size()), data);
     bulk_in_.pop_front();
 }
 

@@ -29,7 +29,8 @@ void store_u32(std::uint8_t* bytes, std::uint32_t value) {
     for (unsigned i = 0; i < 4; ++i) { bytes[i] = static_cast<std::uint8_t>(value >> (24U - 8U * i)); }
 }
 
-void append_reply(Bytes& out, CommandCode code, std::uint32_t sequence, int status, std::uint32_t actual_bytes) {
+void append_reply(Bytes& out, CommandCode code, std::uint32_t sequence, int status,
+                  std::uint32_t actual_bytes) {
     std::array<std::uint8_t, header_bytes> header{};
     store_u32(&header[at_command], code);
     store_u32(&header[at_sequence], sequence);
@@ -71,7 +72,8 @@ Result<std::optional<Command>> CommandReader::next() {
     return std::optional<Command>{std::move(command)};
 }
 
-void append_submit_reply(Bytes& out, std::uint32_t sequence, int status, std::uint32_t actual_bytes, ByteView data) {
+void append_submit_reply(Bytes& out, std::uint32_t sequence, int status, std::uint32_t actual_bytes,
+                         ByteView data) {
     append_reply(out, ret_submit, sequence, status, actual_bytes);
     out.insert(out.end(), data.begin(), data.end());
 }

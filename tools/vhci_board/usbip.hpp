@@ -1,6 +1,7 @@
-// USB/IP as vhci_hcd speaks it once a device is attached: the kernel sends URBs to carry out, the device answers each.
-// Source: Linux kernel documentation, "USB/IP protocol". Every message is a header of 48 bytes in network byte order
-// and, for data that travel, the data. Isochronous transfers are left out: the board has none.
+// USB/IP as vhci_hcd speaks it once a device is attached: the kernel sends URBs to carry out, the device
+// answers each. Source: Linux kernel documentation, "USB/IP protocol". Every message is a header of 48 bytes
+// in network byte order and, for data that travel, the data. Isochronous transfers are left out: the board
+// has none.
 #pragma once
 
 #include <array>
@@ -40,17 +41,18 @@ class CommandReader {
 public:
     void append(ByteView bytes) { buffer_.insert(buffer_.end(), bytes.begin(), bytes.end()); }
 
-    // The next whole command, or nothing until more bytes come. Error `malformed`: a command that is not known or a
-    // transfer that is too long; the stream cannot be followed any further.
+    // The next whole command, or nothing until more bytes come. Error `malformed`: a command that is not
+    // known or a transfer that is too long; the stream cannot be followed any further.
     Result<std::optional<Command>> next();
 
 private:
     Bytes buffer_;
 };
 
-// USBIP_RET_SUBMIT. `status` is 0 or a negative errno; `actual_bytes` is what was moved; `data` follows for an IN
-// transfer and is then actual_bytes long.
-void append_submit_reply(Bytes& out, std::uint32_t sequence, int status, std::uint32_t actual_bytes, ByteView data);
+// USBIP_RET_SUBMIT. `status` is 0 or a negative errno; `actual_bytes` is what was moved; `data` follows for
+// an IN transfer and is then actual_bytes long.
+void append_submit_reply(Bytes& out, std::uint32_t sequence, int status, std::uint32_t actual_bytes,
+                         ByteView data);
 
 // USBIP_RET_UNLINK. -ECONNRESET when the URB was given up, 0 when its reply had already gone out.
 void append_unlink_reply(Bytes& out, std::uint32_t sequence, int status);

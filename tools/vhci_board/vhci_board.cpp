@@ -1,5 +1,5 @@
-// The virtual board as a USB device of this machine, on the kernel's virtual host controller. Needs root and the module
-// vhci-hcd; then `gyrolog --device usb:` finds it like any board.
+// The virtual board as a USB device of this machine, on the kernel's virtual host controller. Needs root and
+// the module vhci-hcd; then `gyrolog --device usb:` finds it like any board.
 #include <iostream>
 #include <optional>
 #include <string>
@@ -40,9 +40,12 @@ void wait_s(double duration_s) { ::poll(nullptr, 0, static_cast<int>(duration_s 
 Status run(const Options& options, SessionLog& log) {
     GYROLOG_TRY(const std::vector<LinkFault> faults, parse_faults(options.faults));
     std::vector<BoardFault> unplug;
-    if (options.unplug_after_s) { unplug.push_back({BoardFault::Kind::unplug, *options.unplug_after_s, 0.0}); }
+    if (options.unplug_after_s) {
+        unplug.push_back({BoardFault::Kind::unplug, *options.unplug_after_s, 0.0});
+    }
     GYROLOG_TRY(const auto board, options.board.power_on(1, unplug));
-    GYROLOG_TRY(const ConnectionEnd end, serve_vhci_connection(*board, options.port, faults, log, stop_signal));
+    GYROLOG_TRY(const ConnectionEnd end,
+                serve_vhci_connection(*board, options.port, faults, log, stop_signal));
     if (end != ConnectionEnd::unplugged || !options.replug_after_s) { return {}; }
 
     wait_s(*options.replug_after_s);
@@ -62,10 +65,13 @@ int main(int argc, char** argv) {
     options.board.declare(app);
     app.add_option("--port", options.port, "port of the controller; the first free one unless given");
     app.add_option("--fault", options.faults,
-                   "stall@S, babble@S or crc@S: one bulk transfer fails S seconds after the stream's start; repeatable")
+                   "stall@S, babble@S or crc@S: one bulk transfer fails S seconds after the stream's start; "
+                   "repeatable")
         ->allow_extra_args(false);
-    app.add_option("--unplug-after", options.unplug_after_s, "pull the board out S seconds after the stream's start");
-    app.add_option("--replug-after", options.replug_after_s, "and plug it in again, freshly booted, S seconds later");
+    app.add_option("--unplug-after", options.unplug_after_s,
+                   "pull the board out S seconds after the stream's start");
+    app.add_option("--replug-after", options.replug_after_s,
+                   "and plug it in again, freshly booted, S seconds later");
     CLI11_PARSE(app, argc, argv);
 
     catch_stop_signals();

@@ -18,8 +18,8 @@ enum class ConnectionEnd {
     detached,   // by the kernel's side
 };
 
-// Plugs the board in at `port` (the first free one unless given) and serves it. When this returns the board is
-// unplugged. `stop` is set by a signal handler.
+// Plugs the board in at `port` (the first free one unless given) and serves it. When this returns the board
+// is unplugged. `stop` is set by a signal handler.
 Result<ConnectionEnd> serve_vhci_connection(VirtualBoard& board, std::optional<unsigned> port,
                                             std::vector<LinkFault> faults, SessionLog& log,
                                             const volatile std::sig_atomic_t& stop);

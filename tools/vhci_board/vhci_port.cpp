@@ -21,7 +21,8 @@ constexpr const char* attach_path = "/sys/devices/platform/vhci_hcd.0/attach";
 constexpr int port_free = 4;
 constexpr int full_speed = 2;
 
-// A line of the status file is "hs  0003 004 ...": hub, port, state. Ports of the "ss" hub take SuperSpeed devices only.
+// A line of the status file is "hs  0003 004 ...": hub, port, state. Ports of the "ss" hub take SuperSpeed
+// devices only.
 std::optional<unsigned> first_free_port(std::istream& status) {
     std::string line;
     while (std::getline(status, line)) {
@@ -37,7 +38,9 @@ std::optional<unsigned> first_free_port(std::istream& status) {
 Error attach_error(int number) {
     const std::string message = std::string("attach to vhci_hcd: ") + std::strerror(number);
     if (number == ENOENT) { return {ErrorCode::not_found, message + " (modprobe vhci-hcd)"}; }
-    if (number == EACCES || number == EPERM) { return {ErrorCode::permission_denied, message + " (run as root)"}; }
+    if (number == EACCES || number == EPERM) {
+        return {ErrorCode::permission_denied, message + " (run as root)"};
+    }
     if (number == EBUSY) { return {ErrorCode::busy, message}; }
     return {ErrorCode::failed, message};
 }
@@ -46,7 +49,8 @@ Error attach_error(int number) {
 int attach(unsigned port, int kernel_socket) {
     const int file = ::open(attach_path, O_WRONLY | O_CLOEXEC);
     if (file < 0) { return errno; }
-    // The third number is the device's id on the remote machine. There is none; it must only differ between ports.
+    // The third number is the device's id on the remote machine. There is none; it must only differ between
+    // ports.
     const std::string line = std::to_string(port) + ' ' + std::to_string(kernel_socket) + ' ' +
                              std::to_string(0x10002U + port) + ' ' + std::to_string(full_speed);
     const ssize_t written = ::write(file, line.data(), line.size());
@@ -73,7 +77,8 @@ Result<VhciPort> VhciPort::plug_in(std::optional<unsigned> port) {
     return plugged;
 }
 
-VhciPort::VhciPort(VhciPort&& other) noexcept : socket_(std::exchange(other.socket_, -1)), port_(other.port_) {}
+VhciPort::VhciPort(VhciPort&& other) noexcept
+    : socket_(std::exchange(other.socket_, -1)), port_(other.port_) {}
 
 VhciPort& VhciPort::operator=(VhciPort&& other) noexcept {
     std::swap(socket_, other.socket_);

@@ -1,6 +1,6 @@
 // A place on the kernel's virtual host controller (vhci_hcd): the kernel takes what is plugged in there for a
-// full-speed USB device and talks USB/IP to it over a socket. Needs root and the module vhci-hcd; no network, no usbip
-// tool.
+// full-speed USB device and talks USB/IP to it over a socket. Needs root and the module vhci-hcd; no network,
+// no usbip tool.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,9 @@ namespace gyrolog {
 
 class VhciPort {
 public:
-    // Plugs in at `port`, or at the first free one. From here on the kernel enumerates the device: its commands must
-    // be answered. Errors: not_found (no vhci_hcd), permission_denied, busy (no free port), failed.
+    // Plugs in at `port`, or at the first free one. From here on the kernel enumerates the device: its
+    // commands must be answered. Errors: not_found (no vhci_hcd), permission_denied, busy (no free port),
+    // failed.
     static Result<VhciPort> plug_in(std::optional<unsigned> port);
 
     VhciPort(VhciPort&& other) noexcept;

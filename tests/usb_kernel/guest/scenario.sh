@@ -36,9 +36,9 @@ finish() {
     echo $job_status > "$1.exit"
 }
 
-# stop NAME: asks the job to end, as Ctrl-C does, and waits for it.
+# stop NAME: asks the job to end, as Ctrl-C does, unless it has ended by itself, and waits for it.
 stop() {
-    kill -INT "$(cat "$1.pid")"
+    kill -INT "$(cat "$1.pid")" 2> /dev/null || true
     finish "$1"
 }
 
