@@ -70,6 +70,7 @@ void BlockScanner::rewind() {
     accounts_.bytes_total = file_->size_bytes();
     offset_ = 0;
     own_section_ = true;
+    vouched_seen_ = false;
     interfaces_.clear();
 }
 
@@ -181,13 +182,13 @@ std::optional<CaptureBlock> BlockScanner::judge(ByteView bytes, bool searching) 
             block.kind = BlockKind::interface_description;
             return block;
         case pcapng::interface_statistics:
-            if (bytes.size() < 24 || (own_section_ && !checked_comment_follows(bytes, 20))) {
+            if (bytes.size() < 24 || (must_vouch(searching) && !checked_comment_follows(bytes, 20))) {
                 return std::nullopt;
             }
             block.kind = BlockKind::statistics;
             return block;
         case pcapng::enhanced_packet:
-            return judge_packet(bytes);
+            return judge_packet(bytes, searching);
         default:
             break;
     }
@@ -197,9 +198,13 @@ std::optional<CaptureBlock> BlockScanner::judge(ByteView bytes, bool searching) 
     return block;
 }
 
+// Editors keep an own section's header but drop its packets' hashes: the first packet shows whether there are
+// any.
+bool BlockScanner::must_vouch(bool searching) const { return own_section_ && (searching || vouched_seen_); }
+
 // What the packet's hash does not cover is checked against what it does: the time stamp stands in the record,
 // too.
-std::optional<CaptureBlock> BlockScanner::judge_packet(ByteView bytes) const {
+std::optional<CaptureBlock> BlockScanner::judge_packet(ByteView bytes, bool searching) const {
     const std::optional<pcapng::Packet> packet = pcapng::read_packet(bytes);
     if (!packet || packet->hash == pcapng::Packet::Hash::wrong) { return std::nullopt; }
     CaptureBlock block;
@@ -214,7 +219,8 @@ std::optional<CaptureBlock> BlockScanner::judge_packet(ByteView bytes) const {
         const bool agrees = record && packet->interface == 0 &&
                             packet->original_bytes == packet->bytes.size() &&
                             block.time_ns / 1000 == record->time_us;
-        if (packet->hash == pcapng::Packet::Hash::absent || !agrees) { return std::nullopt; }
+        block.vouched = packet->hash == pcapng::Packet::Hash::right;
+        if (!agrees || (must_vouch(searching) && !block.vouched)) { return std::nullopt; }
         return block;
     }
     if (packet->interface >= interfaces_.size()) { return std::nullopt; }
@@ -290,11 +296,13 @@ void BlockScanner::enter(const CaptureBlock& block) {
     offset_ += block.bytes.size();
     accounts_.bytes_in_blocks += block.bytes.size();
     ++accounts_.blocks;
+    vouched_seen_ = vouched_seen_ || block.vouched;
     if (format_ == Format::pcap && block.kind == BlockKind::section) {
         const bool in_ns = get<std::uint32_t>(block.bytes, 0) == pcap_magic_ns;
         interfaces_ = {{get<std::uint32_t>(block.bytes, 20) & 0xFFFFU, in_ns ? 1'000'000'000U : 1'000'000U}};
     } else if (block.kind == BlockKind::section) {
         own_section_ = is_own(block.bytes);
+        vouched_seen_ = false;
         interfaces_.clear();
     } else if (block.kind == BlockKind::interface_description) {
         Interface interface { get<std::uint16_t>(block.bytes, 8) };

@@ -37,6 +37,7 @@ struct CaptureBlock {
     ByteView packet;
     std::uint32_t original_bytes = 0;
     std::uint32_t link_type = 0;
+    bool vouched = false;  // by a checksum of its own
 };
 
 struct DamagedRange {
@@ -91,7 +92,8 @@ private:
     Result<ByteView> view(std::uint64_t offset, std::size_t bytes);
     Result<std::optional<CaptureBlock>> block_at(std::uint64_t offset, bool searching);
     std::optional<CaptureBlock> judge(ByteView bytes, bool searching) const;
-    std::optional<CaptureBlock> judge_packet(ByteView block) const;
+    std::optional<CaptureBlock> judge_packet(ByteView block, bool searching) const;
+    bool must_vouch(bool searching) const;
     std::optional<CaptureBlock> judge_pcap_record(ByteView bytes) const;
     Result<std::optional<std::uint64_t>> find_intact(std::uint64_t from);
     Result<std::uint64_t> end_of_broken(std::uint64_t offset);
@@ -102,7 +104,8 @@ private:
     std::unique_ptr<InputFile> file_;
     Format format_ = Format::pcapng;
     bool recognised_ = false;
-    bool own_section_ = true;  // until a section header says otherwise, every block must vouch for itself
+    bool own_section_ = true;    // until a section header says otherwise, every block must vouch for itself
+    bool vouched_seen_ = false;  // in the present section
     std::vector<Interface> interfaces_;
     std::uint64_t offset_ = 0;
     Bytes window_;

@@ -99,7 +99,7 @@ TEST(CaptureFile, FindsNoPhantomsInAZeroFilledTail) {
 }
 
 TEST(CaptureFile, LosesAtMostOneTransferToAnyFlippedBit) {
-    const MadeCapture made = make_capture(6, 50);
+    const MadeCapture made = make_capture(3, 20);
     for (std::size_t bit = 0; bit < made.bytes.size() * 8; ++bit) {
         Bytes flipped = made.bytes;
         flipped[bit / 8] = static_cast<std::uint8_t>(flipped[bit / 8] ^ (1U << (bit % 8)));
