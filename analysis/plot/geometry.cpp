@@ -40,7 +40,7 @@ bool Box::overlaps(const Box& other) const {
     return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
 }
 
-std::optional<Segment> clip(Segment segment, const Box& box) {
+std::optional<LineSegment> clip(LineSegment segment, const Box& box) {
     const auto [a, b] = segment;
     if (!is_finite(a) || !is_finite(b)) { return std::nullopt; }
     const Point step{b.x - a.x, b.y - a.y};
@@ -51,14 +51,14 @@ std::optional<Segment> clip(Segment segment, const Box& box) {
         narrow(a.x - box.left, step.x, enter, leave) && narrow(box.right - a.x, -step.x, enter, leave) &&
         narrow(a.y - box.top, step.y, enter, leave) && narrow(box.bottom - a.y, -step.y, enter, leave);
     if (!meets) { return std::nullopt; }
-    return Segment{enter > 0.0 ? between(a, b, enter) : a, leave < 1.0 ? between(a, b, leave) : b};
+    return LineSegment{enter > 0.0 ? between(a, b, enter) : a, leave < 1.0 ? between(a, b, leave) : b};
 }
 
 std::vector<Polyline> clip(const Polyline& line, const Box& box) {
     std::vector<Polyline> parts;
     bool joins_last = false;
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-        const auto piece = clip(Segment{line[i], line[i + 1]}, box);
+        const auto piece = clip(LineSegment{line[i], line[i + 1]}, box);
         if (!piece) {
             joins_last = false;
             continue;

@@ -29,14 +29,14 @@ struct Box {
 
 using Polyline = std::vector<Point>;
 
-struct Segment {
+struct LineSegment {
     Point a;
     Point b;
 };
 
 // The part of the segment inside the box (Liang and Barsky 1984); nothing when it misses the box or is not
 // finite.
-std::optional<Segment> clip(Segment segment, const Box& box);
+std::optional<LineSegment> clip(LineSegment segment, const Box& box);
 
 // The parts of a polyline inside the box, in order. A point that is not finite breaks the line.
 std::vector<Polyline> clip(const Polyline& line, const Box& box);

@@ -43,7 +43,7 @@ void Obstacles::add_area(const Polyline& polygon) {
 }
 
 bool Obstacles::touches(const Box& box) const {
-    const auto covers_segment = [&](const Segment& segment) { return clip(segment, box).has_value(); };
+    const auto covers_segment = [&](const LineSegment& segment) { return clip(segment, box).has_value(); };
     const auto covers_box = [&](const Box& other) { return box.overlaps(other); };
     // An outline that does not cross the box leaves it all inside or all outside: its centre tells which.
     const auto lies_in = [&](const Polyline& area) { return is_inside(box.centre(), area); };

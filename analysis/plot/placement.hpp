@@ -18,7 +18,7 @@ public:
     bool touches(const Box& box) const;
 
 private:
-    std::vector<Segment> segments_;
+    std::vector<LineSegment> segments_;
     std::vector<Polyline> areas_;
     std::vector<Box> boxes_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "analysis/plot/number_text.hpp"
@@ -60,12 +61,12 @@ Ticks linear_ticks(Range range, int max_labels) {
     result.exponent = common_exponent(range, step);
     const int decimals = std::max(0, result.exponent - step.exponent);
     const int minor_per_step = step.mantissa == 2 ? 4 : 5;
-    const double first = std::floor(range.lo / step.size()) * minor_per_step;
-    const double last = std::ceil(range.hi / step.size()) * minor_per_step;
-    for (double k = first; k <= last; k += 1.0) {
-        const double value = k / minor_per_step * step.size();
+    const auto first = static_cast<std::int64_t>(std::floor(range.lo / step.size())) * minor_per_step;
+    const auto last = static_cast<std::int64_t>(std::ceil(range.hi / step.size())) * minor_per_step;
+    for (std::int64_t k = first; k <= last; ++k) {
+        const double value = static_cast<double>(k) / minor_per_step * step.size();
         if (!is_inside(value, range)) { continue; }
-        const bool is_major = std::fmod(k, minor_per_step) == 0.0;
+        const bool is_major = k % minor_per_step == 0;
         const double shown = value / power10(result.exponent);
         result.ticks.push_back({value, is_major ? fixed_decimal(shown, decimals) : std::string()});
     }

@@ -42,7 +42,7 @@ TEST(Clip, KeepsOfASegmentExactlyWhatIsInTheBox) {
     std::mt19937_64 random(1);
     constexpr int steps = 2000;
     for (int i = 0; i < 300; ++i) {
-        const Segment segment{random_point(random), random_point(random)};
+        const LineSegment segment{random_point(random), random_point(random)};
         int inside = 0;
         for (int k = 0; k < steps; ++k) {
             const double t = (k + 0.5) / steps;
@@ -81,8 +81,8 @@ TEST(Clip, BreaksALineAtAPointThatIsNoNumber) {
 
 TEST(Clip, BearsTheLargestNumbers) {
     const double large = std::numeric_limits<double>::max();
-    EXPECT_FALSE(clip(Segment{{-large, 0.5}, {large, 0.5}}, unit).has_value());
-    const auto kept = clip(Segment{{-1e300, 0.5}, {1e300, 0.5}}, unit);
+    EXPECT_FALSE(clip(LineSegment{{-large, 0.5}, {large, 0.5}}, unit).has_value());
+    const auto kept = clip(LineSegment{{-1e300, 0.5}, {1e300, 0.5}}, unit);
     ASSERT_TRUE(kept.has_value());
     EXPECT_TRUE(unit.grown(1e-9).contains(kept->a));
     EXPECT_TRUE(unit.grown(1e-9).contains(kept->b));
