@@ -126,7 +126,7 @@ TtySource::TtySource(int terminal, int wake, SourceIdentity identity)
       buffer_(read_bytes) {}
 
 TtySource::~TtySource() {
-    stop();
+    TtySource::stop();
     // Closing lowers DTR (HUPCL).
     ::close(terminal_);
     if (wake_ >= 0) { ::close(wake_); }

@@ -19,7 +19,7 @@ namespace gyrolog {
 //
 // Threads: everything, including write() and set_line_state(), is carried out by the thread that start()
 // starts.
-class TtySource : public ByteSource {
+class TtySource final : public ByteSource {
 public:
     // Errors: not_found, permission_denied, busy; invalid_argument when the path is not a terminal.
     static Result<std::unique_ptr<TtySource>> open(const std::string& path);

@@ -64,8 +64,8 @@ UsbSource::UsbSource(std::shared_ptr<UsbContext> usb, std::unique_ptr<UsbDevice>
       stream_(*usb_, device_->handle(), device_->board().layout.endpoint_in, plan_, *this) {}
 
 UsbSource::~UsbSource() {
-    stop();
-    if (line_raised_ && !device_lost_) { static_cast<void>(set_line_state(false)); }
+    UsbSource::stop();
+    if (line_raised_ && !device_lost_) { static_cast<void>(UsbSource::set_line_state(false)); }
 }
 
 double UsbSource::tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const {

@@ -19,7 +19,7 @@ namespace gyrolog {
 // start() lowers DTR and lets what the board had still queued arrive before it returns; those stale bytes are
 // told like any others. Raising DTR is the caller's. A start that fails tells no end. write() and
 // set_line_state() must not be called from the sink. After stop() they still work but are told to nobody.
-class UsbSource : public ByteSource, private TransferObserver {
+class UsbSource final : public ByteSource, private TransferObserver {
 public:
     static Result<std::unique_ptr<UsbSource>> open(std::shared_ptr<UsbContext> usb, const UsbBoard& board,
                                                    BulkInPlan plan = BulkInPlan::for_unknown_stream());

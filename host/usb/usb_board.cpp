@@ -37,8 +37,8 @@ std::string sysfs_directory(libusb_device* device) {
 
 std::string describe(const UsbBoard& board) {
     std::array<char, 16> identifiers{};
-    std::snprintf(identifiers.data(), identifiers.size(), "%04x:%04x", unsigned{board.vendor_id},
-                  unsigned{board.product_id});
+    static_cast<void>(std::snprintf(identifiers.data(), identifiers.size(), "%04x:%04x",
+                                    unsigned{board.vendor_id}, unsigned{board.product_id}));
     std::string text = identifiers.data();
     if (!board.manufacturer.empty()) { text += " " + board.manufacturer; }
     if (!board.product.empty()) { text += " " + board.product; }
@@ -91,25 +91,28 @@ bool is_claimed_elsewhere(libusb_device_handle* handle, std::uint8_t interface) 
     return code == LIBUSB_ERROR_BUSY;
 }
 
-void try_access(UsbBoard& board, libusb_device* device) {
+// False when the board went away meanwhile.
+bool try_access(UsbBoard& board, libusb_device* device) {
     libusb_device_handle* handle = nullptr;
     const int code = libusb_open(device, &handle);
+    if (code == LIBUSB_ERROR_NO_DEVICE) { return false; }
     if (code == LIBUSB_ERROR_ACCESS) {
         refuse(board, BoardState::no_permission,
                "no permission to open it; install tools/60-gyrolog.rules as "
                "/usr/lib/udev/rules.d/60-gyrolog.rules, "
                "run `udevadm control --reload`, and plug the board in again");
-        return;
+        return true;
     }
     if (code != LIBUSB_SUCCESS) {
         refuse(board, BoardState::busy, usb_error("open it", code).message);
-        return;
+        return true;
     }
     if (is_claimed_elsewhere(handle, board.layout.control_interface) ||
         is_claimed_elsewhere(handle, board.layout.data_interface)) {
         refuse(board, BoardState::busy, "another program is using it");
     }
     libusb_close(handle);
+    return true;
 }
 
 void add_device(UsbSurvey& survey, libusb_device* device) {
@@ -124,8 +127,8 @@ void add_device(UsbSurvey& survey, libusb_device* device) {
     }
     if (const Status readable = read_descriptors(board, directory); !readable.ok()) {
         refuse(board, BoardState::wrong_protocol, readable.error().message);
-    } else {
-        try_access(board, device);
+    } else if (!try_access(board, device)) {
+        return;
     }
     survey.boards.push_back(std::move(board));
 }

@@ -389,6 +389,8 @@ UmockdevBoard::UmockdevBoard(UmockdevBus& bus, MockUsbIdentity identity, MockUsb
     if (error != nullptr) { fail("take over the device's requests", error); }
     umockdev_testbed_add_from_string(usbfs_->testbed, usbfs_->identity.description().c_str(), &error);
     if (error != nullptr) { fail("add the board", error); }
+    // For a program that has looked at the bus before.
+    umockdev_testbed_uevent(usbfs_->testbed, ("/sys" + usbfs_->identity.sysfs_path()).c_str(), "add");
 }
 
 UmockdevBoard::~UmockdevBoard() {

@@ -88,6 +88,7 @@ TEST_F(TtySourceTest, EveryByteValueArrivesUntouched) {
 TEST_F(TtySourceTest, WhatWasWaitingBeforeTheStartIsTold) {
     send(as_bytes("stale"));
     ASSERT_TRUE(source_->start(sink_).ok());
+    EXPECT_TRUE(sink_.wait_for_bytes(5));
     EXPECT_EQ(as_text(sink_.stream()), "stale");
 }
 
