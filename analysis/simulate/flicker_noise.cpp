@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
-#include <utility>
 
 #include "analysis/noise/noise_model.hpp"
 
@@ -12,29 +10,17 @@ namespace gyrolog {
 
 namespace {
 
-// Per step of the process's own grid: correlation from one value to the next, and variance for B = 1.
-struct GaussMarkov {
-    double correlation;
-    double variance;
-};
-
-constexpr GaussMarkov full_rate = {0.159133, 0.966187};
-constexpr GaussMarkov slower = {0.264998, 0.579462};
-constexpr double filter_side = 0.077061;  // weights: side, 1 - 2 side, side
-constexpr std::size_t ratio = 4;
+constexpr double filter_side = 0.093882;  // weights: side, 1 - 2 side, side
+constexpr std::size_t ratio = 4;          // of the grids
 constexpr std::size_t chunk = 1024;
-
-double gauss_markov_psd(const GaussMarkov& process, double phase) {
-    const double a = process.correlation;
-    return process.variance * (1.0 - a * a) / (1.0 - 2.0 * a * std::cos(phase) + a * a);
-}
 
 }  // namespace
 
-FlickerNoise::FlickerNoise(double B_rad_per_s, std::vector<RandomStream> streams)
-    : B_rad_per_s_(B_rad_per_s) {
-    assert(streams.size() >= 2);
-    for (RandomStream& stream : streams) { levels_.push_back({.stream = stream}); }
+FlickerNoise::FlickerNoise(double B_rad_per_s, std::span<const RandomStream> streams)
+    : B_rad_per_s_(B_rad_per_s), fastest_{fastest, streams[0]} {
+    for (const RandomStream& stream : streams.subspan(1)) {
+        levels_.push_back({.process = {levels_.empty() ? fast : slower, stream}});
+    }
     // The slowest first: each level's line needs its first two knots from the level above.
     for (std::size_t level = levels_.size() - 1; level-- > 0;) {
         std::array<double, 2> knots{};
@@ -48,26 +34,34 @@ FlickerNoise::FlickerNoise(double B_rad_per_s, std::vector<RandomStream> streams
     last_ = first[1];
 }
 
-void FlickerNoise::produce(std::size_t level, std::span<double> out) {
-    Level& self = levels_[level];
-    const GaussMarkov& process = level == 0 ? full_rate : slower;
-    const double a = process.correlation;
-    const double innovation = std::sqrt(process.variance * (1.0 - a * a));
-    const std::uint64_t first = self.position;
-    self.position += out.size();
-
-    self.stream.normals(first, out);
-    double state = self.state;
+void FlickerNoise::Process::produce(std::uint64_t first, std::span<double> out) {
+    const double a = kind.correlation;
+    const double innovation = std::sqrt(kind.variance * (1.0 - a * a));
+    stream.normals(first, out);
     std::size_t i = 0;
     if (first == 0 && !out.empty()) {
-        state = std::sqrt(process.variance) * out[0];
+        state = std::sqrt(kind.variance) * out[0];
         out[i++] = state;
     }
+    double x = state;
     for (; i < out.size(); ++i) {
-        state = a * state + innovation * out[i];
-        out[i] = state;
+        x = a * x + innovation * out[i];
+        out[i] = x;
     }
-    self.state = state;
+    state = x;
+}
+
+// At most `chunk` values.
+void FlickerNoise::produce(std::size_t level, std::span<double> out) {
+    Level& self = levels_[level];
+    const std::uint64_t first = self.position;
+    self.position += out.size();
+    self.process.produce(first, out);
+    if (level == 0) {
+        std::array<double, chunk> more;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+        fastest_.produce(first, std::span(more).first(out.size()));
+        for (std::size_t i = 0; i < out.size(); ++i) { out[i] += more[i]; }
+    }
     if (level + 1 < levels_.size()) { add_slower(level, first, out); }
 }
 
@@ -113,21 +107,27 @@ void FlickerNoise::add_next(std::span<double> out) {
     }
 }
 
-double FlickerNoise::slowest_frequency(unsigned levels) {
-    // The slowest process is flat below about a tenth of its own grid's rate.
-    return 0.1 * std::pow(static_cast<double>(ratio), 1.0 - static_cast<double>(levels - 1));
+double FlickerNoise::slowest_frequency(unsigned processes) {
+    // The slowest process is flat below about a fifth of the rate of its grid, which is ratio^(processes - 2)
+    // samples.
+    return 0.2 * std::pow(static_cast<double>(ratio), 2.0 - static_cast<double>(processes));
 }
 
-double FlickerNoise::expected_psd(double nu, unsigned levels) {
+double FlickerNoise::psd_of(const GaussMarkov& process, double phase) {
+    const double a = process.correlation;
+    return process.variance * (1.0 - a * a) / (1.0 - 2.0 * a * std::cos(phase) + a * a);
+}
+
+double FlickerNoise::expected_psd(double nu, unsigned processes) {
     const double phase = 2.0 * pi * nu;
-    double sum = gauss_markov_psd(full_rate, phase);
-    double step = 1.0;  // samples between the grid points of the level
-    for (unsigned level = 1; level < levels; ++level) {
+    double sum = psd_of(fastest, phase) + psd_of(fast, phase);
+    double step = 1.0;  // samples between the points of the process's grid
+    for (unsigned process = 2; process < processes; ++process) {
         step *= static_cast<double>(ratio);
         // Straight lines between points `step` apart: the grid's spectrum, repeated, times the triangle's
         // transform.
         const double kernel = std::sin(0.5 * phase * step) / std::sin(0.5 * phase);
-        sum += gauss_markov_psd(slower, phase * step) * std::pow(kernel, 4) / (step * step * step);
+        sum += psd_of(slower, phase * step) * std::pow(kernel, 4) / (step * step * step);
     }
     const double filter = 1.0 - 4.0 * filter_side * std::pow(std::sin(0.5 * phase), 2);
     return sum * filter * filter;

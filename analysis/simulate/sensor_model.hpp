@@ -27,7 +27,7 @@ struct AxisModel {
 struct TemperatureModel {
     double reference_C = 25.0;
     Vector3 bias_rad_s_per_C{};
-    double scale_per_C = 0.0;  // relative change of the scale factor
+    Vector3 scale_per_C{};  // relative change of the scale factor
 };
 
 // An effect that was added to the model: a name of the effect registry, with its parameters under the names

@@ -1,5 +1,7 @@
 #include "analysis/simulate/flicker_noise.hpp"
 
+#include <vector>
+
 #include "analysis/simulate/stages/per_axis.hpp"
 #include "analysis/simulate/stages/stages.hpp"
 
@@ -20,10 +22,10 @@ std::unique_ptr<Stage> make_flicker_noise(const StageContext& context) {
         const double B_rad_per_s = context.model.axes[axis].noise.B_rad_per_s;
         if (B_rad_per_s == 0.0) { return std::nullopt; }
         std::vector<RandomStream> streams;
-        for (unsigned level = 0; level < FlickerNoise::default_levels; ++level) {
-            streams.push_back(context.stream({'B', '0'}, axis, level));
+        for (unsigned part = 0; part < FlickerNoise::default_processes; ++part) {
+            streams.push_back(context.stream({'B', '0'}, axis, part));
         }
-        return Flicker{FlickerNoise(B_rad_per_s, std::move(streams))};
+        return Flicker{FlickerNoise(B_rad_per_s, streams)};
     });
 }
 
