@@ -1,6 +1,7 @@
 #include "analysis/noise/analyze.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gyrolog {
 namespace {
@@ -37,6 +38,18 @@ std::vector<std::string> refused_factors(const AnalysisOptions& options, const A
     return warnings;
 }
 
+// Coefficients of a curve that the model does not follow are no property of the sensor.
+void warn_of_misfit(const AxisReport& axis, std::vector<std::string>& warnings) {
+    constexpr double allowed_sd = 5.0;
+    if (axis.fit.worst_residual_sd > allowed_sd) {
+        warnings.push_back(
+            "axis " + axis.axis + ": the curve is up to " +
+            std::to_string(std::lround(axis.fit.worst_residual_sd)) +
+            " standard deviations away from the five noise terms (a tone, a filter or motion does that): "
+            "the uncertainties of its coefficients do not cover it");
+    }
+}
+
 }  // namespace
 
 AnalysisReport analyze(const Recording& recording, const AnalysisOptions& options) {
@@ -63,6 +76,7 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
         if (!is_gyro(column)) { continue; }
         if (report.axes.empty()) { report.unit = unit_of(column); }
         report.axes.push_back(analyze_axis(column, recording, options));
+        warn_of_misfit(report.axes.back(), report.warnings);
     }
     if (report.axes.empty()) {
         report.warnings.emplace_back("no gyro column: nothing to analyse");

@@ -15,7 +15,7 @@ namespace gyrolog {
 namespace {
 
 constexpr double edf_of_print = 50.0;
-constexpr double identified_sd = 1.645;
+constexpr double identified_sd = 2.0;
 constexpr unsigned all_terms = (1U << noise_terms) - 1;
 
 using Squares = Eigen::Matrix<double, static_cast<int>(noise_terms), 1>;

@@ -1,0 +1,157 @@
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "host/formats/analysis_json.hpp"
+#include "host/formats/analysis_text.hpp"
+#include "host/formats/recording_csv.hpp"
+#include "tests/analysis/allan/nbs14.hpp"
+
+namespace gyrolog {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+std::string csv_of(const std::vector<double>& values, const std::string& header) {
+    std::string text = header + "\n";
+    for (std::size_t i = 0; i < values.size(); ++i) { text += fmt::format("{},{}\n", i, values[i]); }
+    return text;
+}
+
+Recording parsed(const std::string& text) {
+    Result<Recording> recording = parse_recording_csv(text, "run.csv");
+    EXPECT_TRUE(recording.ok()) << (recording.ok() ? "" : recording.error().message);
+    return std::move(recording).value();
+}
+
+json report_of(const Recording& recording, const AnalysisOptions& options = {}) {
+    return json::parse(analysis_json(analyze(recording, options)));
+}
+
+TEST(AnalysisJson, CarriesThePublishedNbs14ValuesThroughTextAndUnits) {
+    AnalysisOptions options;
+    options.m = {1, 10, 100};
+    for (const char* header : {"t_s,gx_dps", "t_s,gx_rad_s"}) {
+        const json report = report_of(parsed(csv_of(test::nbs14_1000_point_frequency(), header)), options);
+        const json& points = report["axes"]["x"]["allan"];
+        ASSERT_EQ(points.size(), 3U);
+        EXPECT_NEAR(points[0]["value"].get<double>(), 2.922319e-01, 0.5001e-7);
+        EXPECT_NEAR(points[1]["value"].get<double>(), 9.159953e-02, 0.5001e-8);
+        EXPECT_NEAR(points[2]["value"].get<double>(), 3.241343e-02, 0.5001e-8);
+        EXPECT_EQ(points[2]["terms"], 801);
+    }
+}
+
+TEST(AnalysisJson, HasTheFormOfItsContract) {
+    const json report = report_of(parsed(csv_of(test::nbs14_1000_point_frequency(), "t_s,gz2_dps")));
+    EXPECT_EQ(report["schema"], "gyrolog-analysis/1");
+    EXPECT_EQ(report["recording"]["name"], "run.csv");
+    EXPECT_EQ(report["recording"]["samples"], 1000);
+    EXPECT_NEAR(report["recording"]["duration_s"].get<double>(), 1000.0, 1e-6);
+    EXPECT_EQ(report["recording"]["dropouts"], (json{{"events", 0}, {"samples", 0}}));
+    EXPECT_EQ(report["recording"]["segments"], 1);
+    EXPECT_EQ(report["deviation"], "overlapping");
+    EXPECT_EQ(report["convention"], "sp1065");
+    EXPECT_EQ(report["confidence"], 0.683);
+    ASSERT_EQ(report["axes"].size(), 1U);
+    const json& axis = report["axes"]["z2"];
+    EXPECT_EQ(axis["bias"]["unit"], "dps");
+    EXPECT_NEAR(axis["bias"]["value"].get<double>(), 0.48977446286, 1e-11);
+    EXPECT_EQ(axis["bias"]["coverage_factor"], 2.0);
+    for (const char* key : {"m", "tau_s", "value", "lo", "hi", "edf", "terms", "unit"}) {
+        EXPECT_TRUE(axis["allan"][0].contains(key)) << key;
+    }
+    const char* units[] = {"dps*s", "dps/sqrt(Hz)", "dps", "dps*sqrt(Hz)", "dps/s"};
+    const char* names[] = {"Q", "N", "B", "K", "R"};
+    for (int i = 0; i < 5; ++i) {
+        const json& coefficient = axis["coefficients"][names[i]];
+        EXPECT_EQ(coefficient["unit"], units[i]);
+        const bool identified = coefficient["state"] == "identified";
+        EXPECT_EQ(coefficient.contains("value"), identified);
+        EXPECT_EQ(coefficient.contains("upper"), !identified);
+    }
+    EXPECT_EQ(axis["coefficients"]["N"]["state"], "identified");
+    EXPECT_TRUE(axis["slope_read"].contains("N"));
+    EXPECT_FALSE(axis["slope_read"].contains("K"));
+}
+
+TEST(AnalysisJson, GivesUnitsAsTheTextHadThem) {
+    const auto y = test::nbs14_10_point_frequency();
+    EXPECT_EQ(report_of(parsed(csv_of(y, "t_s,gx_rad_s")))["axes"]["x"]["bias"]["unit"], "rad/s");
+    EXPECT_EQ(report_of(parsed(csv_of(y, "t_s,gx_deg")))["axes"]["x"]["bias"]["unit"], "dps");
+}
+
+TEST(AnalysisJson, TellsTheDropouts) {
+    std::string text = csv_of(test::nbs14_1000_point_frequency(), "t_s,gx_dps");
+    const std::size_t row = text.find("\n500,");
+    text.erase(row, text.find("\n503,") - row);
+    const json report = report_of(parsed(text));
+    EXPECT_EQ(report["recording"]["dropouts"], (json{{"events", 1}, {"samples", 3}}));
+    EXPECT_EQ(report["recording"]["segments"], 2);
+}
+
+TEST(AnalysisText, NamesEveryAxisWithItsUnits) {
+    const std::string text =
+        analysis_text(analyze(parsed(csv_of(test::nbs14_1000_point_frequency(), "t_s,gx_dps"))));
+    EXPECT_THAT(text, HasSubstr("run.csv: 1000 samples"));
+    EXPECT_THAT(text, HasSubstr("no dropouts"));
+    EXPECT_THAT(text, HasSubstr("deg/sqrt(h)"));
+    EXPECT_THAT(text, HasSubstr("deg/h"));
+    EXPECT_THAT(text, HasSubstr("not identifiable"));
+}
+
+class AnalysisOfRealRecordings : public testing::Test {
+protected:
+    void SetUp() override {
+        const char* source = std::getenv("GYROLOG_SOURCE_DIR");
+        directory_ = std::string(source == nullptr ? "." : source) + "/../shared/data/";
+        if (!std::filesystem::exists(directory_)) { GTEST_SKIP() << "no real recordings at " << directory_; }
+    }
+
+    AnalysisReport report(const std::string& file, const CsvReadOptions& options = {}) const {
+        const Result<Recording> recording = read_recording_csv(directory_ + file, options);
+        EXPECT_TRUE(recording.ok()) << (recording.ok() ? "" : recording.error().message);
+        return recording.ok() ? analyze(*recording) : AnalysisReport{};
+    }
+
+private:
+    std::string directory_;
+};
+
+// The deviations that its source states at 1.28 s, with the repository's scale for each axis.
+TEST_F(AnalysisOfRealRecordings, WhiteNoiseOfAPublishedSensorIsWhatItsSourceSays) {
+    const AnalysisReport r = report("mpu6050_uncuyo/static_7min.csv.xz", {.lsb_dps = deg_per_rad});
+    ASSERT_EQ(r.axes.size(), 3U);
+    const double rad_s_per_lsb[] = {1.37374e-4, 1.32925e-4, 1.33944e-4};
+    const double expected[] = {1.39e-4, 2.00e-4, 1.60e-4};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const FittedCoefficient& N = r.axes[i].fit[NoiseTerm::N];
+        EXPECT_EQ(N.state, FittedCoefficient::State::identified);
+        EXPECT_NEAR(N.value * rad_s_per_lsb[i] / expected[i], 1.0, 0.1) << r.axes[i].axis;
+        EXPECT_NEAR(r.axes[i].slopes.N->coefficient * rad_s_per_lsb[i] / expected[i], 1.0, 0.1);
+    }
+    // Turn-on biases that the source states in counts; they move by 10 counts between its own runs.
+    EXPECT_NEAR(r.axes[0].bias.value, -427.46, 15.0);
+    EXPECT_NEAR(r.axes[1].bias.value, 147.95, 15.0);
+    EXPECT_NEAR(r.axes[2].bias.value, -80.72, 20.0);
+}
+
+TEST_F(AnalysisOfRealRecordings, BurstyStampsDoNotSpoilTheCurve) {
+    const AnalysisReport r = report("mpu6050_frdm/static_11min.csv.xz");
+    ASSERT_EQ(r.axes.size(), 3U);
+    EXPECT_NEAR(r.rate_hz, 99.317, 3.0 * *r.rate_sd_hz);
+    // Its statistics state a mean of 4.53532 deg/s and a standard deviation of 0.126355 deg/s for x.
+    EXPECT_NEAR(r.axes[0].bias.value * deg_per_rad, 4.53532, 1e-3);
+    EXPECT_NEAR(r.axes[0].curve.points.front().deviation * deg_per_rad, 0.126355, 0.0126);
+    EXPECT_EQ(r.axes[0].fit[NoiseTerm::N].state, FittedCoefficient::State::identified);
+}
+
+}  // namespace
+}  // namespace gyrolog
