@@ -12,6 +12,7 @@ namespace {
 constexpr double clock_set_back_s = 1.0;
 constexpr double dropout_periods = 1.5;
 constexpr std::size_t level_rows = 7;
+constexpr double samples_max = 1e11;  // three years at 1 kHz
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -219,6 +220,14 @@ void use_as_arrival(Grid& grid, std::span<const double> t_s) {
                             " ms): only the mean rate is taken from them, and lost samples cannot be seen");
 }
 
+// Stamps that rise from first to last can still fall in between.
+void require_a_rate(Grid& grid) {
+    if (!(grid.rate_hz > 0.0) || !std::isfinite(grid.rate_hz)) {
+        grid = Grid();
+        grid.failure = "the time stamps follow no line: give the rate";
+    }
+}
+
 }  // namespace
 
 Grid grid_from_stamps(std::span<const double> t_s) {
@@ -243,7 +252,12 @@ Grid grid_from_stamps(std::span<const double> t_s) {
     }
     const double period_s = typical_step_s(t_s);
     if (not_after == 0 && steps_are_whole_periods(t_s, period_s)) {
+        if (!((t_s.back() - t_s.front()) / period_s < samples_max)) {
+            grid.failure = "the time stamps jump by years: cut the recording there, or give the rate";
+            return grid;
+        }
         use_as_sampling(grid, t_s, period_s);
+        require_a_rate(grid);
         return grid;
     }
     if (not_after > 0) {
@@ -251,6 +265,7 @@ Grid grid_from_stamps(std::span<const double> t_s) {
                                 " time stamps repeat or step back");
     }
     use_as_arrival(grid, t_s);
+    require_a_rate(grid);
     return grid;
 }
 
