@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace gyrolog {
@@ -35,9 +36,9 @@ inline constexpr std::array<Colour, 6> cycle{blue, vermillion, green, purple, sk
 
 }  // namespace colours
 
-constexpr Colour mixed(Colour a, Colour b, double share_of_b) {
+inline Colour mixed(Colour a, Colour b, double share_of_b) {
     const auto mix = [share_of_b](std::uint8_t x, std::uint8_t y) {
-        return static_cast<std::uint8_t>(x + (y - x) * share_of_b + 0.5);
+        return static_cast<std::uint8_t>(std::lround(x + (y - x) * share_of_b));
     };
     return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
 }

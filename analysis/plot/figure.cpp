@@ -52,7 +52,9 @@ std::vector<std::string> fact_lines(const Figure& figure, const Typeface& typefa
     const auto width_of = [&](const std::string& text) { return typeface.measure(text, size_px).width_px; };
     const std::string separator = "  ·  ";
     std::string facts;
-    for (const std::string& fact : figure.facts) { facts += (facts.empty() ? "" : separator) + fact; }
+    for (const std::string& fact : figure.facts) {
+        facts.append(facts.empty() ? "" : separator).append(fact);
+    }
 
     const double joint_px = facts.empty() || figure.source.empty() ? 0.0 : width_of(separator);
     const double left_px = width_px - width_of(facts) - joint_px;

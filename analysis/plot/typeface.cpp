@@ -125,7 +125,7 @@ std::optional<Typeface> Typeface::open(const std::string& path, std::string& pro
 
 TextExtent Typeface::measure(std::string_view text, double size_px) const {
     TextExtent extent;
-    const FT_GlyphSlot slot = face_->face->glyph;
+    FT_GlyphSlot slot = face_->face->glyph;
     extent.width_px = face_->walk(text, size_px, 0.0, [&](double) {
         FT_BBox ink{};
         FT_Outline_Get_CBox(&slot->outline, &ink);
@@ -137,7 +137,7 @@ TextExtent Typeface::measure(std::string_view text, double size_px) const {
 
 TextMask Typeface::render(std::string_view text, double size_px, double start_fraction_px) const {
     std::vector<PlacedGlyph> glyphs;
-    const FT_GlyphSlot slot = face_->face->glyph;
+    FT_GlyphSlot slot = face_->face->glyph;
     face_->walk(text, size_px, start_fraction_px, [&](double pen_px) {
         PlacedGlyph glyph = rasterised(slot, pen_px);
         if (!glyph.coverage.empty()) { glyphs.push_back(std::move(glyph)); }
