@@ -31,6 +31,8 @@ enum Request : std::uint8_t {
 enum DescriptorType : std::uint8_t { device = 1, configuration = 2, string = 3 };
 
 constexpr std::uint8_t only_configuration = 1;
+// The endpoint's own: two packets (double buffering).
+constexpr std::size_t endpoint_bytes = std::size_t{2} * GLP_USB_PACKET_BYTES;
 
 unsigned field(const std::array<std::uint8_t, 8>& setup, std::size_t at) {
     return setup[at] | static_cast<unsigned>(setup[at + 1]) << 8U;
@@ -39,6 +41,10 @@ unsigned field(const std::array<std::uint8_t, 8>& setup, std::size_t at) {
 const UsbFunction::ControlResponse stalled = {true, {}};
 
 }  // namespace
+
+UsbFunction::UsbFunction(VirtualBoard& board) : board_(board) {
+    board_.in_endpoint().set_capacity(endpoint_bytes);
+}
 
 void UsbFunction::advance_to(std::int64_t host_monotonic_ns) {
     if (!origin_ns_) { origin_ns_ = host_monotonic_ns - board_.now_ns(); }
@@ -106,8 +112,7 @@ UsbFunction::ControlResponse UsbFunction::class_request(const std::array<std::ui
 }
 
 std::optional<std::size_t> UsbFunction::bulk_in(std::span<std::uint8_t> buffer) {
-    // Two packets are the endpoint's own (double buffering).
-    board_.in_endpoint().set_capacity(buffer.size() + std::size_t{2} * GLP_USB_PACKET_BYTES);
+    board_.in_endpoint().set_capacity(buffer.size() + endpoint_bytes);
     const auto size = board_.in_endpoint().take_transfer(buffer);
     if (size) { return size; }
     board_.advance_to(board_.now_ns());
@@ -120,6 +125,7 @@ void UsbFunction::bus_reset() {
     configuration_ = 0;
     board_.on_line_state(false);
     board_.in_endpoint().clear();
+    board_.in_endpoint().set_capacity(endpoint_bytes);
 }
 
 }  // namespace gyrolog

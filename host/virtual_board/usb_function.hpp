@@ -20,7 +20,7 @@ public:
         Bytes data;  // of an IN request, never longer than wLength
     };
 
-    explicit UsbFunction(VirtualBoard& board) : board_(board) {}
+    explicit UsbFunction(VirtualBoard& board);
 
     // Lets the board run up to this moment. The first call sets the origin.
     void advance_to(std::int64_t host_monotonic_ns);

@@ -1,0 +1,51 @@
+// The options of a simulated board as a user types them: sim:KEY=VALUE,...
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/base/result.hpp"
+#include "host/virtual_board/board_fault.hpp"
+
+namespace gyrolog {
+
+//   model=FILE       a gyrolog-model/1 file; without it a typical MPU-9250
+//   rate=HZ          start-up output rate; without it the model's
+//   full_scale=DPS   start-up range: 250 500 1000 2000; without it the smallest that holds the model's
+//   dlpf=HZ|off      start-up low-pass; without it one that has the rate
+//   seed=N           another sensor of the same kind
+//   boards=N         how many boards there are
+//   board=N          which of them this one is, from 1
+//   realtime=1       keep to the clock
+//   clock_ppm=X      the sensor's clock against nominal, within 10000
+//   first_tick=N, first_sequence=N, boot_id=N, ring=BYTES
+//   fault=KIND@SECONDS[+KIND@SECONDS...]   of device time since the start; link_stall@FROM..TO
+//                    kinds: fifo_overflow bus_error link_stall drop_packet duplicate_packet corrupt_byte
+//                    reset unplug
+//   unplug=SECONDS, reset=SECONDS          the same as fault=unplug@SECONDS, fault=reset@SECONDS
+struct SimOptions {
+    std::string model_path;  // empty: typical_mpu9250()
+    std::optional<double> rate_hz;
+    std::optional<unsigned> full_scale_dps;
+    std::optional<unsigned> dlpf_hz;  // GLP_DLPF_OFF for "off"
+    std::uint64_t seed = 1;
+    unsigned boards = 1;
+    unsigned board = 1;
+    bool realtime = false;
+    std::optional<double> clock_error;
+    std::uint64_t first_tick = 0;
+    std::uint32_t first_sequence = 0;
+    std::uint32_t boot_id = 1;
+    std::size_t ring_bytes = 4096;
+    std::vector<BoardFault> faults;
+    std::string text;  // as typed, without boards= and board=
+};
+
+// Error `invalid_argument` names the option and what it may be.
+Result<SimOptions> parse_sim_options(std::span<const std::pair<std::string, std::string>> options);
+
+}  // namespace gyrolog

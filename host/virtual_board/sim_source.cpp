@@ -1,0 +1,352 @@
+#include "host/virtual_board/sim_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <gyrolog_protocol/usb_identity.h>
+
+#include "host/virtual_board/usb_descriptors.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr std::size_t transfer_bytes = 16384;
+constexpr std::int64_t step_ns = 20'000'000;  // simulated time between two looks at what has come
+constexpr std::int64_t delivery_period_ns = 1'000'000'000;  // a transfer is not kept open for longer
+constexpr std::int64_t tick_ns = 1'000'000;      // real time between two turns of the real-time board
+constexpr std::int64_t retry_ns = 500'000;       // until a sink without room is asked again
+constexpr double nominal_rate_tolerance = 0.01;  // of the model's rate about one that the sensor has
+
+// A rate that the sensor has, near the model's: 1 kHz / n, or above 1 kHz 8 kHz / n.
+std::optional<double> nominal_rate_near(double rate_hz) {
+    if (!(rate_hz > 0.0)) { return std::nullopt; }
+    const double inside_hz = rate_hz > 1000.0 * (1.0 + nominal_rate_tolerance) ? 8000.0 : 1000.0;
+    const double divider = std::max(1.0, std::floor(inside_hz / rate_hz + 0.5));
+    const double nominal_hz = inside_hz / divider;
+    if (divider > 256.0 || std::fabs(rate_hz / nominal_hz - 1.0) > nominal_rate_tolerance) {
+        return std::nullopt;
+    }
+    return nominal_hz;
+}
+
+// A filter setting that has the rate; 0 leaves the firmware's own, which has every rate up to 1 kHz.
+unsigned dlpf_for(double rate_hz) {
+    if (rate_hz <= 1000.0) { return 0; }
+    return rate_hz <= 8000.0 ? 3600 : GLP_DLPF_OFF;
+}
+
+unsigned full_scale_for(const SensorModel& model) {
+    for (const unsigned range_dps : {250U, 500U, 1000U}) {
+        if (model.full_scale_rad_s <= range_dps * rad_per_deg * 1.001) { return range_dps; }
+    }
+    return 2000;
+}
+
+std::string serial_of(unsigned board) {
+    const std::string number = std::to_string(board);
+    return "SIM" + std::string(number.size() < 4 ? 4 - number.size() : 0, '0') + number;
+}
+
+std::string uri_of(const SimOptions& options) {
+    std::string uri = "sim:" + options.text;
+    if (options.boards > 1) {
+        uri += (options.text.empty() ? "board=" : ",board=") + std::to_string(options.board);
+    }
+    return uri;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SimSource>> SimSource::create(const SimOptions& options, const SensorModel& model,
+                                                     const SimLimit& limit) {
+    VirtualBoardOptions board_options;
+    board_options.model = model;
+    // The boards of one seed are as different as those of different seeds: an odd multiplier meets no other
+    // soon.
+    board_options.seed = options.seed + (options.board - 1) * 0x9E3779B97F4A7C15U;
+    board_options.serial = serial_of(options.board);
+    board_options.sensor_clock_error = options.clock_error;
+    if (options.rate_hz) {
+        board_options.rate_hz = *options.rate_hz;
+    } else if (const auto nominal_hz = nominal_rate_near(model.rate_hz)) {
+        board_options.rate_hz = *nominal_hz;
+        if (!options.clock_error && model.rate_hz != *nominal_hz) {
+            board_options.sensor_clock_error = model.rate_hz / *nominal_hz - 1.0;
+        }
+    } else {
+        return Error{ErrorCode::invalid_argument, "simulated board: the model's rate_hz " +
+                                                      std::to_string(model.rate_hz) +
+                                                      " is no rate of an MPU-9250; add rate=HZ"};
+    }
+    board_options.dlpf_hz = options.dlpf_hz.value_or(dlpf_for(board_options.rate_hz));
+    board_options.full_scale_dps = options.full_scale_dps.value_or(full_scale_for(model));
+    board_options.first_tick = options.first_tick;
+    board_options.first_sequence = options.first_sequence;
+    board_options.boot_id = options.boot_id;
+    board_options.ring_bytes = options.ring_bytes;
+    board_options.faults = options.faults;
+    GYROLOG_TRY(std::unique_ptr<VirtualBoard> board, VirtualBoard::create(std::move(board_options)));
+    return std::unique_ptr<SimSource>(new SimSource(options, limit, std::move(board)));
+}
+
+SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::unique_ptr<VirtualBoard> board)
+    : realtime_(options.realtime), limit_(limit), board_(std::move(board)), buffer_(transfer_bytes) {
+    identity_.uri = uri_of(options);
+    identity_.vendor_id = GLP_USB_VENDOR_ID;
+    identity_.product_id = GLP_USB_PRODUCT_ID;
+    identity_.bus_number = 1;
+    identity_.device_address = static_cast<std::uint8_t>(options.board + 1);  // 1 is the root hub
+    identity_.manufacturer = virtual_board_manufacturer;
+    identity_.product = virtual_board_product;
+    identity_.serial = board_->serial();
+    identity_.device_descriptor = device_descriptor();
+    identity_.configuration_descriptor = configuration_descriptor();
+    board_->set_sample_limit(limit.samples);
+    // Real time: one transfer posted, beside the endpoint's own two packets. Otherwise there is always room.
+    board_->in_endpoint().set_capacity(transfer_bytes +
+                                       (realtime_ ? 2 * GLP_USB_PACKET_BYTES : 3 * transfer_bytes));
+}
+
+SimSource::~SimSource() { stop(); }
+
+double SimSource::tolerated_stall_s(double bytes_per_s, double /*bytes_per_completion*/) const {
+    if (!realtime_) { return std::numeric_limits<double>::infinity(); }
+    return static_cast<double>(transfer_bytes + board_->firmware().ring.capacity) / bytes_per_s;
+}
+
+// ------------------------------------------------------------------------------------------- the caller's
+// side
+
+Status SimSource::start(TransferSink& sink) {
+    if (thread_.joinable()) {
+        return Error{ErrorCode::invalid_argument, identity_.uri + ": already started"};
+    }
+    sink_ = &sink;
+    origin_ = host_now();
+    origin_board_ns_ = board_->now_ns();
+    last_event_ = origin_;
+    thread_ = std::thread([this] { run(); });
+    return {};
+}
+
+Status SimSource::set_line_state(bool data_terminal_ready) { return enqueue({data_terminal_ready, {}}); }
+
+Status SimSource::write(ByteView bytes) { return enqueue({std::nullopt, Bytes(bytes.begin(), bytes.end())}); }
+
+Status SimSource::enqueue(Call call) {
+    const std::lock_guard lock(mutex_);
+    if (ended_) { return Error{ErrorCode::device_lost, identity_.uri + ": the board is gone"}; }
+    calls_.push_back(std::move(call));
+    called_.notify_one();
+    return {};
+}
+
+void SimSource::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_wanted_ = true;
+        called_.notify_one();
+    }
+    if (thread_.joinable()) { thread_.join(); }
+}
+
+// ------------------------------------------------------------------------------------------ the source's
+// thread
+
+void SimSource::run() {
+    if (realtime_) {
+        run_in_real_time();
+    } else {
+        run_as_fast_as_taken();
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        ended_ = true;
+    }
+    std::optional<Error> error;
+    if (end_ == SourceEnd::device_lost) {
+        error = Error{ErrorCode::device_lost, identity_.uri + ": unplugged"};
+    }
+    sink_->on_end(end_.value_or(SourceEnd::stopped), error);
+}
+
+void SimSource::run_as_fast_as_taken() {
+    std::int64_t delivered_ns = board_->now_ns();
+    while (!end_) {
+        if (!answer_calls()) { return; }
+        if (!board_->streaming()) {
+            // A board at rest has nothing to say until it is asked.
+            if (!wait_for_call(delivery_period_ns)) { return; }
+            continue;
+        }
+        board_->advance_to(next_look_ns());
+        if (board_->unplugged()) {
+            deliver_bytes(1);
+            deliver_in({}, -ESHUTDOWN);
+            end_ = SourceEnd::device_lost;
+        } else if (limit_reached()) {
+            if (!finish_stream()) { return; }
+            end_ = SourceEnd::exhausted;
+        } else {
+            const bool due = board_->now_ns() - delivered_ns >= delivery_period_ns;
+            if (due) { delivered_ns = board_->now_ns(); }
+            if (!deliver_bytes(due ? 1 : transfer_bytes)) { return; }
+        }
+    }
+}
+
+void SimSource::run_in_real_time() {
+    while (!end_) {
+        if (!answer_calls()) { return; }
+        const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC) - origin_.monotonic_ns + origin_board_ns_;
+        board_->advance_to(now_ns);
+        if (board_->unplugged()) {
+            deliver_packets();
+            deliver_in({}, -ESHUTDOWN);
+            end_ = SourceEnd::device_lost;
+        } else if (board_->streaming() && limit_reached()) {
+            if (!finish_stream()) { return; }
+            end_ = SourceEnd::exhausted;
+        } else if (!deliver_packets() || !wait_for_call(tick_ns)) {
+            return;
+        }
+    }
+}
+
+// The answers to what the host has asked so far are delivered before anything else happens. False: stop.
+bool SimSource::answer_calls() {
+    while (true) {
+        Call call;
+        {
+            const std::lock_guard lock(mutex_);
+            if (calls_.empty()) { return !stop_wanted_; }
+            call = std::move(calls_.front());
+            calls_.pop_front();
+        }
+        make(call);
+        if (!(realtime_ ? deliver_packets() : deliver_bytes(1))) { return false; }
+    }
+}
+
+void SimSource::make(const Call& call) {
+    if (call.line_state) {
+        // SET_CONTROL_LINE_STATE, to the control interface (PSTN 1.2, 6.3.12)
+        const unsigned lines = *call.line_state ? GLP_CDC_LINE_DTR | GLP_CDC_LINE_RTS : 0U;
+        deliver_pair(TransferKind::control, 0,
+                     {0x21, GLP_CDC_SET_CONTROL_LINE_STATE, static_cast<std::uint8_t>(lines), 0,
+                      GLP_USB_INTERFACE_CONTROL, 0, 0, 0},
+                     {});
+        board_->on_line_state(*call.line_state);
+        return;
+    }
+    deliver_pair(TransferKind::bulk, GLP_USB_ENDPOINT_OUT, {}, call.bytes);
+    board_->on_receive(call.bytes);
+}
+
+// False: stop.
+bool SimSource::wait_for_call(std::int64_t time_ns) {
+    std::unique_lock lock(mutex_);
+    called_.wait_for(lock, std::chrono::nanoseconds(time_ns),
+                     [&] { return stop_wanted_ || !calls_.empty(); });
+    return !stop_wanted_ || !calls_.empty();
+}
+
+std::int64_t SimSource::next_look_ns() const {
+    const std::int64_t step_end_ns = board_->now_ns() + step_ns;
+    const auto start_ns = board_->first_start_ns();
+    if (!limit_.duration_s || !start_ns) { return step_end_ns; }
+    return std::min<std::int64_t>(step_end_ns, *start_ns + std::llround(*limit_.duration_s * 1e9));
+}
+
+bool SimSource::limit_reached() const {
+    if (board_->sample_limit_reached()) { return true; }
+    const auto start_ns = board_->first_start_ns();
+    return limit_.duration_s && start_ns &&
+           static_cast<double>(board_->now_ns() - *start_ns) >= *limit_.duration_s * 1e9;
+}
+
+// Stops the board and delivers all that it still has. False: stop.
+bool SimSource::finish_stream() {
+    bool empty = false;
+    while (!empty) {
+        empty = board_->finish();
+        if (!(realtime_ ? deliver_packets() : deliver_bytes(1))) { return false; }
+    }
+    return true;
+}
+
+// What the endpoint holds, in transfers as large as they come, as long as at least so much is there.
+bool SimSource::deliver_bytes(std::size_t at_least) {
+    while (board_->in_endpoint().pending_bytes() >= at_least) {
+        const std::size_t size = board_->in_endpoint().take_bytes(buffer_);
+        if (!deliver_in(ByteView(buffer_).first(size), 0)) { return false; }
+    }
+    return true;
+}
+
+bool SimSource::deliver_packets() {
+    while (const auto size = board_->in_endpoint().take_transfer(buffer_)) {
+        if (!deliver_in(ByteView(buffer_).first(*size), 0)) { return false; }
+    }
+    return true;
+}
+
+bool SimSource::deliver_in(ByteView data, int status) {
+    Transfer transfer;
+    transfer.kind = TransferKind::bulk;
+    transfer.endpoint = GLP_USB_ENDPOINT_IN;
+    transfer.id = next_id_++;
+    transfer.requested_bytes = transfer_bytes;
+    transfer.event = Transfer::Event::submission;
+    transfer.time = last_event_;  // it was posted ever since
+    if (!hand_over(transfer)) { return false; }
+    transfer.event = Transfer::Event::completion;
+    transfer.status = status;
+    transfer.time = last_event_ = host_time();
+    transfer.data = data;
+    return hand_over(transfer);
+}
+
+void SimSource::deliver_pair(TransferKind kind, std::uint8_t endpoint,
+                             const std::array<std::uint8_t, 8>& setup, ByteView data) {
+    Transfer transfer;
+    transfer.kind = kind;
+    transfer.endpoint = endpoint;
+    transfer.id = next_id_++;
+    transfer.requested_bytes = static_cast<std::uint32_t>(data.size());
+    transfer.setup = setup;
+    transfer.time = last_event_ = host_time();
+    transfer.event = Transfer::Event::submission;
+    transfer.data = data;
+    hand_over(transfer);
+    transfer.event = Transfer::Event::completion;
+    transfer.data = {};
+    hand_over(transfer);
+}
+
+// Waits for room. False: the caller wants to stop, and there is still none.
+bool SimSource::hand_over(Transfer& transfer) {
+    while (!sink_->on_transfer(transfer)) {
+        if (stopping()) { return false; }
+        std::this_thread::sleep_for(std::chrono::nanoseconds(retry_ns));
+    }
+    return true;
+}
+
+HostTime SimSource::host_time() const {
+    if (realtime_) { return host_now(); }
+    const std::int64_t since_start_ns = board_->now_ns() - origin_board_ns_;
+    return {origin_.monotonic_ns + since_start_ns, origin_.realtime_ns + since_start_ns};
+}
+
+bool SimSource::stopping() {
+    const std::lock_guard lock(mutex_);
+    return stop_wanted_;
+}
+
+}  // namespace gyrolog

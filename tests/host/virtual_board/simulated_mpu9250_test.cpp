@@ -1,0 +1,135 @@
+#include "host/virtual_board/simulated_mpu9250.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware_protocol/device/mpu9250.h"
+
+namespace gyrolog {
+namespace {
+
+class Mpu9250 : public testing::Test {
+protected:
+    std::uint8_t read(std::uint8_t address) {
+        std::uint8_t value = 0;
+        chip.read(address, {&value, 1});
+        return value;
+    }
+    unsigned fifo_count() {
+        std::array<std::uint8_t, 2> bytes{};
+        chip.read(glp_mpu_fifo_counth, bytes);
+        return bytes[0] * 256U + bytes[1];
+    }
+    void set(std::uint8_t address, std::uint8_t value) { chip.write(address, value, now_ns); }
+    void start(std::uint8_t fifo_en) {
+        set(glp_mpu_config, 3);  // 1 kHz inside
+        set(glp_mpu_fifo_en, fifo_en);
+        set(glp_mpu_user_ctrl, glp_mpu_user_ctrl_fifo_en | glp_mpu_user_ctrl_fifo_rst);
+        set(glp_mpu_int_enable, glp_mpu_int_raw_rdy);
+    }
+    void take_samples(int count) {
+        for (int i = 0; i < count; ++i) {
+            now_ns = chip.next_instant_ns();
+            EXPECT_TRUE(chip.pass_instant());
+        }
+    }
+
+    std::int64_t now_ns = 0;
+    SimulatedMpu9250 chip{typical_mpu9250(), 1, 0.0};
+};
+
+TEST_F(Mpu9250, IsAnMpu9250AndComesOutOfResetWithItsDefaults) {
+    EXPECT_EQ(read(glp_mpu_who_am_i), 0x71);
+    set(glp_mpu_who_am_i, 0);
+    set(glp_mpu_smplrt_div, 9);
+    EXPECT_EQ(read(glp_mpu_smplrt_div), 9);
+    set(glp_mpu_pwr_mgmt_1, glp_mpu_pwr_mgmt_1_h_reset);
+    EXPECT_EQ(read(glp_mpu_smplrt_div), 0);
+    EXPECT_EQ(read(glp_mpu_pwr_mgmt_1), 0x01);
+    EXPECT_EQ(read(glp_mpu_who_am_i), 0x71);
+}
+
+TEST_F(Mpu9250, RatesFollowTheFilterAndTheDivider) {
+    set(glp_mpu_smplrt_div, 4);
+    EXPECT_EQ(chip.nominal_rate_hz(), 8000.0);  // DLPF_CFG 0: the divider has no effect
+    set(glp_mpu_config, 1);
+    EXPECT_EQ(chip.nominal_rate_hz(), 200.0);
+    set(glp_mpu_config, 7);
+    EXPECT_EQ(chip.nominal_rate_hz(), 8000.0);
+    set(glp_mpu_gyro_config, glp_mpu_gyro_fchoice_b_bypass);
+    EXPECT_EQ(chip.nominal_rate_hz(), 32000.0);
+}
+
+TEST_F(Mpu9250, IsSilentUntilSomethingWantsItsSamples) {
+    EXPECT_EQ(chip.next_instant_ns(), SimulatedMpu9250::never_ns);
+    start(0);
+    EXPECT_EQ(chip.next_instant_ns(), 1'000'000);
+    set(glp_mpu_pwr_mgmt_1, 0x41);  // sleep
+    EXPECT_EQ(chip.next_instant_ns(), SimulatedMpu9250::never_ns);
+}
+
+TEST_F(Mpu9250, AFastClockBringsInstantsSooner) {
+    chip = SimulatedMpu9250(typical_mpu9250(), 1, 0.01);
+    start(0);
+    take_samples(1010);
+    EXPECT_EQ(now_ns, 1'000'000'000);
+}
+
+TEST_F(Mpu9250, TheFifoHoldsTheRegistersInTheirOrder) {
+    start(glp_mpu_fifo_en_accel | glp_mpu_fifo_en_temp | glp_mpu_fifo_en_gyro);
+    take_samples(1);
+    ASSERT_EQ(fifo_count(), 14U);
+    std::array<std::uint8_t, 14> from_fifo{};
+    std::array<std::uint8_t, 14> from_registers{};
+    chip.read(glp_mpu_fifo_r_w, from_fifo);
+    chip.read(glp_mpu_accel_xout_h, from_registers);
+    EXPECT_EQ(from_fifo, from_registers);
+    EXPECT_EQ(fifo_count(), 0U);
+    // At rest z shows gravity: 16384 counts at 2 g.
+    EXPECT_NEAR(from_fifo[4] * 256 + from_fifo[5], 16384, 500);
+    EXPECT_EQ(read(glp_mpu_fifo_r_w), 0xFF);  // empty
+}
+
+TEST_F(Mpu9250, AFullFifoKeepsTheOldestOrTheNewestAsConfigured) {
+    for (const bool keep_oldest : {true, false}) {
+        chip = SimulatedMpu9250(typical_mpu9250(), 1, 0.0);
+        now_ns = 0;
+        start(glp_mpu_fifo_en_gyro);
+        set(glp_mpu_config, keep_oldest ? 0x43 : 0x03);
+        take_samples(1);
+        std::array<std::uint8_t, 6> first{};
+        chip.read(glp_mpu_gyro_xout_h, first);
+        take_samples(99);
+        EXPECT_EQ(fifo_count(), 512U);
+        EXPECT_NE(read(glp_mpu_int_status) & glp_mpu_int_fifo_oflow, 0);
+        EXPECT_EQ(read(glp_mpu_int_status), 0);  // reading clears it
+        std::array<std::uint8_t, 512> content{};
+        chip.read(glp_mpu_fifo_r_w, content);
+        std::array<std::uint8_t, 6> last{};
+        chip.read(glp_mpu_gyro_xout_h, last);
+        if (keep_oldest) {
+            EXPECT_TRUE(std::equal(first.begin(), first.end(), content.begin()));
+        } else {
+            EXPECT_TRUE(std::equal(last.begin(), last.end(), content.end() - 6));
+        }
+    }
+}
+
+TEST_F(Mpu9250, TheFullScaleSetsTheCounts) {
+    SensorModel model = typical_mpu9250();
+    for (AxisModel& axis : model.axes) {
+        axis.noise = {};
+        axis.bias_rad_s = 100.0 * rad_per_deg;
+    }
+    chip = SimulatedMpu9250(model, 1, 0.0);
+    start(0);
+    for (unsigned range = 0; range < 4; ++range) {
+        set(glp_mpu_gyro_config, static_cast<std::uint8_t>(range << glp_mpu_gyro_fs_sel_shift));
+        take_samples(1);
+        std::array<std::uint8_t, 2> x{};
+        chip.read(glp_mpu_gyro_xout_h, x);
+        EXPECT_NEAR(x[0] * 256 + x[1], 100.0 * 32768.0 / (250U << range), 0.5);
+    }
+}
+
+}  // namespace
+}  // namespace gyrolog
