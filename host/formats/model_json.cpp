@@ -1,0 +1,448 @@
+#include "host/formats/model_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "host/base/file_output.hpp"
+#include "host/formats/text_file.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* schema_name = "gyrolog-model/1";
+constexpr int nesting_max = 32;
+constexpr double standard_gravity_m_s2 = 9.80665;
+constexpr double percent = 0.01;
+
+enum class Range { any, not_negative, positive };
+
+// Reads the keys of one JSON object. The first thing that is wrong is kept, with the key's full name; later
+// reads then return defaults. Keys that nobody asked for are left over.
+class Keys {
+public:
+    Keys(const Json& object, std::string path, std::optional<std::string>& problem)
+        : object_(&object), path_(std::move(path)), problem_(&problem) {
+        if (!object.is_object()) { fail(path_, "is not an object"); }
+    }
+
+    const Json* find(const std::string& key) {
+        known_.insert(key);
+        if (!object_->is_object()) { return nullptr; }
+        const auto found = object_->find(key);
+        return found == object_->end() ? nullptr : &*found;
+    }
+    const Json& need(const std::string& key) {
+        static const Json nothing;
+        const Json* found = find(key);
+        if (found == nullptr) { fail(name(key), "is missing"); }
+        return found == nullptr ? nothing : *found;
+    }
+
+    double number(const std::string& key, Range range) { return number_in(need(key), name(key), range); }
+    double number_or(const std::string& key, Range range, double otherwise) {
+        const Json* found = find(key);
+        return found == nullptr ? otherwise : number_in(*found, name(key), range);
+    }
+    std::string text(const std::string& key) { return text_in(need(key), name(key)); }
+    template <std::size_t size>
+    std::array<double, size> numbers(const Json& value, const std::string& where) {
+        std::array<double, size> list{};
+        if (!value.is_array() || value.size() != size) {
+            fail(where, "is not a list of " + std::to_string(size) + " numbers");
+            return list;
+        }
+        for (std::size_t i = 0; i < size; ++i) {
+            list[i] = number_in(value[i], where + "[" + std::to_string(i) + "]", Range::any);
+        }
+        return list;
+    }
+    Matrix3 matrix(const std::string& key) {
+        Matrix3 rows = identity_matrix;
+        const Json& value = need(key);
+        if (!value.is_array() || value.size() != 3) {
+            fail(name(key), "is not a 3x3 matrix");
+            return rows;
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            rows[i] = numbers<3>(value[i], name(key) + "[" + std::to_string(i) + "]");
+        }
+        return rows;
+    }
+    // An object of numbers; empty when `value` is null (already complained of, or not there).
+    std::map<std::string, double> uncertainties(const Json& value, const std::string& key) {
+        std::map<std::string, double> numbers;
+        if (!value.is_object()) {
+            fail(name(key), "is not an object");
+            return numbers;
+        }
+        for (const auto& item : value.items()) {
+            numbers[item.key()] = number_in(item.value(), name(key) + "." + item.key(), Range::not_negative);
+        }
+        return numbers;
+    }
+
+    double number_in(const Json& value, const std::string& where, Range range) {
+        if (!value.is_number()) {
+            fail(where, "is not a finite number");
+            return 0.0;
+        }
+        const auto number = value.get<double>();
+        if (!std::isfinite(number)) { fail(where, "is not a finite number"); }
+        if (range == Range::not_negative && number < 0.0) { fail(where, "is negative"); }
+        if (range == Range::positive && number <= 0.0) { fail(where, "is not above zero"); }
+        return number;
+    }
+    std::string text_in(const Json& value, const std::string& where) {
+        if (value.is_string()) { return value.get<std::string>(); }
+        fail(where, "is not text");
+        return {};
+    }
+
+    std::string name(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+    void fail(const std::string& where, const std::string& what) {
+        if (!*problem_) { *problem_ = where + " " + what; }
+    }
+    Keys inside(const Json& object, const std::string& key) const { return {object, name(key), *problem_}; }
+
+    // What was not asked for, as an object.
+    Json left_over() const {
+        Json rest = Json::object();
+        if (!object_->is_object()) { return rest; }
+        for (const auto& item : object_->items()) {
+            if (!known_.contains(item.key())) { rest[item.key()] = item.value(); }
+        }
+        return rest;
+    }
+
+private:
+    const Json* object_;
+    std::string path_;
+    std::optional<std::string>* problem_;
+    std::set<std::string> known_;
+};
+
+void carry(Json& carried, const std::string& key, Json rest) {
+    if (!rest.empty()) { carried[key] = std::move(rest); }
+}
+
+// The factor by which N, B and K of the file exceed those of the two-sided convention.
+double noise_factor(Keys& keys) {
+    const Json* noise_type = keys.find("noise_type");
+    if (noise_type == nullptr || *noise_type == "two_sided") { return 1.0; }
+    if (*noise_type != "one_sided") { keys.fail("noise_type", "is neither two_sided nor one_sided"); }
+    // A one-sided density holds the power of both sides: twice the two-sided one, so sqrt(2) in each
+    // coefficient.
+    return std::sqrt(2.0);
+}
+
+AxisModel read_axis(Keys& keys, double factor) {
+    AxisModel axis;
+    axis.noise.N_rad_per_sqrt_s = keys.number("N", Range::not_negative) * rad_per_deg / factor;
+    axis.noise.B_rad_per_s = keys.number("B", Range::not_negative) * rad_per_deg / factor;
+    axis.noise.K_rad_per_s_sqrt_s = keys.number("K", Range::not_negative) * rad_per_deg / factor;
+    axis.bias_rad_s = keys.number("bias", Range::any) * rad_per_deg;
+    axis.noise.Q_rad = keys.number_or("Q", Range::not_negative, 0.0) * rad_per_deg;
+    axis.noise.R_rad_per_s2 = keys.number_or("R", Range::any, 0.0) * rad_per_deg;
+    if (const Json* sd = keys.find("sd")) { axis.sd_rel = keys.uncertainties(*sd, "sd"); }
+    return axis;
+}
+
+TemperatureModel read_temperature(Keys& keys) {
+    TemperatureModel temperature;
+    temperature.reference_C = keys.number_or("reference_C", Range::any, temperature.reference_C);
+    if (const Json* bias = keys.find("bias_dps_per_C")) {
+        temperature.bias_rad_s_per_C = keys.numbers<3>(*bias, keys.name("bias_dps_per_C"));
+        for (double& slope : temperature.bias_rad_s_per_C) { slope *= rad_per_deg; }
+    }
+    if (const Json* scale = keys.find("scale_percent_per_C")) {
+        const std::string name = keys.name("scale_percent_per_C");
+        if (scale->is_array()) {
+            temperature.scale_per_C = keys.numbers<3>(*scale, name);
+        } else {
+            temperature.scale_per_C.fill(keys.number_in(*scale, name, Range::any));
+        }
+        for (double& slope : temperature.scale_per_C) { slope *= percent; }
+    }
+    return temperature;
+}
+
+EffectModel read_effect(Keys& keys) {
+    EffectModel effect;
+    effect.effect = keys.text("effect");
+    if (const Json* axes = keys.find("axes")) {
+        if (!axes->is_array()) { keys.fail(keys.name("axes"), "is not a list"); }
+        for (const Json& axis : *axes) {
+            effect.axes.push_back(keys.text_in(axis, keys.name("axes") + "[]"));
+        }
+    }
+    Json carried = keys.left_over();
+    carried.erase("params");
+    if (const Json* params = keys.find("params")) {
+        Keys inside = keys.inside(*params, "params");
+        for (const auto& item : params->items()) {
+            if (!params->is_object() || !item.value().is_number()) { continue; }  // carried: of another kind
+            effect.params[item.key()] = inside.number(item.key(), Range::any);
+        }
+        carry(carried, "params", inside.left_over());
+    }
+    if (!carried.empty()) { effect.carried_json = carried.dump(); }
+    return effect;
+}
+
+void read_sensor(Keys& keys, SensorModel& model) {
+    model.rate_hz = keys.number("rate_hz", Range::positive);
+    model.full_scale_rad_s = keys.number("full_scale_dps", Range::positive) * rad_per_deg;
+    model.lsb_rad_s = keys.number("lsb_dps", Range::not_negative) * rad_per_deg;
+    model.saturation_rad_s = keys.number("saturation_dps", Range::positive) * rad_per_deg;
+    model.M = keys.matrix("M");
+    model.latency_s = keys.number("latency_s", Range::any);
+    model.timestamp_jitter_s = keys.number("timestamp_jitter_s", Range::not_negative);
+    model.sd_rel = keys.uncertainties(keys.need("sd_rel"), "sd_rel");
+    model.sd_abs = keys.uncertainties(keys.need("sd_abs"), "sd_abs");
+    model.ref_noise_rad_s = keys.number("ref_noise_dps", Range::not_negative) * rad_per_deg;
+    model.acc_noise_m_s2 = keys.number("acc_noise_g", Range::not_negative) * standard_gravity_m_s2;
+    model.temp_noise_C = keys.number("temp_noise_C", Range::not_negative);
+    if (keys.find("orientation") != nullptr) { model.orientation = keys.matrix("orientation"); }
+    if (const Json* misalignment = keys.find("misalignment_percent")) {
+        model.misalignment = keys.numbers<3>(*misalignment, "misalignment_percent");
+        for (double& value : *model.misalignment) { value *= percent; }
+    }
+}
+
+SensorModel read_document(const Json& document, std::optional<std::string>& problem) {
+    SensorModel model;
+    Keys keys(document, "", problem);
+    keys.find("schema");  // judged by the caller
+    read_sensor(keys, model);
+
+    Json carried = Json::object();
+    const double factor = noise_factor(keys);
+    const Json& axes = keys.need("axes");
+    Keys axes_keys = keys.inside(axes, "axes");
+    Json axes_carried = Json::object();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string axis = axis_names[i];
+        Keys axis_keys = axes_keys.inside(axes_keys.need(axis), axis);
+        model.axes[i] = read_axis(axis_keys, factor);
+        carry(axes_carried, axis, axis_keys.left_over());
+    }
+    axes_carried.update(axes_keys.left_over());
+    carry(carried, "axes", std::move(axes_carried));
+
+    if (const Json* temperature = keys.find("temperature")) {
+        Keys temperature_keys = keys.inside(*temperature, "temperature");
+        model.temperature = read_temperature(temperature_keys);
+        carry(carried, "temperature", temperature_keys.left_over());
+    }
+    const Json& effects = keys.need("effects");
+    if (!effects.is_array()) { keys.fail("effects", "is not a list"); }
+    for (std::size_t i = 0; effects.is_array() && i < effects.size(); ++i) {
+        Keys effect_keys = keys.inside(effects[i], "effects[" + std::to_string(i) + "]");
+        model.effects.push_back(read_effect(effect_keys));
+    }
+    carried.update(keys.left_over());
+    if (!carried.empty()) { model.carried_json = carried.dump(); }
+    return model;
+}
+
+std::optional<Json> parse(std::string_view text, bool& too_deep) {
+    const auto watch = [&](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
+        if (depth > nesting_max) { too_deep = true; }
+        return !too_deep;
+    };
+    Json document = Json::parse(text, watch, false);
+    if (document.is_discarded() || too_deep) { return std::nullopt; }
+    return document;
+}
+
+// JSON has no NaN, no infinity and no 1e999, but programs write them. Put in quotes they parse, and the error
+// can name the key that holds one.
+std::string quote_non_finite(std::string_view text) {
+    std::string quoted;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size();) {
+        const char c = text[i];
+        if (in_string || c == '"') {
+            const bool escaped = in_string && c == '\\' && i + 1 < text.size();
+            if (c == '"') { in_string = !in_string; }
+            quoted.append(text.substr(i, escaped ? 2 : 1));
+            i += escaped ? 2 : 1;
+            continue;
+        }
+        const std::size_t end = std::min(text.find_first_of(" \t\r\n,:[]{}\"", i), text.size());
+        const std::string_view token = text.substr(i, end - i);
+        if (token.empty()) {
+            quoted.push_back(c);
+            ++i;
+            continue;
+        }
+        double value = 0.0;
+        const auto result = std::from_chars(token.data(), token.data() + token.size(), value);
+        const bool whole = result.ptr == token.data() + token.size();
+        const bool overflow = result.ec == std::errc::result_out_of_range;
+        const bool named = token == "NaN" || token == "Infinity" || token == "-Infinity";
+        if (named || (whole && (overflow || !std::isfinite(value)))) {
+            quoted.append("\"").append(token).append("\"");
+        } else {
+            quoted.append(token);
+        }
+        i = end;
+    }
+    return quoted;
+}
+
+// The value in a unit of so many SI units, with the fewest digits that come back as the same SI value.
+double in_unit(double si, double unit) {
+    const double exact = si / unit;
+    std::array<char, 40> digits{};
+    for (int precision = 0; precision < 17; ++precision) {
+        const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), exact,
+                                           std::chars_format::scientific, precision);
+        double value = 0.0;
+        std::from_chars(digits.data(), written.ptr, value);
+        if (value * unit == si) { return value; }
+    }
+    return exact;
+}
+
+template <std::size_t size>
+Json in_unit(const std::array<double, size>& si, double unit) {
+    Json list = Json::array();
+    for (const double value : si) { list.push_back(in_unit(value, unit)); }
+    return list;
+}
+
+Json format_matrix(const Matrix3& matrix) {
+    Json rows = Json::array();
+    for (const Vector3& row : matrix) { rows.push_back(in_unit(row, 1.0)); }
+    return rows;
+}
+
+Json format_map(const std::map<std::string, double>& numbers) {
+    Json json = Json::object();
+    for (const auto& [key, value] : numbers) { json[key] = value; }
+    return json;
+}
+
+Json format_axis(const AxisModel& axis) {
+    Json json;
+    json["N"] = in_unit(axis.noise.N_rad_per_sqrt_s, rad_per_deg);
+    json["B"] = in_unit(axis.noise.B_rad_per_s, rad_per_deg);
+    json["K"] = in_unit(axis.noise.K_rad_per_s_sqrt_s, rad_per_deg);
+    json["bias"] = in_unit(axis.bias_rad_s, rad_per_deg);
+    if (axis.noise.Q_rad != 0.0) { json["Q"] = in_unit(axis.noise.Q_rad, rad_per_deg); }
+    if (axis.noise.R_rad_per_s2 != 0.0) { json["R"] = in_unit(axis.noise.R_rad_per_s2, rad_per_deg); }
+    if (!axis.sd_rel.empty()) { json["sd"] = format_map(axis.sd_rel); }
+    return json;
+}
+
+// Puts back what was carried: objects are merged, everything else is the carried value.
+void put_back(Json& to, const Json& carried) {
+    for (const auto& item : carried.items()) {
+        if (item.value().is_object() && to.contains(item.key()) && to[item.key()].is_object()) {
+            put_back(to[item.key()], item.value());
+        } else if (!to.contains(item.key())) {
+            to[item.key()] = item.value();
+        }
+    }
+}
+
+void put_back(Json& to, const std::string& carried_json) {
+    const Json carried = Json::parse(carried_json, nullptr, false);
+    if (carried.is_object()) { put_back(to, carried); }
+}
+
+}  // namespace
+
+Result<SensorModel> parse_model(std::string_view text, const std::string& name) {
+    const auto malformed = [&](const std::string& why) {
+        return Error{ErrorCode::malformed, "model '" + name + "': " + why};
+    };
+    bool too_deep = false;
+    std::optional<Json> document = parse(text, too_deep);
+    const bool plain = document.has_value();
+    if (!plain && !too_deep) { document = parse(quote_non_finite(text), too_deep); }
+    if (too_deep) { return malformed("nested more than " + std::to_string(nesting_max) + " deep"); }
+    if (!document || !document->is_object()) { return malformed("not a JSON object"); }
+
+    const auto schema = document->find("schema");
+    if (schema == document->end()) { return malformed("schema is missing"); }
+    if (!schema->is_string()) { return malformed("schema is not text"); }
+    if (*schema != schema_name) {
+        return Error{ErrorCode::unsupported, "model '" + name + "': schema is '" +
+                                                 schema->get<std::string>() + "', not '" + schema_name + "'"};
+    }
+    std::optional<std::string> problem;
+    SensorModel model = read_document(*document, problem);
+    if (problem) { return malformed(*problem); }
+    if (!plain) { return malformed("holds a number that is not finite"); }
+    return model;
+}
+
+std::string format_model(const SensorModel& model) {
+    Json json;
+    json["schema"] = schema_name;
+    json["rate_hz"] = model.rate_hz;
+    json["full_scale_dps"] = in_unit(model.full_scale_rad_s, rad_per_deg);
+    json["lsb_dps"] = in_unit(model.lsb_rad_s, rad_per_deg);
+    json["saturation_dps"] = in_unit(model.saturation_rad_s, rad_per_deg);
+    for (std::size_t i = 0; i < 3; ++i) { json["axes"][axis_names[i]] = format_axis(model.axes[i]); }
+    json["M"] = format_matrix(model.M);
+    json["latency_s"] = model.latency_s;
+    json["timestamp_jitter_s"] = model.timestamp_jitter_s;
+    json["sd_rel"] = format_map(model.sd_rel);
+    json["sd_abs"] = format_map(model.sd_abs);
+    json["ref_noise_dps"] = in_unit(model.ref_noise_rad_s, rad_per_deg);
+    json["acc_noise_g"] = in_unit(model.acc_noise_m_s2, standard_gravity_m_s2);
+    json["temp_noise_C"] = model.temp_noise_C;
+    if (model.orientation) { json["orientation"] = format_matrix(*model.orientation); }
+    if (model.misalignment) { json["misalignment_percent"] = in_unit(*model.misalignment, percent); }
+    if (model.temperature) {
+        Json& temperature = json["temperature"];
+        temperature["reference_C"] = model.temperature->reference_C;
+        temperature["bias_dps_per_C"] = in_unit(model.temperature->bias_rad_s_per_C, rad_per_deg);
+        const Vector3& scale = model.temperature->scale_per_C;
+        const bool same = scale[0] == scale[1] && scale[1] == scale[2];
+        temperature["scale_percent_per_C"] =
+            same ? Json(in_unit(scale[0], percent)) : in_unit(scale, percent);
+    }
+    json["effects"] = Json::array();
+    for (const EffectModel& effect : model.effects) {
+        Json entry;
+        entry["effect"] = effect.effect;
+        entry["axes"] = Json::array();
+        for (const std::string& axis : effect.axes) { entry["axes"].push_back(axis); }
+        entry["params"] = format_map(effect.params);
+        put_back(entry, effect.carried_json);
+        json["effects"].push_back(std::move(entry));
+    }
+    put_back(json, model.carried_json);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<SensorModel> read_model(const std::string& path) {
+    GYROLOG_TRY(TextReader reader, TextReader::open(path));
+    std::string text;
+    while (true) {
+        GYROLOG_TRY(const std::string_view piece, reader.read());
+        if (piece.empty()) { return parse_model(text, path); }
+        text.append(piece);
+    }
+}
+
+Status write_model(const SensorModel& model, const std::string& path) {
+    return write_file(path, as_bytes(format_model(model)));
+}
+
+}  // namespace gyrolog
