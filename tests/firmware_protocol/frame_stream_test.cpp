@@ -148,8 +148,10 @@ class DamagedStream : public testing::TestWithParam<Damage> {};
 // Events that do not share a frame. A block of 64 bytes touches 1 + 63/228 = 1.28 frames of 228 bytes on
 // average; with 4000 events that mean is known to 0.007.
 TEST_P(DamagedStream, LosesLittleMoreThanTheTouchedFramesAndAcceptsNothingFalse) {
-    constexpr std::uint32_t frames = 20'000;
+    constexpr std::uint32_t spacing = 5;
     constexpr std::uint32_t events = 4000;
+    constexpr std::uint32_t before_first = 20;  // a stale block comes from 4096 bytes back
+    constexpr std::uint32_t frames = before_first + events * spacing;
     std::mt19937 random(static_cast<unsigned>(GetParam()) + 100U);
     std::vector<WireBytes> payloads;
     WireBytes bytes;
@@ -162,7 +164,7 @@ TEST_P(DamagedStream, LosesLittleMoreThanTheTouchedFramesAndAcceptsNothingFalse)
     }
     // From the back, so that positions in front stay where they are.
     for (std::uint32_t event = events; event > 0; --event) {
-        const std::uint32_t frame = event * (frames / events) - 2;
+        const std::uint32_t frame = before_first + event * spacing - 2;
         const std::size_t at = begins[frame] + random() % (begins[frame + 1] - begins[frame]);
         damage(bytes, at, GetParam(), random);
     }
