@@ -100,12 +100,12 @@ class CaptureFromVhciBoard(Scenario):
         self.assert_every_sample_of("capture", "VHCI10")
         self.assert_lasts("capture", 1000, 30)
 
-    def test_it_holds_the_bytes_that_usbmon_saw(self):
-        ours = list(usbmon_record.from_pcapng(self.file("capture.pcapng").read_bytes()))
-        kernels = list(usbmon_record.from_usbmon(self.file("usbmon.out").read_bytes()))
-        self.assertGreater(len(ours), 100)
-        self.assertEqual(b"".join(transfer.data for transfer in ours),
-                         b"".join(transfer.data for transfer in kernels))
+    def test_it_holds_the_transfers_that_usbmon_saw(self):
+        ours = usbmon_record.from_pcapng(self.file("capture.pcapng").read_bytes())
+        kernels = usbmon_record.from_usbmon(self.file("usbmon.out").read_bytes())
+        ours, kernels = ([transfer for transfer in record if transfer.data] for record in (ours, kernels))
+        self.assertGreater(len(ours), 1000)
+        self.assertEqual(ours, kernels)
 
     def test_cdc_acm_gets_its_terminal_back(self):
         self.assertEqual(self.text("ttyACM0.state").strip(), "back")
