@@ -1,7 +1,6 @@
 #include "host/capture/block_scanner.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <string_view>
 
 #include "host/capture/byte_order.hpp"
@@ -55,12 +54,6 @@ std::int64_t to_ns(std::uint64_t time, std::uint64_t ticks_per_s) {
     return static_cast<std::int64_t>(seconds * ns_per_s + part_ns);
 }
 
-bool checked_comment_follows(ByteView block, std::size_t options_offset) {
-    const auto options =
-        pcapng::read_options(block.subspan(options_offset, block.size() - options_offset - 4));
-    return options && pcapng::checked_comment(*options);
-}
-
 }  // namespace
 
 BlockScanner::BlockScanner(std::unique_ptr<InputFile> file) : file_(std::move(file)) { rewind(); }
@@ -69,7 +62,7 @@ void BlockScanner::rewind() {
     accounts_ = BlockAccounts{};
     accounts_.bytes_total = file_->size_bytes();
     offset_ = 0;
-    own_section_ = true;
+    own_section_ = format_ == Format::pcapng;
     vouched_seen_ = false;
     interfaces_.clear();
 }
@@ -102,9 +95,10 @@ Result<std::optional<CaptureBlock>> BlockScanner::next() {
 // A file that is shorter than its first number may still be the beginning of a capture.
 Status BlockScanner::recognise() {
     GYROLOG_TRY(const ByteView begin, view(0, pcapng::block_bytes_min));
-    const std::uint32_t section = pcapng::section_header;
-    const bool begins_section =
-        std::memcmp(begin.data(), &section, std::min<std::size_t>(begin.size(), 4)) == 0;
+    Bytes section;
+    put<std::uint32_t>(section, pcapng::section_header);
+    section.resize(std::min<std::size_t>(begin.size(), section.size()));
+    const bool begins_section = std::equal(section.begin(), section.end(), begin.begin());
     if (begin.size() >= 12 && begins_section && get<std::uint32_t>(begin, 8) == swapped_byte_order_magic) {
         return Error{ErrorCode::unsupported, "a big-endian capture; re-write it on a little-endian machine"};
     }
@@ -171,8 +165,7 @@ std::optional<CaptureBlock> BlockScanner::judge(ByteView bytes, bool searching) 
     switch (get<std::uint32_t>(bytes, 0)) {
         case pcapng::section_header:
             if (bytes.size() < 28 || get<std::uint32_t>(bytes, 8) != pcapng::byte_order_magic ||
-                get<std::uint16_t>(bytes, 12) != 1 ||
-                (is_own(bytes) && !checked_comment_follows(bytes, 24))) {
+                get<std::uint16_t>(bytes, 12) != 1 || (is_own(bytes) && !pcapng::section_comment(bytes))) {
                 return std::nullopt;
             }
             block.kind = BlockKind::section;
@@ -182,7 +175,7 @@ std::optional<CaptureBlock> BlockScanner::judge(ByteView bytes, bool searching) 
             block.kind = BlockKind::interface_description;
             return block;
         case pcapng::interface_statistics:
-            if (bytes.size() < 24 || (must_vouch(searching) && !checked_comment_follows(bytes, 20))) {
+            if (bytes.size() < 24 || (must_vouch(searching) && !pcapng::statistics_comment(bytes))) {
                 return std::nullopt;
             }
             block.kind = BlockKind::statistics;

@@ -15,12 +15,6 @@ extern "C" {
 namespace gyrolog {
 namespace {
 
-std::optional<std::string_view> comment_of(ByteView block, std::size_t options_offset) {
-    const auto options =
-        pcapng::read_options(block.subspan(options_offset, block.size() - options_offset - 4));
-    return options ? pcapng::checked_comment(*options) : std::nullopt;
-}
-
 bool is_device_descriptor(const Transfer& transfer) {
     return transfer.event == Transfer::Event::completion && transfer.kind == TransferKind::control &&
            transfer.data.size() == 18 && transfer.data[0] == 18 && transfer.data[1] == 1;
@@ -114,7 +108,7 @@ Result<std::optional<CapturedTransfer>> CaptureReader::advance() {
 void CaptureReader::enter_section(const CaptureBlock& block) {
     monotonic_behind_ns_ = 0;
     if (!scanner_.in_own_section()) { return; }
-    const auto comment = comment_of(block.bytes, 24);
+    const auto comment = pcapng::section_comment(block.bytes);
     std::optional<CaptureMetadata> metadata = comment ? read_metadata_json(*comment) : std::nullopt;
     if (!metadata) { return; }
     monotonic_behind_ns_ = metadata->started.realtime_ns - metadata->started.monotonic_ns;
@@ -123,7 +117,7 @@ void CaptureReader::enter_section(const CaptureBlock& block) {
 
 void CaptureReader::enter_statistics(const CaptureBlock& block) {
     if (!scanner_.in_own_section()) { return; }
-    if (const auto comment = comment_of(block.bytes, 20)) {
+    if (const auto comment = pcapng::statistics_comment(block.bytes)) {
         if (auto checkpoint = read_checkpoint_json(*comment)) { checkpoint_ = std::move(checkpoint); }
     }
 }

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::string_view checksum_prefix = "gyrolog-crc32:";
 constexpr std::uint8_t hash_crc32 = 2;
+constexpr std::size_t section_options_offset = 24;
+constexpr std::size_t statistics_options_offset = 20;
 constexpr std::size_t packet_header_bytes = 28;  // of the block, up to the packet
 constexpr std::uint16_t option_end = 0;
 constexpr std::uint16_t option_received = 4;
@@ -78,6 +80,20 @@ void append_checked_comment(Bytes& out, std::string_view comment) {
     append_option(out, option_comment, as_bytes(checksum_text(as_bytes(comment))));
 }
 
+std::optional<std::string_view> checked_comment(ByteView block, std::size_t options_offset) {
+    if (block.size() < options_offset + 4) { return std::nullopt; }
+    const auto options = read_options(block.subspan(options_offset, block.size() - options_offset - 4));
+    for (std::size_t i = 0; options && i + 1 < options->size(); ++i) {
+        const Option& comment = (*options)[i];
+        const Option& checksum = (*options)[i + 1];
+        if (comment.code == option_comment && checksum.code == option_comment &&
+            as_text(checksum.value) == checksum_text(comment.value)) {
+            return as_text(comment.value);
+        }
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::vector<Option>> read_options(ByteView bytes) {
@@ -93,14 +109,12 @@ std::optional<std::vector<Option>> read_options(ByteView bytes) {
     return options;
 }
 
-std::optional<std::string_view> checked_comment(std::span<const Option> options) {
-    for (std::size_t i = 0; i + 1 < options.size(); ++i) {
-        if (options[i].code == option_comment && options[i + 1].code == option_comment &&
-            as_text(options[i + 1].value) == checksum_text(options[i].value)) {
-            return as_text(options[i].value);
-        }
-    }
-    return std::nullopt;
+std::optional<std::string_view> section_comment(ByteView block) {
+    return checked_comment(block, section_options_offset);
+}
+
+std::optional<std::string_view> statistics_comment(ByteView block) {
+    return checked_comment(block, statistics_options_offset);
 }
 
 void append_section_header(Bytes& out, std::string_view comment, std::string_view application) {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -52,8 +51,9 @@ void append_statistics(Bytes& out, std::int64_t time_ns, std::string_view commen
 template <typename WritePacket>
 void append_packet(Bytes& out, std::int64_t time_ns, WritePacket&& write_packet);
 
-// The comment that append_ was given, if its checksum agrees.
-std::optional<std::string_view> checked_comment(std::span<const Option> options);
+// The comment that append_ was given, if its checksum agrees. `block` is a whole block of its kind.
+std::optional<std::string_view> section_comment(ByteView block);
+std::optional<std::string_view> statistics_comment(ByteView block);
 
 struct Packet {
     std::uint32_t interface = 0;
