@@ -432,13 +432,15 @@ std::string format_model(const SensorModel& model) {
 }
 
 Result<SensorModel> read_model(const std::string& path) {
-    GYROLOG_TRY(TextReader reader, TextReader::open(path));
+    auto reader = TextReader::open(path);
     std::string text;
-    while (true) {
-        GYROLOG_TRY(const std::string_view piece, reader.read());
-        if (piece.empty()) { return parse_model(text, path); }
-        text.append(piece);
+    while (reader.ok()) {
+        const auto piece = reader->read();
+        if (!piece.ok()) { return in_context("read model '" + path + "'", piece.error()); }
+        if (piece->empty()) { return parse_model(text, path); }
+        text.append(*piece);
     }
+    return in_context("read model '" + path + "'", reader.error());
 }
 
 Status write_model(const SensorModel& model, const std::string& path) {

@@ -1,0 +1,206 @@
+#include "host/formats/model_json.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace gyrolog {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* full_example = R"({
+  "schema": "gyrolog-model/1",
+  "rate_hz": 100.0, "full_scale_dps": 500.0, "lsb_dps": 0.015267, "saturation_dps": 500.26,
+  "axes": {
+    "x": {"N": 0.005, "B": 0.002, "K": 1.0e-4, "bias": 0.31, "Q": 1e-5, "R": -2e-6, "sd": {"N": 0.01}},
+    "y": {"N": 0.006, "B": 0.003, "K": 2.0e-4, "bias": -0.12},
+    "z": {"N": 0.007, "B": 0.004, "K": 3.0e-4, "bias": 0.08}
+  },
+  "M": [[1,0.01,0],[0,0.99,0],[0,0,1]],
+  "latency_s": 0.001, "timestamp_jitter_s": 2.0e-5,
+  "sd_rel": {"N": 0.005, "B": 0.08, "K": 0.20, "timestamp_jitter": 0.05},
+  "sd_abs": {"M": 2.0e-4, "latency_s": 1.0e-4, "rate_rel": 5.0e-5},
+  "ref_noise_dps": 0.02, "acc_noise_g": 0.003, "temp_noise_C": 0.03,
+  "orientation": [[0,1,0],[1,0,0],[0,0,-1]],
+  "misalignment_percent": [0.1, 0.2, -0.3],
+  "temperature": {"reference_C": 30.5, "bias_dps_per_C": [0.01, 0.02, 0.03], "scale_percent_per_C": 0.04},
+  "effects": [{"effect": "temp_lag", "axes": ["x"], "params": {"c1_dps_per_C": 0.021, "tau_s": 410}}]
+})";
+
+Json example() { return Json::parse(full_example); }
+
+SensorModel model_of(const Json& json) {
+    auto model = parse_model(json.dump(), "m.json");
+    EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().message);
+    return model.ok() ? *model : SensorModel{};
+}
+
+std::string refusal_of(const std::string& text) {
+    const auto model = parse_model(text, "m.json");
+    return model.ok() ? "accepted" : model.error().message;
+}
+
+TEST(ModelJson, EveryKeyArrivesInSiUnits) {
+    const SensorModel model = model_of(example());
+    EXPECT_EQ(model.rate_hz, 100.0);
+    EXPECT_DOUBLE_EQ(model.full_scale_rad_s, 500.0 * pi / 180.0);
+    EXPECT_DOUBLE_EQ(model.lsb_rad_s, 0.015267 * pi / 180.0);
+    EXPECT_DOUBLE_EQ(model.axes[1].noise.N_rad_per_sqrt_s, 0.006 * pi / 180.0);
+    EXPECT_DOUBLE_EQ(model.axes[2].noise.B_rad_per_s, 0.004 * pi / 180.0);
+    EXPECT_DOUBLE_EQ(model.axes[0].noise.K_rad_per_s_sqrt_s, 1e-4 * pi / 180.0);
+    EXPECT_DOUBLE_EQ(model.axes[0].noise.Q_rad, 1e-5 * pi / 180.0);
+    EXPECT_DOUBLE_EQ(model.axes[0].noise.R_rad_per_s2, -2e-6 * pi / 180.0);
+    EXPECT_EQ(model.axes[0].sd_rel.at("N"), 0.01);
+    EXPECT_DOUBLE_EQ(model.axes[1].bias_rad_s, -0.12 * pi / 180.0);
+    EXPECT_EQ(model.M[0][1], 0.01);
+    EXPECT_DOUBLE_EQ(model.acc_noise_m_s2, 0.003 * 9.80665);
+    EXPECT_EQ((*model.orientation)[2][2], -1.0);
+    EXPECT_DOUBLE_EQ((*model.misalignment)[2], -0.003);
+    EXPECT_DOUBLE_EQ(model.temperature->bias_rad_s_per_C[1], 0.02 * pi / 180.0);
+    EXPECT_DOUBLE_EQ(model.temperature->scale_per_C[2], 0.0004);
+    ASSERT_EQ(model.effects.size(), 1U);
+    EXPECT_EQ(model.effects[0].effect, "temp_lag");
+    EXPECT_EQ(model.effects[0].params.at("tau_s"), 410.0);
+}
+
+TEST(ModelJson, WhatIsReadIsWrittenBackWithTheSameNumbers) {
+    EXPECT_EQ(Json::parse(format_model(model_of(example()))), example());
+}
+
+TEST(ModelJson, UnknownKeysAreKeptWhereTheyStood) {
+    Json json = example();
+    json["lot"] = {{"number", 7}, {"tags", {"a", nullptr, true}}};
+    json["axes"]["x"]["colour"] = "red";
+    json["axes"]["w"] = 1;
+    json["temperature"]["hysteresis"] = 0.5;
+    json["effects"][0]["note"] = "seen in June";
+    json["effects"][0]["params"]["shape"] = "exponential";
+    EXPECT_EQ(Json::parse(format_model(model_of(json))), json);
+}
+
+TEST(ModelJson, AMissingNeededKeyIsNamed) {
+    for (const char* key : {"rate_hz", "full_scale_dps", "lsb_dps", "saturation_dps", "axes", "M",
+                            "latency_s", "timestamp_jitter_s", "sd_rel", "sd_abs", "ref_noise_dps",
+                            "acc_noise_g", "temp_noise_C", "effects", "schema"}) {
+        Json json = example();
+        json.erase(key);
+        EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': " + std::string(key) + " is missing");
+    }
+    Json json = example();
+    json["axes"]["y"].erase("B");
+    EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': axes.y.B is missing");
+    json = example();
+    json["axes"].erase("z");
+    EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': axes.z is missing");
+}
+
+TEST(ModelJson, OptionalKeysMayBeMissing) {
+    Json json = example();
+    for (const char* key : {"orientation", "misalignment_percent", "temperature"}) { json.erase(key); }
+    for (const char* key : {"Q", "R", "sd"}) { json["axes"]["x"].erase(key); }
+    const SensorModel model = model_of(json);
+    EXPECT_EQ(model.orientation, std::nullopt);
+    EXPECT_EQ(model.axes[0].noise.Q_rad, 0.0);
+    EXPECT_EQ(Json::parse(format_model(model)), json);
+}
+
+TEST(ModelJson, AWrongTypeOrAnImpossibleNumberIsNamed) {
+    const std::vector<std::pair<std::string, Json>> wrong = {{"/rate_hz", "fast"},
+                                                             {"/rate_hz", 0},
+                                                             {"/rate_hz", nullptr},
+                                                             {"/lsb_dps", -1},
+                                                             {"/axes", 1},
+                                                             {"/axes/x", Json::array()},
+                                                             {"/axes/x/N", "0.1"},
+                                                             {"/axes/x/N", -0.1},
+                                                             {"/M", 1},
+                                                             {"/M/1", 1},
+                                                             {"/M/1/2", "a"},
+                                                             {"/sd_rel", 1},
+                                                             {"/sd_rel/N", "a"},
+                                                             {"/effects", 1},
+                                                             {"/effects/0", 1},
+                                                             {"/effects/0/effect", 1},
+                                                             {"/effects/0/axes", "x"},
+                                                             {"/orientation", 1},
+                                                             {"/misalignment_percent", Json::array({1, 2})},
+                                                             {"/temperature", 1},
+                                                             {"/noise_type", "sideways"}};
+    for (const auto& [place, value] : wrong) {
+        Json json = example();
+        json[Json::json_pointer(place)] = value;
+        const std::string refusal = refusal_of(json.dump());
+        std::string key = place.substr(1, place.find('/', 1) - 1);
+        EXPECT_NE(refusal.find(key), std::string::npos) << place << ": " << refusal;
+    }
+}
+
+TEST(ModelJson, ANumberThatIsNotFiniteIsNamedHoweverItIsWritten) {
+    for (const char* number : {"NaN", "Infinity", "-Infinity", "1e999"}) {
+        std::string text = full_example;
+        text.replace(text.find("0.006"), 5, number);
+        EXPECT_EQ(refusal_of(text), "model 'm.json': axes.y.N is not a finite number");
+    }
+    std::string text = full_example;
+    text.replace(text.find("\"M\""), 0, "\"unknown\": NaN, ");
+    EXPECT_EQ(refusal_of(text), "model 'm.json': holds a number that is not finite");
+}
+
+TEST(ModelJson, WhatIsNoModelIsRefused) {
+    EXPECT_EQ(refusal_of(""), "model 'm.json': not a JSON object");
+    EXPECT_EQ(refusal_of("[1, 2]"), "model 'm.json': not a JSON object");
+    EXPECT_EQ(refusal_of(std::string(full_example, 200)), "model 'm.json': not a JSON object");
+    EXPECT_EQ(refusal_of(std::string(100'000, '[')), "model 'm.json': nested more than 32 deep");
+    Json json = example();
+    json["schema"] = "gyrolog-model/2";
+    EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': schema is 'gyrolog-model/2', not 'gyrolog-model/1'");
+}
+
+TEST(ModelJson, AOneSidedDensityIsTwiceTheTwoSidedOne) {
+    Json json = example();
+    json["noise_type"] = "one_sided";
+    const SensorModel one_sided = model_of(json);
+    json["noise_type"] = "two_sided";
+    const SensorModel two_sided = model_of(json);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        NoiseCoefficients given = two_sided.axes[axis].noise;
+        NoiseCoefficients taken = one_sided.axes[axis].noise;
+        given.Q_rad = taken.Q_rad = 0.0;
+        given.R_rad_per_s2 = taken.R_rad_per_s2 = 0.0;
+        for (const double f_hz : {0.001, 0.1, 10.0}) {
+            EXPECT_NEAR(given.psd(f_hz) / (2.0 * taken.psd(f_hz)), 1.0, 1e-14);
+        }
+    }
+}
+
+TEST(ModelJson, FilesAreReadAndWritten) {
+    const std::string path = testing::TempDir() + "model_json_test.json";
+    ASSERT_TRUE(write_model(model_of(example()), path).ok());
+    const auto model = read_model(path);
+    ASSERT_TRUE(model.ok()) << model.error().message;
+    EXPECT_EQ(Json::parse(format_model(*model)), example());
+    EXPECT_EQ(std::remove(path.c_str()), 0);
+    const auto missing = read_model(path);
+    ASSERT_FALSE(missing.ok());
+    EXPECT_EQ(missing.error().code, ErrorCode::not_found);
+    EXPECT_NE(missing.error().message.find(path), std::string::npos);
+}
+
+TEST(ModelJson, TheTypicalSensorSurvivesTheFile) {
+    const SensorModel typical = typical_mpu9250();
+    const SensorModel back = model_of(Json::parse(format_model(typical)));
+    EXPECT_EQ(back.lsb_rad_s, typical.lsb_rad_s);
+    EXPECT_EQ(back.saturation_rad_s, typical.saturation_rad_s);
+    EXPECT_EQ(back.acc_noise_m_s2, typical.acc_noise_m_s2);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(back.axes[axis].noise.N_rad_per_sqrt_s, typical.axes[axis].noise.N_rad_per_sqrt_s);
+        EXPECT_EQ(back.axes[axis].bias_rad_s, typical.axes[axis].bias_rad_s);
+    }
+}
+
+}  // namespace
+}  // namespace gyrolog
