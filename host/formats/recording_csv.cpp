@@ -285,7 +285,8 @@ Result<Recording> recording_of(Table& table, std::string name, const CsvReadOpti
     drop_missing_samples(gridded);
     differentiate_angles(gridded);
     if (gridded.columns.front().values.empty()) { return malformed("no complete sample"); }
-    std::ranges::stable_partition(gridded.columns, &InputColumn::is_gyro);
+    std::stable_partition(gridded.columns.begin(), gridded.columns.end(),
+                          [](const InputColumn& column) { return column.is_gyro(); });
     for (InputColumn& input : gridded.columns) {
         GYROLOG_TRY(Column column, column_of(input, options));
         recording.columns.push_back(std::move(column));
