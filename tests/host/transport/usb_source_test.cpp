@@ -314,7 +314,7 @@ TEST_F(UsbSourceTest, AFrameThatFillsItsTransferArrivesWithTheEmptyPacketBehindI
     open();
     start();
     raise_line();
-    EXPECT_TRUE(sink_.wait_for_bytes(2 * 64 * (1 + 2 + 3 + 4 + 5 + 6 + 7 + 8)));
+    EXPECT_TRUE(sink_.wait_for_bytes(std::size_t{2} * 64 * (1 + 2 + 3 + 4 + 5 + 6 + 7 + 8)));
     source_->stop();
     EXPECT_EQ(sink_.end(), SourceEnd::stopped);
     expect_running_count(sink_.stream());

@@ -181,6 +181,7 @@ TEST_F(BulkInStreamTest, UnpluggingAfterAnyNumberOfTransfersEndsTheStream) {
         ASSERT_TRUE(start().ok());
         expect_end(End::device_lost);
         EXPECT_EQ(error_.code, ErrorCode::device_lost);
+        EXPECT_THAT(error_.message, ::testing::HasSubstr("went away"));
         EXPECT_EQ(fresh.stream().size(), 64 * n);
         stream_->stop();
         EXPECT_EQ(ends_, 1) << "stopping what has ended changes nothing";
