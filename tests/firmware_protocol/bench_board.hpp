@@ -145,7 +145,7 @@ public:
             return static_cast<BenchBoard*>(self)->sensor.read(address, bytes, size);
         };
         hal_.delay_ms = [](void* self, std::uint32_t ms) {
-            static_cast<BenchBoard*>(self)->ticks += ms * 1000U;
+            static_cast<BenchBoard*>(self)->ticks += ms * std::uint64_t{1000};
         };
         hal_.link_write = [](void* self, const std::uint8_t* bytes, std::size_t size) {
             return static_cast<BenchBoard*>(self)->accept(bytes, size);

@@ -33,6 +33,7 @@ std::uint64_t expect_accounted(const std::vector<ReceivedFrame>& frames) {
 
 std::vector<std::uint8_t> types_of(const std::vector<ReceivedFrame>& frames) {
     std::vector<std::uint8_t> types;
+    types.reserve(frames.size());
     for (const ReceivedFrame& frame : frames) { types.push_back(frame.type); }
     return types;
 }
@@ -192,15 +193,18 @@ TEST(Board, AFullRingDropsWholeFramesCountsThemAndSaysSoLater) {
 }
 
 TEST(Board, AFullRingStillLetsAReplyThrough) {
-    BenchBoard bench;
-    bench.boot_and_raise_dtr();
-    bench.endpoint_room = 0;
-    bench.run(190);
-    ASSERT_GT(bench.board.lost_frames, 0U);
-    bench.command(glp_frame_get_status);
-    bench.endpoint_room = SIZE_MAX;
-    glp_board_poll(&bench.board);
-    EXPECT_EQ(bench.take_frames(glp_frame_reply).size(), 1U);
+    // Every size over more than a frame, so that in one of them the frames fill the ring to its last byte.
+    for (std::size_t ring_bytes = GLP_BOARD_RING_MIN; ring_bytes < GLP_BOARD_RING_MIN + 100; ++ring_bytes) {
+        BenchBoard bench(ring_bytes);
+        bench.boot_and_raise_dtr();
+        bench.endpoint_room = 0;
+        bench.run(96);  // 24 frames, and no STATUS yet
+        ASSERT_GT(bench.board.lost_frames, 0U);
+        bench.command(glp_frame_get_hello);
+        bench.endpoint_room = SIZE_MAX;
+        glp_board_poll(&bench.board);
+        EXPECT_EQ(bench.take_frames(glp_frame_reply).size(), 1U) << ring_bytes;
+    }
 }
 
 TEST(Board, TheTailOfAFrameNeverWaitsForTheNextOne) {
@@ -322,7 +326,7 @@ TEST(Board, AJumpInTheInstantsEndsTheFrameAndFlagsTheNext) {
     BenchBoard bench;
     bench.boot_and_raise_dtr();
     bench.run(6);
-    bench.ticks += 7 * bench.sample_period_us;
+    bench.ticks += 7ULL * bench.sample_period_us;
     bench.run(10);
     const std::vector<ReceivedFrame> frames = bench.take_frames(glp_frame_samples);
     ASSERT_GE(frames.size(), 3U);
