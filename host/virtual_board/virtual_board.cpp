@@ -223,7 +223,9 @@ void VirtualBoard::take_instant() {
     // period.
     const double sd_s = std::min(options_.model.timestamp_jitter_s, period_s / 40.0);
     if (sd_s > 0.0) {
-        const double spread = std::clamp(jitter_.normal(instants_drawn_), -4.0, 4.0);
+        const std::size_t place = instants_drawn_ % jitter_draws_.size();
+        if (place == 0) { jitter_.normals(instants_drawn_, jitter_draws_); }
+        const double spread = std::clamp(jitter_draws_[place], -4.0, 4.0);
         now_ns_ += to_ns(sd_s * (4.0 + spread));
     }
     ++instants_drawn_;

@@ -4,6 +4,7 @@
 // calls at the same times give the same bytes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -98,6 +99,7 @@ private:
     double ticks_per_ns_;
     SimulatedMpu9250 sensor_;
     RandomStream jitter_;
+    std::array<double, 256> jitter_draws_{};  // of the instants around instants_drawn_
     InEndpoint in_endpoint_;
     glp_hal hal_;
     glp_board board_{};
