@@ -118,7 +118,7 @@ void CaptureReader::enter_section(const CaptureBlock& block) {
 void CaptureReader::enter_statistics(const CaptureBlock& block) {
     if (!scanner_.in_own_section()) { return; }
     if (const auto comment = pcapng::statistics_comment(block.bytes)) {
-        if (auto checkpoint = read_checkpoint_json(*comment)) { checkpoint_ = std::move(checkpoint); }
+        if (auto checkpoint = read_checkpoint_json(*comment)) { checkpoint_ = checkpoint; }
     }
 }
 
