@@ -20,7 +20,7 @@ std::string hex(ByteView bytes) {
     std::string text;
     std::array<char, 3> digits{};
     for (const std::uint8_t byte : bytes) {
-        std::snprintf(digits.data(), digits.size(), "%02X", unsigned{byte});
+        static_cast<void>(std::snprintf(digits.data(), digits.size(), "%02X", unsigned{byte}));
         text += digits.data();
     }
     return text;
@@ -28,7 +28,7 @@ std::string hex(ByteView bytes) {
 
 std::string hex4(std::uint16_t value) {
     std::array<char, 5> digits{};
-    std::snprintf(digits.data(), digits.size(), "%04x", unsigned{value});
+    static_cast<void>(std::snprintf(digits.data(), digits.size(), "%04x", unsigned{value}));
     return digits.data();
 }
 
@@ -63,7 +63,8 @@ using GPointer = std::unique_ptr<T, Unref>;
 using IoctlData = GPointer<UMockdevIoctlData>;
 
 void fail(const char* what, const GError* error) {
-    std::fprintf(stderr, "umockdev: %s: %s\n", what, error != nullptr ? error->message : "unknown");
+    static_cast<void>(
+        std::fprintf(stderr, "umockdev: %s: %s\n", what, error != nullptr ? error->message : "unknown"));
     std::abort();
 }
 
@@ -91,7 +92,8 @@ std::string MockUsbIdentity::sysfs_path() const {
 
 std::string MockUsbIdentity::device_node() const {
     std::array<char, 32> path{};
-    std::snprintf(path.data(), path.size(), "/dev/bus/usb/001/%03u", unsigned{device_address});
+    static_cast<void>(
+        std::snprintf(path.data(), path.size(), "/dev/bus/usb/001/%03u", unsigned{device_address}));
     return path.data();
 }
 
@@ -276,7 +278,8 @@ int UmockdevBoard::Usbfs::get_driver(UMockdevIoctlData* argument) {
     auto& query = payload<usbdevfs_getdriver>(data);
     const bool used_by_usbfs = held_elsewhere || claimed.count(query.interface) != 0;
     if (!used_by_usbfs && !driver_bound) { return -ENODATA; }
-    std::snprintf(query.driver, sizeof query.driver, "%s", used_by_usbfs ? "usbfs" : "cdc_acm");
+    static_cast<void>(
+        std::snprintf(query.driver, sizeof query.driver, "%s", used_by_usbfs ? "usbfs" : "cdc_acm"));
     return 0;
 }
 

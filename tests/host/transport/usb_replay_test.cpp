@@ -13,7 +13,7 @@
 
 #include "host/capture/capture_writer.hpp"
 #include "host/transport/usb_source.hpp"
-#include "tests/host/transport/command_before_the_stream.hpp"
+#include "tests/host/transport/replayed_session.hpp"
 #include "tests/support/collecting_sink.hpp"
 #include "tests/support/umockdev_virtual_board.hpp"
 
@@ -91,7 +91,7 @@ TEST_F(UsbReplayTest, ACaptureServedInPlaceOfTheBoardGivesTheSameStream) {
         const test::UmockdevBoard plugged_in(bus, identity, function);
         auto usb = UsbContext::create();
         ASSERT_TRUE(usb.ok()) << usb.error().message;
-        auto source = UsbSource::open(std::move(usb).value(), "SIM0001");
+        auto source = UsbSource::open(std::move(usb).value(), "SIM0001", test::recording_plan);
         ASSERT_TRUE(source.ok()) << source.error().message;
         ASSERT_NO_FATAL_FAILURE(capture_a_while(**source, sink));
         ASSERT_NO_FATAL_FAILURE(write_capture(capture, (*source)->identity(), sink));

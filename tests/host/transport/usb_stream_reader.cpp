@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "host/transport/usb_source.hpp"
-#include "tests/host/transport/command_before_the_stream.hpp"
+#include "tests/host/transport/replayed_session.hpp"
 #include "tests/support/collecting_sink.hpp"
 
 namespace gyrolog {
@@ -16,7 +16,7 @@ namespace {
 
 Status read_stream(const char* path, std::size_t bytes_before, std::size_t bytes_total) {
     GYROLOG_TRY(std::shared_ptr<UsbContext> usb, UsbContext::create());
-    GYROLOG_TRY(const auto source, UsbSource::open(usb, ""));
+    GYROLOG_TRY(const auto source, UsbSource::open(usb, "", test::recording_plan));
     test::CollectingSink sink;
     GYROLOG_CHECK(source->start(sink));
     GYROLOG_CHECK(source->write(test::command_before_the_stream));
@@ -39,6 +39,6 @@ int main(int count, char** arguments) {
     if (count != 4) { return 2; }
     const gyrolog::Status read = gyrolog::read_stream(arguments[1], std::strtoul(arguments[2], nullptr, 10),
                                                       std::strtoul(arguments[3], nullptr, 10));
-    if (!read.ok()) { std::fprintf(stderr, "%s\n", read.error().message.c_str()); }
+    if (!read.ok()) { static_cast<void>(std::fprintf(stderr, "%s\n", read.error().message.c_str())); }
     return read.ok() ? 0 : 1;
 }

@@ -1,10 +1,15 @@
-// What the recording program sends and the replayed one must send again for the replay to go on.
+// What the recording program and the replayed one must do alike for the replay to go on.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "host/usb/bulk_in_stream.hpp"
+
 namespace gyrolog::test {
+
+// 16 samples a frame at 1 kHz.
+inline const BulkInPlan recording_plan = BulkInPlan::for_short_packets(62.5);
 
 // GET_HELLO with the sequence number 1, as it goes over the wire (SPEC.md, 4.1).
 inline constexpr std::array<std::uint8_t, 15> command_before_the_stream = {
