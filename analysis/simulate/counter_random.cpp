@@ -64,10 +64,11 @@ private:
     static constexpr int parts = 1 << part_bits;
     static constexpr int lowest_octave = -33;
     static constexpr int octaves = 64;
-    static constexpr std::size_t first_place = std::size_t{1023 + lowest_octave} << part_bits;
+    static constexpr std::size_t first_place = static_cast<std::size_t>(std::int64_t{1023} + lowest_octave)
+                                               << part_bits;
 
     static std::size_t slot(int octave, int part) {
-        return static_cast<std::size_t>((octave - lowest_octave) * parts + part);
+        return static_cast<std::size_t>(octave - lowest_octave) * parts + static_cast<std::size_t>(part);
     }
 
     // Cubic through the four Chebyshev points of [n, n + 1] * width, as a polynomial in d.

@@ -108,8 +108,8 @@ SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::uniq
     identity_.configuration_descriptor = configuration_descriptor();
     board_->set_sample_limit(limit.samples);
     // Real time: one transfer posted, beside the endpoint's own two packets. Otherwise there is always room.
-    board_->in_endpoint().set_capacity(transfer_bytes +
-                                       (realtime_ ? 2 * GLP_USB_PACKET_BYTES : 3 * transfer_bytes));
+    board_->in_endpoint().set_capacity(
+        transfer_bytes + (realtime_ ? std::size_t{2} * GLP_USB_PACKET_BYTES : 3 * transfer_bytes));
 }
 
 SimSource::~SimSource() { stop(); }
