@@ -33,7 +33,9 @@ SensorModel fitted_model(const AnalysisReport& report, const Recording& recordin
             model.saturation_rad_s = (codes_of_a_side - 1.0) * column->scale;
         }
     }
-    if (report.rate_sd_hz && report.rate_hz > 0.0) { model.sd_abs["rate_rel"] = *report.rate_sd_hz / report.rate_hz; }
+    if (report.rate_sd_hz && report.rate_hz > 0.0) {
+        model.sd_abs["rate_rel"] = *report.rate_sd_hz / report.rate_hz;
+    }
     return model;
 }
 

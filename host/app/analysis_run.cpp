@@ -1,10 +1,8 @@
 #include "host/app/analysis_run.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "analysis/noise/analyze.hpp"
 #include "analysis/plot/allan_figure.hpp"
@@ -25,7 +23,9 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
     AnalysisOptions options;
     options.confidence = request.confidence;
     if (request.deviation == name_of(DeviationKind::standard)) { options.kind = DeviationKind::standard; }
-    if (request.convention == name_of(PhaseConvention::matlab)) { options.convention = PhaseConvention::matlab; }
+    if (request.convention == name_of(PhaseConvention::matlab)) {
+        options.convention = PhaseConvention::matlab;
+    }
     if (!request.factors.empty()) { GYROLOG_TRY(options.m, parse_whole_numbers(request.factors)); }
     options.threads = 0;
     return options;
@@ -43,10 +43,10 @@ AllanTrace trace_of(const AxisReport& axis) {
     trace.curve = axis.curve;
     trace.N = plotted(axis.fit, NoiseTerm::N);
     trace.B = plotted(axis.fit, NoiseTerm::B);
+    if (trace.B && axis.slopes.B) { trace.B->tau_s = axis.slopes.B->tau_s; }
     trace.K = plotted(axis.fit, NoiseTerm::K);
-    const NoiseCoefficients fitted = axis.fit.identified();
     for (const AllanPoint& point : axis.curve.points) {
-        const double variance = fitted.allan_variance(point.tau_s);
+        const double variance = axis.fit.best.allan_variance(point.tau_s);
         if (variance > 0.0) { trace.model.push_back({point.tau_s, std::sqrt(variance)}); }
     }
     return trace;
@@ -73,14 +73,17 @@ Status write_plot(const AllanFigure& figure, const std::string& path) {
 
 Status write_results(Console& console, const AnalysisRequest& request, const Recording& recording,
                      const AnalysisReport& report) {
-    if (!request.json_path.empty()) { GYROLOG_CHECK(write_json(console, request.json_path, analysis_json(report))); }
+    if (!request.json_path.empty()) {
+        GYROLOG_CHECK(write_text(console, request.json_path, analysis_json(report)));
+    }
     if (!request.plot_path.empty()) {
         GYROLOG_CHECK(write_plot(figure_of(report, request.recording_path), request.plot_path));
     }
     if (!request.model_path.empty()) {
         if (report.unit.name == "lsb") {
-            return Error{ErrorCode::invalid_argument,
-                         "a model needs rates, and this recording has counts: give their scale with --lsb-dps"};
+            return Error{
+                ErrorCode::invalid_argument,
+                "a model needs rates, and this recording has counts: give their scale with --lsb-dps"};
         }
         GYROLOG_CHECK(write_model(fitted_model(report, recording), request.model_path));
     }
@@ -106,8 +109,9 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
         console.err << "gyrolog " << command << ": warning: " << warning << '\n';
     }
     if (report.axes.empty()) {
-        return report_error(console, command,
-                            {ErrorCode::failed, request.recording_path + ": there is no angular rate to analyse"});
+        return report_error(
+            console, command,
+            {ErrorCode::failed, request.recording_path + ": there is no angular rate to analyse"});
     }
     const Status written = write_results(console, request, *recording, report);
     return written.ok() ? ExitCode::ok : report_error(console, command, written.error());

@@ -13,7 +13,7 @@ namespace gyrolog {
 
 struct AnalysisRequest {
     std::string recording_path;
-    std::string json_path;   // "-" is standard output; empty: not wanted
+    std::string json_path;  // "-" is standard output; empty: not wanted
     std::string plot_path;
     std::string model_path;
     std::string deviation = "overlapping";

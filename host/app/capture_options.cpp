@@ -15,8 +15,10 @@ Result<std::uint16_t> parse_dlpf(const std::string& text) {
     std::uint16_t bandwidth_hz = 0;
     const auto [rest, problem] = std::from_chars(text.data(), text.data() + text.size(), bandwidth_hz);
     if (problem != std::errc() || rest != text.data() + text.size() || bandwidth_hz == 0) {
-        return Error{ErrorCode::invalid_argument,
-                     fmt::format("--dlpf '{}': write a bandwidth in Hz (5, 10, 20, 41, 92, 184, 250, 3600) or off", text)};
+        return Error{
+            ErrorCode::invalid_argument,
+            fmt::format("--dlpf '{}': write a bandwidth in Hz (5, 10, 20, 41, 92, 184, 250, 3600) or off",
+                        text)};
     }
     return bandwidth_hz;
 }
@@ -29,9 +31,14 @@ void CaptureOptions::declare(CLI::App& app) {
         ->type_name("URI")
         ->capture_default_str();
     app.add_option("--duration", duration, "Stop after this time: 90s, 15m, 6h, 1d")->type_name("T");
-    app.add_option("--samples", samples, "Stop after this many samples")->type_name("N")->check(CLI::PositiveNumber);
-    app.add_option("--rate", rate_hz, "Output rate of the sensor")->type_name("HZ")->check(CLI::PositiveNumber);
-    app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")->type_name("DPS");
+    app.add_option("--samples", samples, "Stop after this many samples")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--rate", rate_hz, "Output rate of the sensor")
+        ->type_name("HZ")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")
+        ->type_name("DPS");
     app.add_option("--dlpf", dlpf, "The sensor's low-pass filter: bandwidth, or off")->type_name("HZ|off");
     app.add_flag("--force", force, "Replace a file that exists");
 }

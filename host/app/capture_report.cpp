@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "host/app/live_view.hpp"
@@ -17,9 +18,12 @@ using Json = nlohmann::ordered_json;
 
 const char* name_of(FileEnd end) {
     switch (end) {
-        case FileEnd::clean: return "clean";
-        case FileEnd::torn_tail: return "torn_tail";
-        case FileEnd::damaged: return "damaged";
+        case FileEnd::clean:
+            return "clean";
+        case FileEnd::torn_tail:
+            return "torn_tail";
+        case FileEnd::damaged:
+            return "damaged";
     }
     return "";
 }
@@ -58,15 +62,18 @@ std::string row(std::string_view what, std::uint64_t count, std::string_view rem
 
 std::string end_text(const std::string& path, const BlockAccounts& file) {
     switch (file.end) {
-        case FileEnd::clean: return "clean";
+        case FileEnd::clean:
+            return "clean";
         case FileEnd::torn_tail:
-            return fmt::format("torn tail: the writer died there. {} bytes at the end are in no whole block; all "
-                               "before them is intact",
-                               format_count(file.bytes_in_tail));
+            return fmt::format(
+                "torn tail: the writer died there. {} bytes at the end are in no whole block; all "
+                "before them is intact",
+                format_count(file.bytes_in_tail));
         case FileEnd::damaged:
-            return fmt::format("damaged: {} bytes in {} places, with intact blocks behind them. Run `gyrolog recover "
-                               "{} -o NEW` to keep the intact part",
-                               format_count(file.bytes_damaged + file.bytes_in_tail), file.damaged_ranges, path);
+            return fmt::format(
+                "damaged: {} bytes in {} places, with intact blocks behind them. Run `gyrolog recover "
+                "{} -o NEW` to keep the intact part",
+                format_count(file.bytes_damaged + file.bytes_in_tail), file.damaged_ranges, path);
     }
     return "";
 }
@@ -101,7 +108,8 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
             {"dropouts", dropouts},
             {"dropouts_unlisted", link.dropouts_unlisted},
             {"corrupted_by_reason", reasons_json(link)},
-            {"lost_on_device", {{"samples", link.samples.lost_on_device}, {"frames", link.frames.lost_on_device}}},
+            {"lost_on_device",
+             {{"samples", link.samples.lost_on_device}, {"frames", link.frames.lost_on_device}}},
             {"boots", link.boots},
             {"runs", link.runs},
             {"file_bytes",
@@ -119,9 +127,9 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
     text += row("bytes of the stream", link.bytes.total);
     text += row("  in frames", link.bytes.in_frames);
     text += row("  skipped", link.bytes.skipped,
-                link.bytes_skipped_at_head > 0
-                    ? fmt::format("{} of them before the first frame", format_count(link.bytes_skipped_at_head))
-                    : "");
+                link.bytes_skipped_at_head > 0 ? fmt::format("{} of them before the first frame",
+                                                             format_count(link.bytes_skipped_at_head))
+                                               : "");
     text += row("  buffered", link.bytes.buffered, link.bytes.buffered > 0 ? "a frame that was cut off" : "");
     text += row("frames good", link.frames.good);
     text += row("  missing", link.frames.missing);

@@ -13,27 +13,33 @@ namespace {
 void sum_up(Console& console, const CaptureOutcome& outcome, const std::string& path) {
     const LinkReport& link = outcome.link;
     console.err << fmt::format("  {}: {} samples in {}, {}\n", path, format_count(link.samples.good),
-                               format_duration(outcome.progress.device_s), format_bytes(outcome.progress.file_bytes));
+                               format_duration(outcome.progress.device_s),
+                               format_bytes(outcome.progress.file_bytes));
     if (link.samples.missing > 0 || link.frames.missing > 0) {
-        console.err << fmt::format("  missing: {} samples in {} dropouts, {} frames; run `gyrolog check {}` for each\n",
-                                   format_count(link.samples.missing),
-                                   link.dropouts.size() + link.dropouts_unlisted, link.frames.missing, path);
+        console.err << fmt::format(
+            "  missing: {} samples in {} dropouts, {} frames; run `gyrolog check {}` for each\n",
+            format_count(link.samples.missing), link.dropouts.size() + link.dropouts_unlisted,
+            link.frames.missing, path);
     }
     if (link.frames.corrupted > 0) {
         console.err << fmt::format("  {} damaged frames were refused\n", link.frames.corrupted);
     }
     if (outcome.transfers_dropped > 0) {
-        console.err << fmt::format("  {} transfers ({}) found the queue full and were lost on this computer\n",
-                                   outcome.transfers_dropped, format_bytes(outcome.bytes_dropped));
+        console.err << fmt::format(
+            "  {} transfers ({}) found the queue full and were lost on this computer\n",
+            outcome.transfers_dropped, format_bytes(outcome.bytes_dropped));
     }
 }
 
 ExitCode exit_code_of(const CaptureOutcome& outcome) {
     switch (outcome.end) {
-        case CaptureEnd::device_lost: return ExitCode::device_lost;
-        case CaptureEnd::storage_failed: return gyrolog::exit_code_of(*outcome.error);
+        case CaptureEnd::device_lost:
+            return ExitCode::device_lost;
+        case CaptureEnd::storage_failed:
+            return gyrolog::exit_code_of(*outcome.error);
         case CaptureEnd::complete:
-        case CaptureEnd::interrupted: break;
+        case CaptureEnd::interrupted:
+            break;
     }
     return outcome.data_lost() ? ExitCode::data_lost : ExitCode::ok;
 }
@@ -44,8 +50,10 @@ ExitCode exit_code_of_opening(const Error& error) {
         case ErrorCode::not_found:
         case ErrorCode::permission_denied:
         case ErrorCode::busy:
-        case ErrorCode::timeout: return ExitCode::no_device;
-        default: return gyrolog::exit_code_of(error);
+        case ErrorCode::timeout:
+            return ExitCode::no_device;
+        default:
+            return gyrolog::exit_code_of(error);
     }
 }
 
@@ -83,8 +91,9 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
     result.code = exit_code_of(*outcome);
     if (outcome->error) {
         console.err << "gyrolog " << command << ": " << outcome->error->message
-                    << (outcome->end == CaptureEnd::device_lost ? "; the board is lost, what came before is saved\n"
-                                                                 : "; what was written before is saved\n");
+                    << (outcome->end == CaptureEnd::device_lost
+                            ? "; the board is lost, what came before is saved\n"
+                            : "; what was written before is saved\n");
     }
     sum_up(console, *outcome, path);
     return result;

@@ -15,8 +15,8 @@ struct CaptureResult {
     LinkReport link;
 };
 
-// Opens the device, captures to `path` until it is enough or the user stops it, and says on `err` what came of it.
-// `command` is the name that errors are reported under.
+// Opens the device, captures to `path` until it is enough or the user stops it, and says on `err` what came
+// of it. `command` is the name that errors are reported under.
 CaptureResult capture_to_file(Console& console, const char* command, const CaptureOptions& options,
                               const std::string& path, bool real_time);
 

@@ -7,11 +7,14 @@ namespace gyrolog {
 
 Action setup_analyze(CLI::App& app) {
     auto request = std::make_shared<AnalysisRequest>();
-    app.add_option("RECORDING", request->recording_path, "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)")
+    app.add_option("RECORDING", request->recording_path,
+                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)")
         ->required();
-    app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")->type_name("FILE");
+    app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")
+        ->type_name("FILE");
     app.add_option("--plot", request->plot_path, "Draw the Allan curves")->type_name("FILE.png");
-    app.add_option("--model", request->model_path, "Write the noise model for simulations")->type_name("FILE");
+    app.add_option("--model", request->model_path, "Write the noise model for simulations")
+        ->type_name("FILE");
     app.add_option("--deviation", request->deviation, "Which deviation")
         ->check(CLI::IsMember({"overlapping", "standard"}))
         ->type_name("NAME")

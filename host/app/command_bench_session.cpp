@@ -1,4 +1,5 @@
-// The program without a command: find the board, capture with a live view, on Ctrl-C close the file and analyse it.
+// The program without a command: find the board, capture with a live view, on Ctrl-C close the file and
+// analyse it.
 
 #include <ctime>
 #include <memory>

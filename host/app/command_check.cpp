@@ -28,7 +28,8 @@ ExitCode tell(Console& console, const char* command, const Options& options,
     const auto capture = load_capture(options.path, false);
     if (!capture.ok()) { return report_error(console, command, capture.error()); }
     if (!options.json.empty()) {
-        if (const Status written = write_json(console, options.json, as_json(options.path, *capture)); !written.ok()) {
+        if (const Status written = write_json(console, options.json, as_json(options.path, *capture));
+            !written.ok()) {
             return report_error(console, command, written.error());
         }
     }
@@ -47,7 +48,9 @@ Action setup_check(CLI::App& app) {
 
 Action setup_info(CLI::App& app) {
     const auto options = declare(app);
-    return [options](Console& console) { return tell(console, "info", *options, info_json, info_text, ExitCode::ok); };
+    return [options](Console& console) {
+        return tell(console, "info", *options, info_json, info_text, ExitCode::ok);
+    };
 }
 
 }  // namespace gyrolog

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "host/app/command.hpp"
@@ -30,8 +31,8 @@ nlohmann::ordered_json list_json(const UsbSurvey& survey) {
 
 void print_list(std::ostream& out, const UsbSurvey& survey) {
     for (const UsbBoard& board : survey.boards) {
-        out << fmt::format("{:<20} {:04x}:{:04x}  {:<28} {}\n", board.uri(), board.vendor_id, board.product_id,
-                           board.product.empty() ? "(name not readable)" : board.product,
+        out << fmt::format("{:<20} {:04x}:{:04x}  {:<28} {}\n", board.uri(), board.vendor_id,
+                           board.product_id, board.product.empty() ? "(name not readable)" : board.product,
                            board_state_name(board.state));
         if (!board.why.empty()) { out << "    " << board.why << '\n'; }
     }

@@ -19,10 +19,10 @@ ExitCode recover(Console& console, const Options& options) {
     if (!report.ok()) { return report_error(console, "recover", report.error()); }
     const BlockAccounts& source = report->source;
     const std::uint64_t left_out = source.bytes_damaged + source.bytes_in_tail;
-    console.out << fmt::format("{}: {} of {} kept, {} bytes left out in {} damaged places{}\n", options.recovered,
-                               format_bytes(report->bytes_kept), format_bytes(source.bytes_total),
-                               format_count(left_out), source.damaged_ranges,
-                               source.bytes_in_tail > 0 ? " and a torn tail" : "");
+    console.out << fmt::format("{}: {} of {} kept, {} bytes left out in {} damaged places{}\n",
+                               options.recovered, format_bytes(report->bytes_kept),
+                               format_bytes(source.bytes_total), format_count(left_out),
+                               source.damaged_ranges, source.bytes_in_tail > 0 ? " and a torn tail" : "");
     if (report->header_rewritten) {
         console.err << "gyrolog recover: the header was lost; which board this was is no longer known\n";
     }

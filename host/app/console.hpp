@@ -7,9 +7,9 @@
 namespace gyrolog {
 
 struct Console {
-    std::ostream& out;                      // the result and nothing else
-    std::ostream& err;                      // messages, warnings, errors, progress
-    bool progress = false;                  // err is a terminal: a line may be redrawn
+    std::ostream& out;                         // the result and nothing else
+    std::ostream& err;                         // messages, warnings, errors, progress
+    bool progress = false;                     // err is a terminal: a line may be redrawn
     const std::atomic<int>* signal = nullptr;  // set to the signal's number once the user wants to stop
 
     bool stop_wanted() const { return signal != nullptr && signal->load() != 0; }

@@ -4,9 +4,12 @@ namespace gyrolog {
 
 ExitCode exit_code_of(const Error& error) {
     switch (error.code) {
-        case ErrorCode::invalid_argument: return ExitCode::usage;
-        case ErrorCode::device_lost: return ExitCode::device_lost;
-        case ErrorCode::disk_full: return ExitCode::disk_full;
+        case ErrorCode::invalid_argument:
+            return ExitCode::usage;
+        case ErrorCode::device_lost:
+            return ExitCode::device_lost;
+        case ErrorCode::disk_full:
+            return ExitCode::disk_full;
         case ErrorCode::not_found:
         case ErrorCode::permission_denied:
         case ErrorCode::busy:
@@ -14,7 +17,8 @@ ExitCode exit_code_of(const Error& error) {
         case ErrorCode::malformed:
         case ErrorCode::unsupported:
         case ErrorCode::timeout:
-        case ErrorCode::failed: break;
+        case ErrorCode::failed:
+            break;
     }
     return ExitCode::failed;
 }

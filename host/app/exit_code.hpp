@@ -7,13 +7,13 @@ namespace gyrolog {
 
 enum class ExitCode : int {
     ok = 0,
-    failed = 1,           // the operation could not be done; stderr says why
-    usage = 2,            // the command line makes no sense; nothing was touched
-    no_device = 3,        // no board, or no permission to use it
-    device_lost = 4,      // the board went away; what came before is saved
-    data_lost = 5,        // done, but samples or bytes are missing; the report counts them
-    disk_full = 6,        // the file is closed and readable up to that point
-    not_conforming = 7,   // the device breaks a rule of the protocol
+    failed = 1,          // the operation could not be done; stderr says why
+    usage = 2,           // the command line makes no sense; nothing was touched
+    no_device = 3,       // no board, or no permission to use it
+    device_lost = 4,     // the board went away; what came before is saved
+    data_lost = 5,       // done, but samples or bytes are missing; the report counts them
+    disk_full = 6,       // the file is closed and readable up to that point
+    not_conforming = 7,  // the device breaks a rule of the protocol
 };
 
 ExitCode exit_code_of(const Error& error);

@@ -1,7 +1,6 @@
 #include "host/app/live_view.hpp"
 
 #include <fmt/format.h>
-
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -28,14 +27,15 @@ std::string cut(const std::string& text, std::size_t columns) {
 }  // namespace
 
 std::string describe_sensor(const glp_hello& hello, const glp_config& config) {
-    std::string text = fmt::format("{}, {:g} Hz, ±{} °/s", hello.sensor, config.rate_mHz * 1e-3,
-                                   config.gyro_full_scale_dps);
+    std::string text =
+        fmt::format("{}, {:g} Hz, ±{} °/s", hello.sensor, config.rate_mHz * 1e-3, config.gyro_full_scale_dps);
     text += config.dlpf_hz == 0 ? ", low-pass off" : fmt::format(", low-pass {} Hz", config.dlpf_hz);
     return text;
 }
 
 std::string live_line(const CaptureProgress& progress) {
-    std::string line = fmt::format("{}  {} samples", format_elapsed(progress.device_s), format_count(progress.samples));
+    std::string line =
+        fmt::format("{}  {} samples", format_elapsed(progress.device_s), format_count(progress.samples));
     if (progress.rate_hz) { line += fmt::format("  {:.2f} Hz", *progress.rate_hz); }
     line += fmt::format("  {} dropouts  {} CRC errors", progress.dropouts, progress.frames_corrupted);
     if (progress.temperature_C) { line += fmt::format("  {:.1f} °C", *progress.temperature_C); }

@@ -12,7 +12,8 @@ namespace {
 
 std::atomic<int> stop_signal = 0;
 
-// The first signal asks for a tidy end; the same signal once more ends the program as if it had never been caught.
+// The first signal asks for a tidy end; the same signal once more ends the program as if it had never been
+// caught.
 void on_stop_signal(int number) {
     stop_signal.store(number);
     static_cast<void>(std::signal(number, SIG_DFL));

@@ -13,8 +13,9 @@ Result<Recording> read_capture(const RecordingInput& input) {
     auto recording = capture.decoder->take_recording(input.path);
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
     if (capture.file.blocks.end == FileEnd::damaged) {
-        recording->warnings.push_back(fmt::format(
-            "the file is damaged in {} places; the samples lost there count as missing", capture.file.blocks.damaged_ranges));
+        recording->warnings.push_back(
+            fmt::format("the file is damaged in {} places; the samples lost there count as missing",
+                        capture.file.blocks.damaged_ranges));
     }
     if (input.rate_hz) {
         recording->rate_hz = *input.rate_hz;

@@ -1,4 +1,5 @@
-// A failed operation is a value. Bad data from outside is counted by its decoder and is no error; our own bugs abort.
+// A failed operation is a value. Bad data from outside is counted by its decoder and is no error; our own
+// bugs abort.
 #pragma once
 
 #include <cassert>
@@ -25,15 +26,18 @@ enum class ErrorCode {
 
 struct Error {
     ErrorCode code;
-    std::string message;  // one lower-case clause that names the thing that failed and, where there is one, the mend
+    std::string
+        message;  // one lower-case clause that names the thing that failed and, where there is one, the mend
 };
 
 // Either a value or an Error. The value may be read only after ok() was seen true.
 template <typename T>
 class [[nodiscard]] Result {
 public:
-    Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}      // NOLINT(google-explicit-constructor)
-    Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}  // NOLINT(google-explicit-constructor)
+    Result(T value)
+        : state_(std::in_place_index<0>, std::move(value)) {}  // NOLINT(google-explicit-constructor)
+    Result(Error error)
+        : state_(std::in_place_index<1>, std::move(error)) {}  // NOLINT(google-explicit-constructor)
 
     bool ok() const { return state_.index() == 0; }
     explicit operator bool() const { return ok(); }
@@ -69,8 +73,14 @@ public:
 
     bool ok() const { return !failed_; }
     explicit operator bool() const { return ok(); }
-    const Error& error() const& { assert(failed_); return error_; }
-    Error&& error() && { assert(failed_); return std::move(error_); }
+    const Error& error() const& {
+        assert(failed_);
+        return error_;
+    }
+    Error&& error() && {
+        assert(failed_);
+        return std::move(error_);
+    }
 
 private:
     bool failed_ = false;
@@ -93,15 +103,15 @@ inline Error in_context(std::string context, Error error) {
 // GYROLOG_TRY(auto x, f()): x holds f()'s value, or the enclosing function returns its error.
 #define GYROLOG_TRY(declaration, expression) \
     GYROLOG_TRY_INNER(declaration, expression, GYROLOG_CONCAT(gyrolog_try_, __LINE__))
-#define GYROLOG_TRY_INNER(declaration, expression, holder)      \
-    auto holder = (expression);                                 \
-    if (!holder.ok()) { return std::move(holder).error(); }     \
+#define GYROLOG_TRY_INNER(declaration, expression, holder)  \
+    auto holder = (expression);                             \
+    if (!holder.ok()) { return std::move(holder).error(); } \
     declaration = std::move(holder).value()
 
 // GYROLOG_CHECK(f()): the enclosing function returns f()'s error, if it has one.
-#define GYROLOG_CHECK(expression)                                               \
-    do {                                                                        \
-        if (auto gyrolog_status = (expression); !gyrolog_status.ok()) {         \
-            return std::move(gyrolog_status).error();                           \
-        }                                                                       \
+#define GYROLOG_CHECK(expression)                                       \
+    do {                                                                \
+        if (auto gyrolog_status = (expression); !gyrolog_status.ok()) { \
+            return std::move(gyrolog_status).error();                   \
+        }                                                               \
     } while (false)

@@ -1,8 +1,8 @@
 #include "host/session/capture_session.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -67,7 +67,9 @@ public:
         return error_;
     }
     double silence_s() const {
-        return static_cast<double>(clock_ns(CLOCK_MONOTONIC) - last_data_ns_.load(std::memory_order_relaxed)) * 1e-9;
+        return static_cast<double>(clock_ns(CLOCK_MONOTONIC) -
+                                   last_data_ns_.load(std::memory_order_relaxed)) *
+               1e-9;
     }
     void restart_silence() { last_data_ns_.store(clock_ns(CLOCK_MONOTONIC)); }
     std::uint64_t transfers_dropped() const { return transfers_dropped_; }
@@ -84,10 +86,12 @@ private:
     std::optional<Error> error_;
 };
 
-// The writer's thread: drains the queue into the file and into the decoder, and tells the caller's thread what came.
+// The writer's thread: drains the queue into the file and into the decoder, and tells the caller's thread
+// what came.
 class WriterThread final : private MessageHandler {
 public:
-    WriterThread(TransferQueue& queue, const QueueingSink& sink, CaptureWriter& writer, const CaptureRequest& request)
+    WriterThread(TransferQueue& queue, const QueueingSink& sink, CaptureWriter& writer,
+                 const CaptureRequest& request)
         : queue_(queue),
           sink_(sink),
           writer_(writer),
@@ -135,7 +139,9 @@ private:
 
     void take(const Transfer& transfer) {
         if (!storage_error_) {
-            if (Status appended = writer_.append(transfer); !appended.ok()) { fail(std::move(appended).error()); }
+            if (Status appended = writer_.append(transfer); !appended.ok()) {
+                fail(std::move(appended).error());
+            }
         }
         if (transfer.carries_stream()) {
             decoder_.feed(transfer.data, transfer.time);
@@ -229,9 +235,9 @@ private:
     std::thread thread_;  // last: starts when everything else is there
 };
 
-// The conversation with the board: quiet, configured, started; and stopped again at the end. A line without control
-// signals (a pty, a bare UART) is started and stopped by commands instead. A source that takes neither (a replayed
-// capture) plays whatever it has.
+// The conversation with the board: quiet, configured, started; and stopped again at the end. A line without
+// control signals (a pty, a bare UART) is started and stopped by commands instead. A source that takes
+// neither (a replayed capture) plays whatever it has.
 class BoardControl {
 public:
     BoardControl(ByteSource& source, WriterThread& writer, const QueueingSink& sink)
@@ -253,11 +259,13 @@ public:
 
     Status configure(const glp_configure& wanted) {
         const bool asked = wanted.rate_mHz != 0 || wanted.dlpf_hz != 0 || wanted.gyro_full_scale_dps != 0 ||
-                           wanted.accel_full_scale_g != 0 || wanted.layout != 0 || wanted.samples_per_frame != 0;
+                           wanted.accel_full_scale_g != 0 || wanted.layout != 0 ||
+                           wanted.samples_per_frame != 0;
         if (!asked) { return {}; }
         if (!takes_commands_) {
-            return Error{ErrorCode::invalid_argument,
-                         source_.identity().uri + " cannot be configured: leave --rate, --full-scale and --dlpf out"};
+            return Error{
+                ErrorCode::invalid_argument,
+                source_.identity().uri + " cannot be configured: leave --rate, --full-scale and --dlpf out"};
         }
         std::array<std::uint8_t, GLP_FRAME_PAYLOAD_MAX> payload{};
         const std::size_t size = glp_configure_write(&wanted, payload.data(), payload.size());
@@ -285,7 +293,8 @@ private:
     enum class Answer { awaited, not_awaited };
 
     Status command(glp_frame_type type, ByteView payload, Answer answer) {
-        const glp_frame frame{static_cast<std::uint8_t>(type), 0, ++sequence_, payload.data(), payload.size()};
+        const glp_frame frame{static_cast<std::uint8_t>(type), 0, ++sequence_, payload.data(),
+                              payload.size()};
         std::array<std::uint8_t, GLP_FRAME_WIRE_MAX> wire{};
         const glp_cobs_result encoded = glp_frame_encode(&frame, wire.data(), wire.size());
         GYROLOG_CHECK(source_.write(ByteView(wire).first(encoded.size)));
@@ -293,31 +302,37 @@ private:
         std::optional<std::uint8_t> result;
         writer_.wait(reply_timeout, [&] {
             for (const glp_reply& reply : writer_.replies()) {
-                if (reply.command_sequence == sequence_ && reply.command_type == type) { result = reply.result; }
+                if (reply.command_sequence == sequence_ && reply.command_type == type) {
+                    result = reply.result;
+                }
             }
             return result.has_value() || sink_.end().has_value();
         });
         if (!result) {
-            return Error{ErrorCode::timeout, "the board on " + source_.identity().uri + " did not answer a command"};
+            return Error{ErrorCode::timeout,
+                         "the board on " + source_.identity().uri + " did not answer a command"};
         }
         return refusal(*result);
     }
 
     Status refusal(std::uint8_t result) const {
         switch (result) {
-            case glp_result_ok: return {};
+            case glp_result_ok:
+                return {};
             case glp_result_bad_value:
-                return Error{ErrorCode::invalid_argument,
-                             "the board on " + source_.identity().uri +
-                                 " does not have this rate, full scale or low-pass (an MPU-9250 has 4 Hz to 1000 Hz in "
-                                 "whole divisions of 1 kHz, or 8000 Hz; 250, 500, 1000 or 2000 °/s; 5, 10, 20, 41, 92, "
-                                 "184, 250 or 3600 Hz or off)"};
+                return Error{ErrorCode::invalid_argument, "the board on " + source_.identity().uri +
+                                                              " does not have this rate, full scale or "
+                                                              "low-pass (an MPU-9250 has 4 Hz to 1000 Hz in "
+                                                              "whole divisions of 1 kHz, or 8000 Hz; 250, "
+                                                              "500, 1000 or 2000 °/s; 5, 10, 20, 41, 92, "
+                                                              "184, 250 or 3600 Hz or off)"};
             case glp_result_sensor_fault:
                 return Error{ErrorCode::failed,
                              "the board on " + source_.identity().uri + " cannot talk to its sensor"};
             default:
-                return Error{ErrorCode::unsupported, fmt::format("the board on {} refused a command (result {})",
-                                                                 source_.identity().uri, result)};
+                return Error{ErrorCode::unsupported,
+                             fmt::format("the board on {} refused a command (result {})",
+                                         source_.identity().uri, result)};
         }
     }
 
@@ -358,13 +373,15 @@ Error explain(const Error& error, const ByteSource& source, const LinkReport& li
     if (link.bytes.total == 0) { return {ErrorCode::timeout, uri + ": nothing came after the start"}; }
     if (link.frames.corrupted_by_reason[glp_status_bad_version] > 0) {
         return {ErrorCode::unsupported,
-                fmt::format("{} speaks another major version of the protocol than {}: update gyrolog or the firmware",
-                            uri, GLP_PROTOCOL_MAJOR)};
+                fmt::format(
+                    "{} speaks another major version of the protocol than {}: update gyrolog or the firmware",
+                    uri, GLP_PROTOCOL_MAJOR)};
     }
     return {ErrorCode::malformed,
-            fmt::format("{}: {} bytes came, but no HELLO and CONFIG frame: this is no gyrolog board, or not its data "
-                        "port",
-                        uri, link.bytes.total)};
+            fmt::format(
+                "{}: {} bytes came, but no HELLO and CONFIG frame: this is no gyrolog board, or not its data "
+                "port",
+                uri, link.bytes.total)};
 }
 
 // Runs until there is enough, the caller or the source ends it, or the disk refuses.
@@ -400,8 +417,10 @@ CaptureEnd stream_until_end(WriterThread& writer, QueueingSink& sink, const Capt
 
 }  // namespace
 
-Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request, const CaptureObserver& observe) {
-    GYROLOG_TRY(CaptureWriter writer, CaptureWriter::create(request.path, source.identity(), request.overwrite));
+Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request,
+                                   const CaptureObserver& observe) {
+    GYROLOG_TRY(CaptureWriter writer,
+                CaptureWriter::create(request.path, source.identity(), request.overwrite));
     TransferQueue queue(request.queue_bytes);
     QueueingSink sink(queue, source.can_wait());
     WriterThread thread(queue, sink, writer, request);
@@ -413,7 +432,8 @@ Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& req
         outcome.end = stream_until_end(thread, sink, request, observe, outcome.error);
         control.stop();
     }
-    // Tear-down, in this order: the source (its last callback closes the queue), the queue, the writer, the file.
+    // Tear-down, in this order: the source (its last callback closes the queue), the queue, the writer, the
+    // file.
     source.stop();
     queue.close();
     thread.join();

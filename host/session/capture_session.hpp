@@ -1,7 +1,8 @@
-// One capture from start to finish: source -> queue -> writer, with the handshake before and the accounts after.
+// One capture from start to finish: source -> queue -> writer, with the handshake before and the accounts
+// after.
 //
-// Threads: the source's own (pushes transfers, never waits for the disk), the writer's (appends, decodes for the
-// accounts, syncs), the caller's (handshake, progress, stop).
+// Threads: the source's own (pushes transfers, never waits for the disk), the writer's (appends, decodes for
+// the accounts, syncs), the caller's (handshake, progress, stop).
 #pragma once
 
 #include <cstdint>
@@ -19,11 +20,11 @@ namespace gyrolog {
 struct CaptureRequest {
     std::string path;
     bool overwrite = false;
-    std::optional<double> duration_s;       // of device time
-    std::optional<std::uint64_t> samples;   // at least so many sampling instants
-    glp_configure configure{};              // zeros: the board keeps its configuration
+    std::optional<double> duration_s;      // of device time
+    std::optional<std::uint64_t> samples;  // at least so many sampling instants
+    glp_configure configure{};             // zeros: the board keeps its configuration
     double hello_timeout_s = 3.0;
-    double idle_timeout_s = 10.0;           // silence that counts as a lost device
+    double idle_timeout_s = 10.0;  // silence that counts as a lost device
     std::size_t queue_bytes = std::size_t{16} << 20U;
 };
 
@@ -64,9 +65,11 @@ struct CaptureOutcome {
 // Called some ten times a second on the caller's thread; false ends the capture.
 using CaptureObserver = std::function<bool(const CaptureProgress&)>;
 
-// Errors are those before the stream began: the file could not be made, the source not started, no HELLO came, the
-// board refused the configuration. The file is then removed, unless bytes of the stream are in it. Once the stream has
-// begun, whatever ends it, the file is closed and readable and the outcome says what happened.
-Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request, const CaptureObserver& observe);
+// Errors are those before the stream began: the file could not be made, the source not started, no HELLO
+// came, the board refused the configuration. The file is then removed, unless bytes of the stream are in it.
+// Once the stream has begun, whatever ends it, the file is closed and readable and the outcome says what
+// happened.
+Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request,
+                                   const CaptureObserver& observe);
 
 }  // namespace gyrolog

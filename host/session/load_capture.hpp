@@ -13,16 +13,17 @@ namespace gyrolog {
 
 struct LoadedCapture {
     CaptureAccounts file;
-    std::optional<CaptureMetadata> metadata;       // absent in a foreign capture
+    std::optional<CaptureMetadata> metadata;  // absent in a foreign capture
     std::optional<CaptureCheckpoint> last_checkpoint;
-    HostTime first_data;                           // arrival of the first stream bytes
+    HostTime first_data;  // arrival of the first stream bytes
     std::unique_ptr<StreamDecoder> decoder;
 };
 
 // Errors: those of CaptureReader. A capture without one good frame is no error.
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples);
 
-// Whether the file begins like a capture (pcapng or pcap) rather than like text. False when it cannot be read.
+// Whether the file begins like a capture (pcapng or pcap) rather than like text. False when it cannot be
+// read.
 bool looks_like_capture(const std::string& path);
 
 }  // namespace gyrolog

@@ -36,10 +36,14 @@ Opened open_simulated(const SourceUri& uri, const SourceLimit& limit, bool real_
 Opened open_source(const std::string& uri, const SourceLimit& limit, bool real_time) {
     GYROLOG_TRY(const SourceUri parsed, parse_source_uri(uri));
     switch (parsed.kind) {
-        case SourceUri::Kind::usb: return open_usb(parsed);
-        case SourceUri::Kind::tty: return as_byte_source(TtySource::open(parsed.rest));
-        case SourceUri::Kind::sim: return open_simulated(parsed, limit, real_time);
-        case SourceUri::Kind::replay: return as_byte_source(ReplaySource::open(parsed.rest));
+        case SourceUri::Kind::usb:
+            return open_usb(parsed);
+        case SourceUri::Kind::tty:
+            return as_byte_source(TtySource::open(parsed.rest));
+        case SourceUri::Kind::sim:
+            return open_simulated(parsed, limit, real_time);
+        case SourceUri::Kind::replay:
+            return as_byte_source(ReplaySource::open(parsed.rest));
     }
     return Error{ErrorCode::invalid_argument, uri};
 }

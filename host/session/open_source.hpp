@@ -11,14 +11,16 @@
 
 namespace gyrolog {
 
-// Where a simulated board ends: it has no hour of its own to be stopped at. Other sources are stopped by the session.
+// Where a simulated board ends: it has no hour of its own to be stopped at. Other sources are stopped by the
+// session.
 struct SourceLimit {
     std::optional<double> duration_s;
     std::optional<std::uint64_t> samples;
 };
 
-// `uri` as in source_uri.hpp. `real_time` makes a simulated board keep to the clock, as if it had been asked with
-// realtime=1.
-Result<std::unique_ptr<ByteSource>> open_source(const std::string& uri, const SourceLimit& limit, bool real_time);
+// `uri` as in source_uri.hpp. `real_time` makes a simulated board keep to the clock, as if it had been asked
+// with realtime=1.
+Result<std::unique_ptr<ByteSource>> open_source(const std::string& uri, const SourceLimit& limit,
+                                                bool real_time);
 
 }  // namespace gyrolog

@@ -19,7 +19,8 @@ class TransferQueue {
 public:
     explicit TransferQueue(std::size_t capacity_bytes);
 
-    // False when the transfer finds no room. Whether that loses data is the caller's business (ByteSource::can_wait).
+    // False when the transfer finds no room. Whether that loses data is the caller's business
+    // (ByteSource::can_wait).
     bool push(const Transfer& transfer);
 
     // No more will be pushed; pop() returns what is left and then nothing.

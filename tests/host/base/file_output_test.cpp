@@ -1,11 +1,10 @@
 #include "host/base/file_output.hpp"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace gyrolog {
@@ -34,7 +33,8 @@ TEST_F(FileOutput, ReplacesWhatWasThere) {
     ASSERT_TRUE(write_file(path("a"), as_bytes("first, and longer")).ok());
     ASSERT_TRUE(write_file(path("a"), as_bytes("second")).ok());
     EXPECT_EQ(contents(path("a")), "second");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "a part file stayed";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
+        << "a part file stayed";
 }
 
 TEST_F(FileOutput, NamesAMissingFolder) {

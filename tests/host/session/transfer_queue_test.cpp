@@ -1,8 +1,8 @@
 #include "host/session/transfer_queue.hpp"
 
-#include <gtest/gtest.h>
-
 #include <thread>
+
+#include <gtest/gtest.h>
 
 namespace gyrolog {
 namespace {
@@ -32,7 +32,8 @@ TEST(TransferQueue, ReturnsWhatWasPushedInOrder) {
         EXPECT_EQ(transfer.id, next);
         EXPECT_EQ(transfer.status, -static_cast<int>(next));
         EXPECT_EQ(transfer.time.monotonic_ns, static_cast<std::int64_t>(next));
-        EXPECT_EQ(Bytes(transfer.data.begin(), transfer.data.end()), Bytes(next, static_cast<std::uint8_t>(next)));
+        EXPECT_EQ(Bytes(transfer.data.begin(), transfer.data.end()),
+                  Bytes(next, static_cast<std::uint8_t>(next)));
         ++next;
     });
     EXPECT_EQ(next, 100U);

@@ -1,0 +1,201 @@
+// Captures of the virtual board through the whole program: what a user types, what stands in the files
+// afterwards.
+
+#include <csignal>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class Capture : public testing::Test {
+protected:
+    ProgramResult capture(const std::string& device, const std::string& file,
+                          std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments{"capture", "--device", device, "-o", folder.path(file)};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_gyrolog(arguments);
+    }
+    json check(const std::string& file, int expected_exit_code = 0) {
+        const ProgramResult result = run_gyrolog({"check", folder.path(file), "--json", "-"});
+        EXPECT_EQ(result.exit_code, expected_exit_code) << result.out << result.err;
+        json answer = json::parse(result.out);
+        EXPECT_EQ(answer["bytes"]["total"], answer["bytes"]["in_frames"].get<std::uint64_t>() +
+                                                answer["bytes"]["skipped"].get<std::uint64_t>() +
+                                                answer["bytes"]["buffered"].get<std::uint64_t>());
+        return answer;
+    }
+
+    TemporaryFolder folder;
+};
+
+TEST_F(Capture, OfTheVirtualBoardIsWholeAndExactlyAsLongAsAsked) {
+    for (const auto& [rate, samples] : {std::pair{"100", 60000}, std::pair{"1000", 600000}}) {
+        const std::string file = std::string("r") + rate + ".pcapng";
+        const ProgramResult result =
+            capture(std::string("sim:seed=7,rate=") + rate, file, {"--duration", "10m"});
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(result.out, "") << "messages belong on standard error";
+        const json answer = check(file);
+        EXPECT_EQ(answer["end"], "clean");
+        EXPECT_EQ(answer["samples"]["good"], samples);
+        EXPECT_EQ(answer["samples"]["missing"], 0);
+        EXPECT_EQ(answer["frames"]["missing"], 0);
+        EXPECT_EQ(answer["frames"]["corrupted"], 0);
+        EXPECT_EQ(answer["bytes"]["skipped"], 0);
+        EXPECT_TRUE(answer["dropouts"].empty());
+    }
+}
+
+TEST_F(Capture, ASeedGivesTheSameSamplesAndAnotherSeedOthers) {
+    ASSERT_EQ(capture("sim:seed=3", "a.pcapng", {"--duration", "20m"}).exit_code, 0);
+    ASSERT_EQ(capture("sim:seed=3", "b.pcapng", {"--duration", "20m"}).exit_code, 0);
+    ASSERT_EQ(capture("sim:seed=4", "c.pcapng", {"--duration", "20m"}).exit_code, 0);
+    const auto analysis = [&](const char* file) {
+        const ProgramResult result = run_gyrolog({"analyze", folder.path(file), "--json", "-"});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return json::parse(result.out)["axes"];
+    };
+    EXPECT_EQ(analysis("a.pcapng"), analysis("b.pcapng"));
+    EXPECT_NE(analysis("a.pcapng"), analysis("c.pcapng"));
+}
+
+TEST_F(Capture, TheBoardTakesTheRequestedConfiguration) {
+    const ProgramResult result =
+        capture("sim:seed=1", "a.pcapng",
+                {"--duration", "5s", "--rate", "1000", "--full-scale", "250", "--dlpf", "92"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json info = json::parse(run_gyrolog({"info", folder.path("a.pcapng"), "--json", "-"}).out);
+    EXPECT_EQ(info["schema"], "gyrolog-info/1");
+    EXPECT_EQ(info["sensor"]["name"], "MPU-9250");
+    EXPECT_EQ(info["sensor"]["rate_hz"], 1000.0);
+    EXPECT_EQ(info["sensor"]["full_scale_dps"], 250);
+    EXPECT_EQ(info["sensor"]["dlpf"], 92);
+    EXPECT_EQ(info["samples"], 5000);
+    EXPECT_NEAR(info["duration_s"].get<double>(), 5.0, 0.05);
+}
+
+TEST_F(Capture, ARefusedConfigurationSaysWhatThereIsAndLeavesNoFile) {
+    const ProgramResult result = capture("sim:", "a.pcapng", {"--duration", "5s", "--full-scale", "300"});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_NE(result.err.find("500"), std::string::npos) << result.err;
+}
+
+TEST_F(Capture, AnExistingFileIsReplacedOnlyByForce) {
+    std::ofstream(folder.path("a.pcapng")) << "precious";
+    EXPECT_NE(capture("sim:", "a.pcapng", {"--duration", "5s"}).exit_code, 0);
+    EXPECT_EQ(read_whole_file(folder.path("a.pcapng")), "precious");
+    EXPECT_EQ(capture("sim:", "a.pcapng", {"--duration", "5s", "--force"}).exit_code, 0);
+    EXPECT_EQ(check("a.pcapng")["samples"]["good"], 500);
+}
+
+TEST_F(Capture, ALostSampleIsCountedNamedAndTold) {
+    const ProgramResult result =
+        capture("sim:rate=1000,fault=fifo_overflow@20", "a.pcapng", {"--duration", "60s"});
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    const json answer = check("a.pcapng", 5);
+    ASSERT_EQ(answer["dropouts"].size(), 1U);
+    EXPECT_EQ(answer["dropouts"][0]["cause"], "sensor_fifo_overflow");
+    EXPECT_NEAR(answer["dropouts"][0]["at_s"].get<double>(), 20.0, 1.0);
+    EXPECT_EQ(answer["dropouts"][0]["samples"], answer["samples"]["missing"]);
+    EXPECT_EQ(answer["samples"]["good"].get<int>() + answer["samples"]["missing"].get<int>(), 60000);
+}
+
+TEST_F(Capture, AnUnpluggedBoardLeavesAClosedAnalysableFile) {
+    const ProgramResult result = capture("sim:rate=1000,unplug=30", "a.pcapng", {"--duration", "60s"});
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    const json answer = check("a.pcapng");
+    EXPECT_EQ(answer["end"], "clean");
+    EXPECT_NEAR(answer["samples"]["good"].get<double>(), 30000.0, 100.0);
+    EXPECT_EQ(run_gyrolog({"analyze", folder.path("a.pcapng"), "--json", "-"}).exit_code, 0);
+}
+
+TEST_F(Capture, AReplayGivesTheSameStream) {
+    ASSERT_EQ(capture("sim:seed=9", "a.pcapng", {"--duration", "2m"}).exit_code, 0);
+    const ProgramResult replayed = capture("replay:" + folder.path("a.pcapng"), "b.pcapng");
+    ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
+    json first = check("a.pcapng");
+    json second = check("b.pcapng");
+    EXPECT_EQ(first["bytes"], second["bytes"]);
+    EXPECT_EQ(first["samples"], second["samples"]);
+}
+
+TEST_F(Capture, AFileCutAnywhereKeepsItsGoodPrefix) {
+    ASSERT_EQ(capture("sim:", "whole.pcapng", {"--duration", "1m"}).exit_code, 0);
+    const std::string whole = read_whole_file(folder.path("whole.pcapng"));
+    const std::uint64_t samples = check("whole.pcapng")["samples"]["good"];
+    std::uint64_t samples_before = 0;
+    for (int tenth = 3; tenth < 10; ++tenth) {
+        const std::size_t cut = whole.size() * static_cast<std::size_t>(tenth) / 10 + 1;
+        std::ofstream(folder.path("cut.pcapng"), std::ios::binary) << whole.substr(0, cut);
+        const json answer = check("cut.pcapng");
+        EXPECT_EQ(answer["end"], "torn_tail");
+        const std::uint64_t kept = answer["samples"]["good"];
+        EXPECT_GE(kept, samples_before);
+        EXPECT_LT(kept, samples);
+        samples_before = kept;
+        fs::remove(folder.path("recovered.pcapng"));
+        ASSERT_EQ(run_gyrolog({"recover", folder.path("cut.pcapng"), "-o", folder.path("recovered.pcapng")})
+                      .exit_code,
+                  0);
+        const json recovered = check("recovered.pcapng");
+        EXPECT_EQ(recovered["end"], "clean");
+        EXPECT_EQ(recovered["samples"]["good"], kept);
+    }
+    EXPECT_GT(samples_before, 0U);
+}
+
+TEST_F(Capture, ZerosBehindTheEndAreNoFrames) {
+    ASSERT_EQ(capture("sim:", "a.pcapng", {"--duration", "1m"}).exit_code, 0);
+    const json before = check("a.pcapng");
+    std::ofstream(folder.path("a.pcapng"), std::ios::binary | std::ios::app) << std::string(16384, '\0');
+    const json after = check("a.pcapng");
+    EXPECT_EQ(after["end"], "torn_tail");
+    EXPECT_EQ(after["frames"], before["frames"]);
+    EXPECT_EQ(after["bytes"], before["bytes"]);
+}
+
+TEST_F(Capture, TheBareProgramCapturesUntilInterruptedAndThenAnalyses) {
+    const ProgramResult result =
+        run_gyrolog_and_signal({"--device", "sim:rate=1000", "-o", folder.path("s.pcapng")},
+                               std::chrono::milliseconds(3000), SIGINT);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(check("s.pcapng")["end"], "clean");
+    const std::uint64_t samples = check("s.pcapng")["samples"]["good"];
+    EXPECT_GT(samples, 1000U);
+    EXPECT_LT(samples, 4000U) << "the bare program keeps to the clock";
+    EXPECT_NE(result.out.find("angle random walk"), std::string::npos) << result.out;
+    EXPECT_EQ(json::parse(read_whole_file(folder.path("s.json")))["schema"], "gyrolog-analysis/1");
+    EXPECT_EQ(json::parse(read_whole_file(folder.path("s.model.json")))["schema"], "gyrolog-model/1");
+    EXPECT_EQ(read_whole_file(folder.path("s.png")).substr(1, 3), "PNG");
+}
+
+TEST_F(Capture, AModelFileDrivesTheVirtualBoard) {
+    std::ofstream(folder.path("quiet.json")) << R"({"schema": "gyrolog-model/1", "rate_hz": 100,
+        "full_scale_dps": 250, "lsb_dps": 0.00763359, "saturation_dps": 250.1,
+        "axes": {"x": {"N": 0.02, "B": 0, "K": 0, "bias": 1.5}, "y": {"N": 0.04, "B": 0, "K": 0, "bias": -1.5},
+                 "z": {"N": 0.03, "B": 0, "K": 0, "bias": 0}}})";
+    const ProgramResult captured =
+        capture("sim:model=" + folder.path("quiet.json"), "a.pcapng", {"--duration", "30m"});
+    ASSERT_EQ(captured.exit_code, 0) << captured.err;
+    const ProgramResult result = run_gyrolog({"analyze", folder.path("a.pcapng"), "--json", "-"});
+    const json axes = json::parse(result.out)["axes"];
+    // 180 000 samples: N is known to 1/sqrt(2 * 180000) = 0.17 %, the bias to N/sqrt(1800 s); 4 sigma each.
+    EXPECT_NEAR(axes["x"]["coefficients"]["N"]["value"].get<double>(), 0.02, 0.02 * 0.01);
+    EXPECT_NEAR(axes["y"]["coefficients"]["N"]["value"].get<double>(), 0.04, 0.04 * 0.01);
+    EXPECT_NEAR(axes["x"]["bias"]["value"].get<double>(), 1.5, 4 * 0.02 / std::sqrt(1800.0));
+    EXPECT_NEAR(axes["y"]["bias"]["value"].get<double>(), -1.5, 4 * 0.04 / std::sqrt(1800.0));
+}
+
+}  // namespace
+}  // namespace gyrolog

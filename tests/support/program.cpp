@@ -1,0 +1,125 @@
+#include "tests/support/program.hpp"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace gyrolog {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds time_limit(100);
+
+struct SignalPlan {
+    std::chrono::milliseconds after;
+    int number;
+};
+
+std::string program_path() {
+    const char* build = std::getenv("GYROLOG_BUILD_DIR");
+    return (build == nullptr ? std::string(".") : std::string(build)) + "/gyrolog";
+}
+
+std::array<int, 2> make_pipe() {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) { throw std::runtime_error("pipe failed"); }
+    return ends;
+}
+
+[[noreturn]] void become_program(const std::vector<std::string>& arguments, int out, int err) {
+    dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
+    dup2(out, STDOUT_FILENO);
+    dup2(err, STDERR_FILENO);
+    const std::string path = program_path();
+    std::vector<char*> argv;
+    argv.push_back(const_cast<char*>(path.c_str()));
+    for (const std::string& argument : arguments) { argv.push_back(const_cast<char*>(argument.c_str())); }
+    argv.push_back(nullptr);
+    execv(path.c_str(), argv.data());
+    _exit(127);
+}
+
+// Reads both pipes to their ends, sending the signal on the way.
+void collect(pid_t child, int out, int err, std::optional<SignalPlan> plan, ProgramResult& result) {
+    const auto start = Clock::now();
+    std::array<pollfd, 2> ends{{{out, POLLIN, 0}, {err, POLLIN, 0}}};
+    std::array<std::string*, 2> texts{&result.out, &result.err};
+    std::size_t open_ends = ends.size();
+    while (open_ends > 0) {
+        if (poll(ends.data(), ends.size(), 20) < 0 && errno != EINTR) { break; }
+        if (plan && Clock::now() - start >= plan->after) {
+            kill(child, plan->number);
+            plan.reset();
+        }
+        if (Clock::now() - start > time_limit) {
+            kill(child, SIGKILL);
+            result.err += "\n(killed by the test: it did not end)\n";
+        }
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            if ((ends[i].revents & (POLLIN | POLLHUP)) == 0) { continue; }
+            std::array<char, 65536> piece{};
+            const ssize_t size = read(ends[i].fd, piece.data(), piece.size());
+            if (size > 0) {
+                texts[i]->append(piece.data(), static_cast<std::size_t>(size));
+            } else {
+                ends[i].fd = -1;
+                --open_ends;
+            }
+        }
+    }
+}
+
+ProgramResult run(const std::vector<std::string>& arguments, std::optional<SignalPlan> plan) {
+    const auto out = make_pipe();
+    const auto err = make_pipe();
+    const pid_t child = fork();
+    if (child == 0) { become_program(arguments, out[1], err[1]); }
+    close(out[1]);
+    close(err[1]);
+    ProgramResult result;
+    collect(child, out[0], err[0], plan, result);
+    close(out[0]);
+    close(err[0]);
+    int status = 0;
+    waitpid(child, &status, 0);
+    result.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    return result;
+}
+
+}  // namespace
+
+ProgramResult run_gyrolog(const std::vector<std::string>& arguments) { return run(arguments, std::nullopt); }
+
+ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,
+                                     std::chrono::milliseconds after, int signal) {
+    return run(arguments, SignalPlan{after, signal});
+}
+
+std::string read_whole_file(const std::filesystem::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+TemporaryFolder::TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "gyrolog_test_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) { throw std::runtime_error("no temporary folder"); }
+    folder_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+}
+
+}  // namespace gyrolog
