@@ -180,9 +180,16 @@ class FailingTransfers(Scenario):
 class TerminalLine(Scenario):
     name = "50_cdc_acm_tty"
 
-    def test_it_holds_every_sample_the_board_produced(self):
+    def test_it_holds_every_sample_of_the_stream_that_it_started(self):
+        """Opening a terminal raises DTR, and until it is made raw the kernel edits and echoes what comes: the board
+        streams for a moment, and these first bytes are damaged. They precede the start and nothing is missed."""
         self.assert_exit("capture", OK)
-        self.assert_every_sample_of("capture", "VHCI50")
+        check = self.json("capture.check.out")
+        self.assertEqual((check["end"], check["frames"]["missing"], check["samples"]["missing"]), ("clean", 0, 0))
+        self.assert_bytes_balance(check)
+        sessions = [session["samples"] for session in self.json("board-VHCI50.json")["sessions"]]
+        self.assertGreaterEqual(check["samples"]["good"], sessions[-1])
+        self.assertLessEqual(check["samples"]["good"], sum(sessions))
         self.assert_lasts("capture", 1000, 10)
 
 

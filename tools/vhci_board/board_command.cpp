@@ -1,5 +1,6 @@
 #include "tools/vhci_board/board_command.hpp"
 
+#include <iostream>
 #include <utility>
 
 namespace gyrolog {
@@ -24,14 +25,23 @@ Result<std::unique_ptr<VirtualBoard>> BoardCommand::power_on(std::uint32_t boot,
     return VirtualBoard::create(std::move(options));
 }
 
-Status BoardCommand::report(const SessionLog& log) const {
-    return report_path.empty() ? Status{} : write_report(report_path, serial, log.sessions());
-}
-
-void catch_stop_signals() {
+int run_board_command(CLI::App& app, int argc, char** argv, const BoardCommand& board,
+                      const std::function<Status(SessionLog&)>& serve) {
+    CLI11_PARSE(app, argc, argv);
     struct sigaction action {};
     action.sa_handler = [](int signal) { stop_signal = signal; };
     for (const int signal : {SIGINT, SIGTERM}) { sigaction(signal, &action, nullptr); }
+
+    SessionLog log;
+    const Status served = serve(log);
+    Status reported;
+    if (!board.report_path.empty()) {
+        reported = write_report(board.report_path, board.serial, log.sessions());
+    }
+    for (const Status& status : {served, reported}) {
+        if (!status.ok()) { std::cerr << app.get_name() << ": " << status.error().message << '\n'; }
+    }
+    return served.ok() && reported.ok() ? 0 : 1;
 }
 
 }  // namespace gyrolog

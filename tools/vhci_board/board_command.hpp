@@ -2,8 +2,11 @@
 #pragma once
 
 #include <csignal>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -22,11 +25,15 @@ struct BoardCommand {
     void declare(CLI::App& app);
     // Powered on. `boot` counts from 1; each boot has an id and a noise of its own.
     Result<std::unique_ptr<VirtualBoard>> power_on(std::uint32_t boot, std::vector<BoardFault> faults) const;
-    Status report(const SessionLog& log) const;
 };
 
 // Set once the user asks to stop, by SIGINT or SIGTERM.
 extern volatile std::sig_atomic_t stop_signal;
-void catch_stop_signals();
+
+// What a board's program does once its options are declared: parses the command line, catches the signals,
+// serves the board, writes the report whatever came of it, and says on standard error what went wrong. The
+// exit status.
+int run_board_command(CLI::App& app, int argc, char** argv, const BoardCommand& board,
+                      const std::function<Status(SessionLog&)>& serve);
 
 }  // namespace gyrolog

@@ -1,5 +1,6 @@
 // The virtual board behind the kernel's own ACM gadget function: a USB device whose descriptors, requests and
 // packets are the kernel's. The gadget itself is set up through configfs by whoever starts this program.
+#include <exception>
 #include <iostream>
 #include <string>
 
@@ -8,9 +9,11 @@
 #include "tools/vhci_board/board_command.hpp"
 #include "tools/vhci_board/tty_connection.hpp"
 
-int main(int argc, char** argv) {
-    using namespace gyrolog;
-    CLI::App app{"The virtual board's bytes for a serial gadget, until Ctrl-C"};
+namespace gyrolog {
+namespace {
+
+int gadget_board(int argc, char** argv) {
+    CLI::App app{"The virtual board's bytes for a serial gadget, until Ctrl-C", "gadget_board"};
     BoardCommand command;
     std::string tty_path = "/dev/ttyGS0";
     std::string line_state_path = "/sys/kernel/tracing/trace_pipe";
@@ -19,18 +22,20 @@ int main(int argc, char** argv) {
     app.add_option("--line-state", line_state_path,
                    "trace pipe that tells the host's SET_CONTROL_LINE_STATE requests")
         ->capture_default_str();
-    CLI11_PARSE(app, argc, argv);
-
-    catch_stop_signals();
-    SessionLog log;
-    const auto run = [&]() -> Status {
+    return run_board_command(app, argc, argv, command, [&](SessionLog& log) -> Status {
         GYROLOG_TRY(const auto board, command.power_on(1, {}));
         return serve_tty_connection(*board, tty_path, line_state_path, log, stop_signal);
-    };
-    const Status served = run();
-    const Status reported = command.report(log);
-    for (const Status& status : {served, reported}) {
-        if (!status.ok()) { std::cerr << "gadget_board: " << status.error().message << '\n'; }
+    });
+}
+
+}  // namespace
+}  // namespace gyrolog
+
+int main(int argc, char** argv) {
+    try {
+        return gyrolog::gadget_board(argc, argv);
+    } catch (const std::exception& error) {
+        std::cerr << "gadget_board: " << error.what() << '\n';
+        return 1;
     }
-    return served.ok() && reported.ok() ? 0 : 1;
 }

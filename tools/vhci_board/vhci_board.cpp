@@ -1,5 +1,6 @@
 // The virtual board as a USB device of this machine, on the kernel's virtual host controller. Needs root and
 // the module vhci-hcd; then `gyrolog --device usb:` finds it like any board.
+#include <exception>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -55,12 +56,9 @@ Status run(const Options& options, SessionLog& log) {
     return {};
 }
 
-}  // namespace
-}  // namespace gyrolog
-
-int main(int argc, char** argv) {
-    using namespace gyrolog;
-    CLI::App app{"The virtual board on the kernel's virtual USB host controller (vhci_hcd), until Ctrl-C"};
+int vhci_board(int argc, char** argv) {
+    CLI::App app{"The virtual board on the kernel's virtual USB host controller (vhci_hcd), until Ctrl-C",
+                 "vhci_board"};
     Options options;
     options.board.declare(app);
     app.add_option("--port", options.port, "port of the controller; the first free one unless given");
@@ -72,14 +70,18 @@ int main(int argc, char** argv) {
                    "pull the board out S seconds after the stream's start");
     app.add_option("--replug-after", options.replug_after_s,
                    "and plug it in again, freshly booted, S seconds later");
-    CLI11_PARSE(app, argc, argv);
+    return run_board_command(app, argc, argv, options.board,
+                             [&](SessionLog& log) { return run(options, log); });
+}
 
-    catch_stop_signals();
-    SessionLog log;
-    const Status served = run(options, log);
-    const Status reported = options.board.report(log);
-    for (const Status& status : {served, reported}) {
-        if (!status.ok()) { std::cerr << "vhci_board: " << status.error().message << '\n'; }
+}  // namespace
+}  // namespace gyrolog
+
+int main(int argc, char** argv) {
+    try {
+        return gyrolog::vhci_board(argc, argv);
+    } catch (const std::exception& error) {
+        std::cerr << "vhci_board: " << error.what() << '\n';
+        return 1;
     }
-    return served.ok() && reported.ok() ? 0 : 1;
 }
