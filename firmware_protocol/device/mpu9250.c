@@ -82,6 +82,21 @@ bool glp_mpu_plan_for(const glp_mpu_settings* settings, glp_mpu_plan* plan) {
     return true;
 }
 
+// The sensitivities of the product specification (PS-MPU-9250A-01, table 1): 131, 65.5, 32.8 and 16.4
+// LSB/dps. A full scale over 2^15 would be 0.05 % to 0.1 % less.
+static uint32_t gyro_ndps_per_lsb(uint16_t full_scale_dps) {
+    switch (full_scale_dps) {
+        case 250U:
+            return 7633588U;
+        case 500U:
+            return 15267176U;
+        case 1000U:
+            return 30487805U;
+        default:
+            return 60975610U;
+    }
+}
+
 void glp_mpu_describe(const glp_mpu_settings* settings, const glp_mpu_plan* plan, glp_config* config) {
     config->layout = settings->layout;
     config->rate_mHz = settings->rate_mHz;
@@ -89,9 +104,8 @@ void glp_mpu_describe(const glp_mpu_settings* settings, const glp_mpu_plan* plan
     config->accel_full_scale_g = settings->accel_full_scale_g;
     config->dlpf_hz = (settings->dlpf_hz == GLP_DLPF_OFF) ? 0U : settings->dlpf_hz;
     config->decimation = plan->decimation;
-    // Full scale over 2^15. The product specification's 131, 65.5, 32.8 and 16.4 LSB/dps are these, rounded.
-    // 1e9 / 2^15 = 1953125 / 64, and 1e12 / 2^15 = 1953125000 / 64: both stay within 32 bits this way.
-    config->gyro_ndps_per_lsb = (settings->gyro_full_scale_dps / 2U * 1953125U + 16U) / 32U;
+    config->gyro_ndps_per_lsb = gyro_ndps_per_lsb(settings->gyro_full_scale_dps);
+    // Full scale over 2^15: 1e12 / 2^15 = 1953125000 / 64 stays within 32 bits this way.
     config->accel_pg_per_lsb = settings->accel_full_scale_g / 2U * (1953125000U / 32U) +
                                (settings->accel_full_scale_g / 2U * (1953125000U % 32U) + 16U) / 32U;
     // TEMP_degC = TEMP_OUT / 333.87 + 21 (register 65; sensitivity: product specification

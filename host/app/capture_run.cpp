@@ -68,15 +68,20 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
         return result;
     }
     request->path = path;
-    auto source = open_source(options.device, {request->duration_s, request->samples}, real_time);
-    if (!source.ok()) {
-        report_error(console, command, source.error());
-        result.code = exit_code_of_opening(source.error());
+    auto opened = open_source(options.device, {request->duration_s, request->samples}, real_time);
+    if (!opened.ok()) {
+        report_error(console, command, opened.error());
+        result.code = exit_code_of_opening(opened.error());
         return result;
     }
-    console.err << "capturing from " << (*source)->identity().uri << " to " << path << '\n';
+    if (opened->keeps_limit) {
+        request->duration_s.reset();
+        request->samples.reset();
+    }
+    ByteSource& source = *opened->source;
+    console.err << "capturing from " << source.identity().uri << " to " << path << '\n';
     LiveView view(console);
-    const auto outcome = run_capture(**source, *request, [&](const CaptureProgress& progress) {
+    const auto outcome = run_capture(source, *request, [&](const CaptureProgress& progress) {
         view.show(progress);
         return !console.stop_wanted();
     });

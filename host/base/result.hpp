@@ -97,6 +97,7 @@ inline Error in_context(std::string context, Error error) {
 
 }  // namespace gyrolog
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot stand in parentheses
 #define GYROLOG_CONCAT_INNER(a, b) a##b
 #define GYROLOG_CONCAT(a, b) GYROLOG_CONCAT_INNER(a, b)
 
@@ -107,6 +108,8 @@ inline Error in_context(std::string context, Error error) {
     auto holder = (expression);                             \
     if (!holder.ok()) { return std::move(holder).error(); } \
     declaration = std::move(holder).value()
+
+// NOLINTEND(bugprone-macro-parentheses)
 
 // GYROLOG_CHECK(f()): the enclosing function returns f()'s error, if it has one.
 #define GYROLOG_CHECK(expression)                                       \

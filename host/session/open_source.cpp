@@ -10,17 +10,17 @@
 namespace gyrolog {
 namespace {
 
-using Opened = Result<std::unique_ptr<ByteSource>>;
+using Opened = Result<OpenedSource>;
 
 template <typename Source>
-Opened as_byte_source(Result<std::unique_ptr<Source>> source) {
+Opened opened(Result<std::unique_ptr<Source>> source, bool keeps_limit = false) {
     if (!source.ok()) { return std::move(source).error(); }
-    return Opened(std::move(source).value());
+    return OpenedSource{std::move(source).value(), keeps_limit};
 }
 
 Opened open_usb(const SourceUri& uri) {
     GYROLOG_TRY(std::shared_ptr<UsbContext> usb, UsbContext::create());
-    return as_byte_source(UsbSource::open(std::move(usb), uri.rest));
+    return opened(UsbSource::open(std::move(usb), uri.rest));
 }
 
 Opened open_simulated(const SourceUri& uri, const SourceLimit& limit, bool real_time) {
@@ -28,7 +28,7 @@ Opened open_simulated(const SourceUri& uri, const SourceLimit& limit, bool real_
     options.realtime = options.realtime || real_time;
     SensorModel model = typical_mpu9250();
     if (!options.model_path.empty()) { GYROLOG_TRY(model, read_model(options.model_path)); }
-    return as_byte_source(SimSource::create(options, model, {limit.samples, limit.duration_s}));
+    return opened(SimSource::create(options, model, {limit.samples, limit.duration_s}), true);
 }
 
 }  // namespace
@@ -39,11 +39,11 @@ Opened open_source(const std::string& uri, const SourceLimit& limit, bool real_t
         case SourceUri::Kind::usb:
             return open_usb(parsed);
         case SourceUri::Kind::tty:
-            return as_byte_source(TtySource::open(parsed.rest));
+            return opened(TtySource::open(parsed.rest));
         case SourceUri::Kind::sim:
             return open_simulated(parsed, limit, real_time);
         case SourceUri::Kind::replay:
-            return as_byte_source(ReplaySource::open(parsed.rest));
+            return opened(ReplaySource::open(parsed.rest));
     }
     return Error{ErrorCode::invalid_argument, uri};
 }

@@ -18,9 +18,13 @@ struct SourceLimit {
     std::optional<std::uint64_t> samples;
 };
 
+struct OpenedSource {
+    std::unique_ptr<ByteSource> source;
+    bool keeps_limit = false;  // it ends by itself where `limit` says, to the sample
+};
+
 // `uri` as in source_uri.hpp. `real_time` makes a simulated board keep to the clock, as if it had been asked
 // with realtime=1.
-Result<std::unique_ptr<ByteSource>> open_source(const std::string& uri, const SourceLimit& limit,
-                                                bool real_time);
+Result<OpenedSource> open_source(const std::string& uri, const SourceLimit& limit, bool real_time);
 
 }  // namespace gyrolog

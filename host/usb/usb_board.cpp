@@ -133,6 +133,18 @@ void add_device(UsbSurvey& survey, libusb_device* device) {
     survey.boards.push_back(std::move(board));
 }
 
+// How a board is known, as the user may compare it with lsusb.
+std::string board_marks() {
+    constexpr std::array digits{'0', '1', '2', '3', '4', '5', '6', '7',
+                                '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'};
+    std::string id;
+    for (const unsigned number : {GLP_USB_VENDOR_ID, GLP_USB_PRODUCT_ID}) {
+        id += id.empty() ? "" : ":";
+        for (unsigned shift = 16; shift > 0; shift -= 4) { id += digits[(number >> (shift - 4)) & 15U]; }
+    }
+    return id + " and products whose name begins with '" GLP_USB_PRODUCT_PREFIX "'";
+}
+
 std::string list_of(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) { text += (text.empty() ? "" : ", ") + name; }
@@ -190,8 +202,10 @@ Result<UsbBoard> choose_board(const UsbSurvey& survey, std::string_view serial) 
     if (fitting.empty()) {
         std::vector<std::string> instead = uris;
         instead.insert(instead.end(), survey.others.begin(), survey.others.end());
-        const std::string wanted = serial.empty() ? "a board" : "board 'usb:" + std::string(serial) + "'";
-        return Error{ErrorCode::not_found, "find " + wanted + ": not there; on USB: " + list_of(instead)};
+        const std::string wanted =
+            serial.empty() ? std::string("no board") : "no board 'usb:" + std::string(serial) + "'";
+        return Error{ErrorCode::not_found,
+                     wanted + " on USB: looked for " + board_marks() + ", found " + list_of(instead)};
     }
     if (fitting.size() > 1) {
         return Error{ErrorCode::invalid_argument, "find a board: several fit, name one of " + list_of(uris)};

@@ -95,7 +95,7 @@ Result<std::unique_ptr<SimSource>> SimSource::create(const SimOptions& options, 
 }
 
 SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::unique_ptr<VirtualBoard> board)
-    : realtime_(options.realtime), limit_(limit), board_(std::move(board)), buffer_(transfer_bytes) {
+    : realtime_(options.realtime), board_(std::move(board)), buffer_(transfer_bytes) {
     identity_.uri = uri_of(options);
     identity_.vendor_id = GLP_USB_VENDOR_ID;
     identity_.product_id = GLP_USB_PRODUCT_ID;
@@ -107,6 +107,7 @@ SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::uniq
     identity_.device_descriptor = device_descriptor();
     identity_.configuration_descriptor = configuration_descriptor();
     board_->set_sample_limit(limit.samples);
+    board_->set_duration_limit(limit.duration_s);
     // Real time: one transfer posted, beside the endpoint's own two packets. Otherwise there is always room.
     board_->in_endpoint().set_capacity(
         transfer_bytes + (realtime_ ? std::size_t{2} * GLP_USB_PACKET_BYTES : 3 * transfer_bytes));
@@ -184,12 +185,12 @@ void SimSource::run_as_fast_as_taken() {
             if (!wait_for_call(delivery_period_ns)) { return; }
             continue;
         }
-        board_->advance_to(next_look_ns());
+        board_->advance_to(board_->now_ns() + step_ns);
         if (board_->unplugged()) {
             deliver_bytes(1);
             deliver_in({}, -ESHUTDOWN);
             end_ = SourceEnd::device_lost;
-        } else if (limit_reached()) {
+        } else if (board_->sample_limit_reached()) {
             if (!finish_stream()) { return; }
             end_ = SourceEnd::exhausted;
         } else {
@@ -209,7 +210,7 @@ void SimSource::run_in_real_time() {
             deliver_packets();
             deliver_in({}, -ESHUTDOWN);
             end_ = SourceEnd::device_lost;
-        } else if (board_->streaming() && limit_reached()) {
+        } else if (board_->streaming() && board_->sample_limit_reached()) {
             if (!finish_stream()) { return; }
             end_ = SourceEnd::exhausted;
         } else if (!deliver_packets() || !wait_for_call(tick_ns)) {
@@ -254,20 +255,6 @@ bool SimSource::wait_for_call(std::int64_t time_ns) {
     called_.wait_for(lock, std::chrono::nanoseconds(time_ns),
                      [&] { return stop_wanted_ || !calls_.empty(); });
     return !stop_wanted_ || !calls_.empty();
-}
-
-std::int64_t SimSource::next_look_ns() const {
-    const std::int64_t step_end_ns = board_->now_ns() + step_ns;
-    const auto start_ns = board_->first_start_ns();
-    if (!limit_.duration_s || !start_ns) { return step_end_ns; }
-    return std::min<std::int64_t>(step_end_ns, *start_ns + std::llround(*limit_.duration_s * 1e9));
-}
-
-bool SimSource::limit_reached() const {
-    if (board_->sample_limit_reached()) { return true; }
-    const auto start_ns = board_->first_start_ns();
-    return limit_.duration_s && start_ns &&
-           static_cast<double>(board_->now_ns() - *start_ns) >= *limit_.duration_s * 1e9;
 }
 
 // Stops the board and delivers all that it still has. False: stop.

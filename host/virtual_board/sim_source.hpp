@@ -64,8 +64,6 @@ private:
     bool answer_calls();
     bool wait_for_call(std::int64_t time_ns);
     void make(const Call& call);
-    std::int64_t next_look_ns() const;
-    bool limit_reached() const;
     bool finish_stream();
     bool deliver_bytes(std::size_t at_least);
     bool deliver_packets();
@@ -78,7 +76,6 @@ private:
 
     SourceIdentity identity_;
     bool realtime_;
-    SimLimit limit_;
     std::unique_ptr<VirtualBoard> board_;
     Bytes buffer_;
 

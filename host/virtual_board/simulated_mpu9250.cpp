@@ -217,7 +217,9 @@ void SimulatedMpu9250::refill() {
     place_ = 0;
     const unsigned gyro_range = (registers_[glp_mpu_gyro_config] >> glp_mpu_gyro_fs_sel_shift) & 3U;
     const unsigned accel_range = (registers_[glp_mpu_accel_config] >> glp_mpu_accel_fs_sel_shift) & 3U;
-    const double gyro_lsb_rad_s = (250U << gyro_range) * rad_per_deg / 32768.0;
+    // PS-MPU-9250A-01, table 1
+    constexpr std::array lsb_per_dps{131.0, 65.5, 32.8, 16.4};
+    const double gyro_lsb_rad_s = rad_per_deg / lsb_per_dps[gyro_range];
     const double accel_lsb_m_s2 = (2U << accel_range) * standard_gravity_m_s2 / 32768.0;
     const Converter gyro(gyro_lsb_rad_s, 32767.0 * gyro_lsb_rad_s);
     const Converter accel(accel_lsb_m_s2, 32767.0 * accel_lsb_m_s2);

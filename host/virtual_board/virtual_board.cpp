@@ -167,19 +167,29 @@ void VirtualBoard::run_main_loop() {
 void VirtualBoard::on_line_state(bool data_terminal_ready) {
     line_state_ = data_terminal_ready;
     glp_board_on_line_state(&board_, data_terminal_ready);
-    if (board_.streaming && !first_start_ns_) { first_start_ns_ = now_ns_; }
+    note_start();
     run_main_loop();
 }
 
 void VirtualBoard::on_receive(ByteView bytes) {
     glp_board_on_receive(&board_, bytes.data(), bytes.size());
     sensor_.set_pin_divider(board_.plan.decimation, now_ns_);
-    if (board_.streaming && !first_start_ns_) { first_start_ns_ = now_ns_; }
+    note_start();
     run_main_loop();
 }
 
 std::uint64_t VirtualBoard::sampling_instants() const {
     return board_.next_index + (board_.instants - board_.instants_done);
+}
+
+void VirtualBoard::note_start() {
+    if (!board_.streaming || first_start_ns_) { return; }
+    first_start_ns_ = now_ns_;
+    if (duration_limit_s_) {
+        const auto samples =
+            static_cast<std::uint64_t>(std::llround(*duration_limit_s_ * sensor_.nominal_rate_hz()));
+        sample_limit_ = std::min(sample_limit_.value_or(samples), samples);
+    }
 }
 
 bool VirtualBoard::sample_limit_reached() const {

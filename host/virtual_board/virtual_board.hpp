@@ -65,6 +65,9 @@ public:
     // --- The end of a run of known length.
     // After this many sampling instants since the stream's last start the sensor stops firing.
     void set_sample_limit(std::optional<std::uint64_t> samples) { sample_limit_ = samples; }
+    // The same by time at the nominal rate in force when the stream starts: one hour at 100 Hz is 360 000
+    // samples, whatever the sensor's clock is off by.
+    void set_duration_limit(std::optional<double> duration_s) { duration_limit_s_ = duration_s; }
     bool sample_limit_reached() const;
     // Sampling instants since the stream's last start.
     std::uint64_t sampling_instants() const;
@@ -88,6 +91,7 @@ private:
     Status power_on();
     Status configure_at_power_on();
     void run_main_loop();
+    void note_start();
     void take_instant();
     void meet_faults();
     std::int64_t next_event_ns() const;
@@ -111,6 +115,7 @@ private:
     std::uint64_t instants_drawn_ = 0;
     std::optional<std::int64_t> first_start_ns_;
     std::optional<std::uint64_t> sample_limit_;
+    std::optional<double> duration_limit_s_;
     bool line_state_ = false;
     bool unplugged_ = false;
 

@@ -1,8 +1,8 @@
 // Captures of the virtual board through the whole program: what a user types, what stands in the files
 // afterwards.
 
-#include <csignal>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -181,12 +181,16 @@ TEST_F(Capture, TheBareProgramCapturesUntilInterruptedAndThenAnalyses) {
 }
 
 TEST_F(Capture, AModelFileDrivesTheVirtualBoard) {
-    std::ofstream(folder.path("quiet.json")) << R"({"schema": "gyrolog-model/1", "rate_hz": 100,
-        "full_scale_dps": 250, "lsb_dps": 0.00763359, "saturation_dps": 250.1,
-        "axes": {"x": {"N": 0.02, "B": 0, "K": 0, "bias": 1.5}, "y": {"N": 0.04, "B": 0, "K": 0, "bias": -1.5},
-                 "z": {"N": 0.03, "B": 0, "K": 0, "bias": 0}}})";
+    ASSERT_EQ(capture("sim:", "first.pcapng", {"--duration", "10m"}).exit_code, 0);
+    ASSERT_EQ(
+        run_gyrolog({"analyze", folder.path("first.pcapng"), "--model", folder.path("model.json")}).exit_code,
+        0);
+    json model = json::parse(read_whole_file(folder.path("model.json")));
+    model["axes"]["x"].update({{"N", 0.02}, {"B", 0.0}, {"K", 0.0}, {"bias", 1.5}});
+    model["axes"]["y"].update({{"N", 0.04}, {"B", 0.0}, {"K", 0.0}, {"bias", -1.5}});
+    std::ofstream(folder.path("model.json")) << model;
     const ProgramResult captured =
-        capture("sim:model=" + folder.path("quiet.json"), "a.pcapng", {"--duration", "30m"});
+        capture("sim:model=" + folder.path("model.json"), "a.pcapng", {"--duration", "30m"});
     ASSERT_EQ(captured.exit_code, 0) << captured.err;
     const ProgramResult result = run_gyrolog({"analyze", folder.path("a.pcapng"), "--json", "-"});
     const json axes = json::parse(result.out)["axes"];

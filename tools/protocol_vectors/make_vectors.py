@@ -38,7 +38,7 @@ HELLO_FIELDS = dict(protocol_major=1, protocol_minor=0, tick_bits=64, who_am_i=0
                     boot_id=0x01020304, reset_cause=1, uid=bytes(range(0x10, 0x20)), firmware=b"gyrolog 1.0",
                     sensor=b"MPU-9250")
 CONFIG_FIELDS = dict(generation=3, layout=3, samples_per_frame=4, rate_mHz=100000, gyro_full_scale_dps=500,
-                     accel_full_scale_g=8, dlpf_hz=41, decimation=1, gyro_ndps_per_lsb=15258789,
+                     accel_full_scale_g=8, dlpf_hz=41, decimation=1, gyro_ndps_per_lsb=15267176,
                      accel_pg_per_lsb=244140625, temp_nC_per_lsb=2995178, temp_offset_mC=21000,
                      registers=bytes([9, 0x43, 8, 0x10, 3, 0x78, 1, 0x50]))
 SAMPLES_FIELDS = dict(first_ticks=123456789012, first_index=4000, config_generation=3, temperature=-1200,

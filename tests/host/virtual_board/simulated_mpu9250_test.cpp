@@ -122,12 +122,13 @@ TEST_F(Mpu9250, TheFullScaleSetsTheCounts) {
     }
     chip = SimulatedMpu9250(model, 1, 0.0);
     start(0);
+    constexpr std::array lsb_per_dps{131.0, 65.5, 32.8, 16.4};  // PS-MPU-9250A-01, table 1
     for (unsigned range = 0; range < 4; ++range) {
         set(glp_mpu_gyro_config, static_cast<std::uint8_t>(range << glp_mpu_gyro_fs_sel_shift));
         take_samples(1);
         std::array<std::uint8_t, 2> x{};
         chip.read(glp_mpu_gyro_xout_h, x);
-        EXPECT_NEAR(x[0] * 256 + x[1], 100.0 * 32768.0 / (250U << range), 0.5);
+        EXPECT_NEAR(x[0] * 256 + x[1], 100.0 * lsb_per_dps[range], 0.5);
     }
 }
 

@@ -72,7 +72,7 @@ TEST_P(BoardAtRate, DeliversTheCountsThatTheSimulatorDraws) {
     ASSERT_EQ(stream.gyro.size(), 1500U);
 
     SensorModel model = options.model;
-    model.lsb_rad_s = 500.0 * rad_per_deg / 32768.0;
+    model.lsb_rad_s = rad_per_deg / 65.5;
     model.saturation_rad_s = 32767.0 * model.lsb_rad_s;
     SensorSimulator simulator(model, board->sensor().true_rate_hz(), 99);
     const SampleBlock* block = nullptr;
