@@ -52,14 +52,17 @@ AllanTrace trace_of(const AxisReport& axis) {
     return trace;
 }
 
+std::string completeness(const AnalysisReport& report) {
+    if (report.stamps == StampKind::arrival) { return "stamped on arrival"; }
+    if (report.samples_missing == 0) { return "none missing"; }
+    return fmt::format("{} missing in {} dropouts", report.samples_missing, report.dropouts);
+}
+
 AllanFigure figure_of(const AnalysisReport& report, const std::string& source) {
     AllanFigure figure;
     figure.source = source;
     figure.facts = {fmt::format("{:.6g} Hz", report.rate_hz), format_duration(report.duration_s),
-                    format_count(report.samples) + " samples",
-                    report.samples_missing == 0
-                        ? std::string("none missing")
-                        : fmt::format("{} missing in {} dropouts", report.samples_missing, report.dropouts)};
+                    format_count(report.samples) + " samples", completeness(report)};
     if (report.unit.name == "lsb") { figure.unit = DeviationUnit::as_given("lsb"); }
     for (const AxisReport& axis : report.axes) { figure.traces.push_back(trace_of(axis)); }
     return figure;
@@ -77,7 +80,7 @@ Status write_results(Console& console, const AnalysisRequest& request, const Rec
         GYROLOG_CHECK(write_text(console, request.json_path, analysis_json(report)));
     }
     if (!request.plot_path.empty()) {
-        GYROLOG_CHECK(write_plot(figure_of(report, request.recording_path), request.plot_path));
+        GYROLOG_CHECK(write_plot(figure_of(report, report.name), request.plot_path));
     }
     if (!request.model_path.empty()) {
         if (report.unit.name == "lsb") {
@@ -105,8 +108,10 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
         return recording.error().code == ErrorCode::invalid_argument ? ExitCode::usage : ExitCode::failed;
     }
     const AnalysisReport report = analyze(*recording, *options);
-    for (const std::string& warning : report.warnings) {
-        console.err << "gyrolog " << command << ": warning: " << warning << '\n';
+    if (request.json_path == "-") {  // the report for people, which is not written then, has them too
+        for (const std::string& warning : report.warnings) {
+            console.err << "gyrolog " << command << ": warning: " << warning << '\n';
+        }
     }
     if (report.axes.empty()) {
         return report_error(

@@ -1,5 +1,7 @@
 #include "host/app/recording_input.hpp"
 
+#include <filesystem>
+
 #include <fmt/format.h>
 
 #include "host/formats/recording_csv.hpp"
@@ -10,7 +12,7 @@ namespace {
 
 Result<Recording> read_capture(const RecordingInput& input) {
     GYROLOG_TRY(LoadedCapture capture, load_capture(input.path, true));
-    auto recording = capture.decoder->take_recording(input.path);
+    auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
     if (capture.file.blocks.end == FileEnd::damaged) {
         recording->warnings.push_back(
