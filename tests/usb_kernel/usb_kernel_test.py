@@ -126,6 +126,15 @@ class CaptureFromVhciBoard(Scenario):
         self.assertEqual([int(line) for line in answer.stdout.split()], [len(transfer.data) for transfer in ours])
 
 
+class FastCapture(Scenario):
+    name = "11_fast"
+
+    def test_eight_thousand_samples_a_second_arrive_whole(self):
+        self.assert_exit("capture", OK)
+        self.assert_every_sample_of("capture", "VHCI11")
+        self.assert_lasts("capture", 8000, 5)
+
+
 class CaptureFromAcmGadget(Scenario):
     name = "20_capture_acm_gadget"
 

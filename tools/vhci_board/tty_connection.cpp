@@ -13,8 +13,8 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "host/base/clock.hpp"
 #include "host/virtual_board/usb_function.hpp"
+#include "tools/vhci_board/board_pace.hpp"
 #include "tools/vhci_board/line_state_trace.hpp"
 
 namespace gyrolog {
@@ -65,9 +65,15 @@ class TtyFeeder {
 public:
     TtyFeeder(VirtualBoard& board, SessionLog& log) : board_(board), function_(board), log_(log) {}
 
-    void advance() {
-        function_.advance_to(clock_ns(CLOCK_MONOTONIC));
-        log_.observe(board_);
+    // Runs the board up to now and writes what it sends, as much as the terminal takes. False when that has
+    // hung up.
+    bool advance(int tty) {
+        bool connected = true;
+        pace_.catch_up(function_, [&] {
+            log_.observe(board_);
+            connected = connected && write_stream(tty);
+        });
+        return connected;
     }
 
     void set_line_state(unsigned value) {
@@ -99,7 +105,15 @@ public:
         return size > 0 || (size < 0 && (errno == EAGAIN || errno == EINTR));
     }
 
-    // As much as the terminal takes. False when it has hung up.
+    // The host is gone, and with it the state of the line.
+    void hang_up() {
+        set_line_state(0);
+        waiting_ = {};
+        function_.bus_reset();
+    }
+
+private:
+    // False when the terminal has hung up.
     bool write_stream(int tty) {
         for (;;) {
             if (waiting_.empty()) {
@@ -115,16 +129,9 @@ public:
         }
     }
 
-    // The host is gone, and with it the state of the line.
-    void hang_up() {
-        set_line_state(0);
-        waiting_ = {};
-        function_.bus_reset();
-    }
-
-private:
     VirtualBoard& board_;
     UsbFunction function_;
+    BoardPace pace_;
     SessionLog& log_;
     LineStateTrace trace_;
     std::array<std::uint8_t, GLP_USB_PACKET_BYTES> packet_{};
@@ -142,9 +149,8 @@ Status serve_tty_connection(VirtualBoard& board, const std::string& tty_path,
     while (stop == 0) {
         std::array<pollfd, 2> wait = {{{tty.number(), POLLIN, 0}, {trace.number(), POLLIN, 0}}};
         ::poll(wait.data(), wait.size(), turn_ms);
-        feeder.advance();
         feeder.read_line_state(trace.number());
-        if (feeder.read_commands(tty.number()) && feeder.write_stream(tty.number())) { continue; }
+        if (feeder.read_commands(tty.number()) && feeder.advance(tty.number())) { continue; }
         feeder.hang_up();
         ::poll(nullptr, 0, reopen_ms);
         GYROLOG_TRY(tty, open_tty(tty_path));

@@ -9,8 +9,8 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include "host/base/clock.hpp"
 #include "host/virtual_board/usb_function.hpp"
+#include "tools/vhci_board/board_pace.hpp"
 #include "tools/vhci_board/urb_server.hpp"
 #include "tools/vhci_board/usbip.hpp"
 #include "tools/vhci_board/vhci_port.hpp"
@@ -57,6 +57,7 @@ Result<ConnectionEnd> serve_vhci_connection(VirtualBoard& board, std::optional<u
     GYROLOG_TRY(const VhciPort plugged, VhciPort::plug_in(port));
     UsbFunction function(board);
     UrbServer server(function, std::move(faults));
+    BoardPace pace;
     usbip::CommandReader reader;
     while (stop == 0) {
         pollfd wait{plugged.socket(), POLLIN, 0};
@@ -64,8 +65,10 @@ Result<ConnectionEnd> serve_vhci_connection(VirtualBoard& board, std::optional<u
         GYROLOG_TRY(const bool attached, receive(plugged.socket(), reader));
         if (!attached) { return ConnectionEnd::detached; }
 
-        function.advance_to(clock_ns(CLOCK_MONOTONIC));
-        log.observe(board);
+        pace.catch_up(function, [&] {
+            log.observe(board);
+            server.serve(streaming_s(board));
+        });
         if (function.unplugged()) { return ConnectionEnd::unplugged; }
         for (;;) {
             GYROLOG_TRY(const auto command, reader.next());
