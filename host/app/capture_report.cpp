@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -53,6 +54,18 @@ Json reasons_json(const LinkReport& link) {
         }
     }
     return reasons;
+}
+
+// How much faster the board's clock runs than the host's, in parts per million.
+struct ClockComparison {
+    double ppm = 0.0;
+    double sd_ppm = 0.0;
+};
+
+std::optional<ClockComparison> board_clock(const LoadedCapture& capture) {
+    const auto fit = capture.decoder->timeline().host_clock();
+    if (!fit || fit->ratio <= 0.0) { return std::nullopt; }
+    return ClockComparison{(1.0 / fit->ratio - 1.0) * 1e6, fit->ratio_sd * 1e6};
 }
 
 // One row of a table: what, how much, and a remark.
@@ -182,6 +195,10 @@ Json info_json(const std::string& path, const LoadedCapture& capture) {
         }
         sensor["registers"] = hex(config->registers, sizeof config->registers);
     }
+    Json clock = nullptr;
+    if (const auto comparison = board_clock(capture)) {
+        clock = {{"fast_ppm", comparison->ppm}, {"sd_ppm", comparison->sd_ppm}};
+    }
     return {{"schema", "gyrolog-info/1"},
             {"file", path},
             {"board", board},
@@ -190,6 +207,7 @@ Json info_json(const std::string& path, const LoadedCapture& capture) {
             {"duration_s", duration_s(capture, link)},
             {"samples", link.samples.good},
             {"samples_missing", link.samples.missing},
+            {"board_clock", clock},
             {"end", name_of(capture.file.blocks.end)},
             {"file_bytes", capture.file.blocks.bytes_total},
             {"program", capture.metadata ? capture.metadata->program : ""}};
@@ -219,6 +237,10 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
     if (rate_hz) {
         line("length", fmt::format("{}, {} samples at {:.4f} Hz", format_duration(duration_s(capture, link)),
                                    format_count(link.samples.good), *rate_hz));
+    }
+    if (const auto clock = board_clock(capture)) {
+        line("clock", fmt::format("the board's runs {:+.1f} ± {:.1f} ppm against this computer's", clock->ppm,
+                                  clock->sd_ppm));
     }
     line("missing", fmt::format("{} samples in {} dropouts", format_count(link.samples.missing),
                                 link.dropouts.size() + link.dropouts_unlisted));
