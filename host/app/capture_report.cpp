@@ -239,7 +239,7 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
                                    format_count(link.samples.good), *rate_hz));
     }
     if (const auto clock = board_clock(capture)) {
-        line("clock", fmt::format("the board's runs {:+.1f} ± {:.1f} ppm against this computer's", clock->ppm,
+        line("clock", fmt::format("the board's runs {:+.2f} ± {:.2g} ppm against this computer's", clock->ppm,
                                   clock->sd_ppm));
     }
     line("missing", fmt::format("{} samples in {} dropouts", format_count(link.samples.missing),

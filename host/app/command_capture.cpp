@@ -1,23 +1,42 @@
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
+#include "host/app/capture_report.hpp"
 #include "host/app/capture_run.hpp"
 #include "host/app/command.hpp"
+#include "host/app/result_output.hpp"
 
 namespace gyrolog {
+namespace {
+
+struct Options {
+    CaptureOptions capture;
+    std::string path;
+    std::string json;
+};
+
+ExitCode capture(Console& console, const Options& options) {
+    const CaptureResult result = capture_to_file(console, "capture", options.capture, options.path, false);
+    if (!result.file_written || options.json.empty()) { return result.code; }
+    const auto stored = load_capture(options.path, false);
+    if (!stored.ok()) { return report_error(console, "capture", stored.error()); }
+    const Status written = write_json(console, options.json, check_json(options.path, *stored));
+    return written.ok() ? result.code : report_error(console, "capture", written.error());
+}
+
+}  // namespace
 
 Action setup_capture(CLI::App& app) {
-    struct Options {
-        CaptureOptions capture;
-        std::string path;
-    };
     auto options = std::make_shared<Options>();
     app.add_option("-o,--output", options->path, "The capture to write (.pcapng)")
         ->type_name("FILE")
         ->required();
     options->capture.declare(app);
-    return [options](Console& console) {
-        return capture_to_file(console, "capture", options->capture, options->path, false).code;
-    };
+    app.add_option("--json", options->json,
+                   "Afterwards, write what `check` says as JSON (- for standard output)")
+        ->type_name("FILE");
+    return [options](Console& console) { return capture(console, *options); };
 }
 
 }  // namespace gyrolog

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "host/app/command.hpp"
 #include "host/app/quantity.hpp"
+#include "host/app/result_output.hpp"
 #include "host/capture/recover.hpp"
 
 namespace gyrolog {
@@ -12,20 +15,40 @@ namespace {
 struct Options {
     std::string damaged;
     std::string recovered;
+    std::string json;
 };
+
+nlohmann::ordered_json recovery_json(const Options& options, const RecoveryReport& report) {
+    const BlockAccounts& source = report.source;
+    return {{"schema", "gyrolog-recover/1"},
+            {"file", options.damaged},
+            {"recovered", options.recovered},
+            {"bytes",
+             {{"total", source.bytes_total},
+              {"kept", report.bytes_kept},
+              {"damaged", source.bytes_damaged},
+              {"in_tail", source.bytes_in_tail}}},
+            {"damaged_places", source.damaged_ranges},
+            {"header_rewritten", report.header_rewritten}};
+}
 
 ExitCode recover(Console& console, const Options& options) {
     const auto report = recover_capture(options.damaged, options.recovered);
     if (!report.ok()) { return report_error(console, "recover", report.error()); }
+    if (!options.json.empty()) {
+        const Status written = write_json(console, options.json, recovery_json(options, *report));
+        if (!written.ok()) { return report_error(console, "recover", written.error()); }
+    }
+    if (report->header_rewritten) {
+        console.err << "gyrolog recover: the header was lost; which board this was is no longer known\n";
+    }
+    if (options.json == "-") { return ExitCode::ok; }
     const BlockAccounts& source = report->source;
     const std::uint64_t left_out = source.bytes_damaged + source.bytes_in_tail;
     console.out << fmt::format("{}: {} of {} kept, {} bytes left out in {} damaged places{}\n",
                                options.recovered, format_bytes(report->bytes_kept),
                                format_bytes(source.bytes_total), format_count(left_out),
                                source.damaged_ranges, source.bytes_in_tail > 0 ? " and a torn tail" : "");
-    if (report->header_rewritten) {
-        console.err << "gyrolog recover: the header was lost; which board this was is no longer known\n";
-    }
     return ExitCode::ok;
 }
 
@@ -37,6 +60,8 @@ Action setup_recover(CLI::App& app) {
     app.add_option("-o,--output", options->recovered, "The new file for its intact part")
         ->type_name("FILE")
         ->required();
+    app.add_option("--json", options->json, "Write the answer as JSON to FILE (- for standard output)")
+        ->type_name("FILE");
     return [options](Console& console) { return recover(console, *options); };
 }
 
