@@ -201,10 +201,13 @@ private:
         changed_.notify_all();
     }
 
-    void on_samples(const ReceivedFrame& /*frame*/, const glp_samples& samples) override {
+    void on_samples(const ReceivedFrame& received, const glp_samples& samples) override {
         latest_ = samples;
         latest_->samples = nullptr;
-        instants_ = samples.first_index + samples.count;
+        const bool first = (received.frame.flags & glp_flag_first_after_start) != 0;
+        const bool goes_on = next_index_ && !first && samples.first_index >= *next_index_;
+        instants_ += samples.count + (goes_on ? samples.first_index - *next_index_ : 0);
+        next_index_ = samples.first_index + samples.count;
     }
     void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override {
         if (new_replies_.size() < replies_kept) { new_replies_.push_back(reply); }
@@ -222,7 +225,11 @@ private:
     std::uint64_t bytes_since_checkpoint_ = 0;
     std::int64_t last_sync_ns_ = clock_ns(CLOCK_MONOTONIC);
     std::optional<glp_samples> latest_;
-    std::uint64_t instants_ = 0;  // of the present run, missing ones included
+    // Sampling instants that this capture covers, gaps within a run included. A sample's index alone would
+    // not do: it counts from the board's start, and a board may have been streaming for hours before the
+    // capture.
+    std::uint64_t instants_ = 0;
+    std::optional<std::uint64_t> next_index_;
     std::vector<glp_reply> new_replies_;
 
     mutable std::mutex mutex_;
@@ -273,14 +280,16 @@ public:
     }
 
     Status start() {
+        start_asked_ = true;
         if (has_line_) { return source_.set_line_state(true); }
         if (!takes_commands_) { return {}; }
         GYROLOG_CHECK(command(glp_frame_start, {}, Answer::awaited));
         return command(glp_frame_get_hello, {}, Answer::not_awaited);
     }
 
-    // Whatever goes wrong here, the capture is over anyway.
+    // Quiets a board that was asked to start. Whatever goes wrong here, the capture is over anyway.
     void stop() {
+        if (!start_asked_) { return; }
         if (has_line_) {
             static_cast<void>(source_.set_line_state(false));
         } else if (takes_commands_) {
@@ -309,6 +318,7 @@ private:
             return result.has_value() || sink_.end().has_value();
         });
         if (!result) {
+            if (const auto error = sink_.error()) { return *error; }
             return Error{ErrorCode::timeout,
                          "the board on " + source_.identity().uri + " did not answer a command"};
         }
@@ -341,6 +351,7 @@ private:
     const QueueingSink& sink_;
     bool has_line_ = true;
     bool takes_commands_ = true;
+    bool start_asked_ = false;
     std::uint32_t sequence_ = 0;
 };
 
@@ -385,8 +396,9 @@ Error explain(const Error& error, const ByteSource& source, const LinkReport& li
 }
 
 // Runs until there is enough, the caller or the source ends it, or the disk refuses.
-CaptureEnd stream_until_end(WriterThread& writer, QueueingSink& sink, const CaptureRequest& request,
-                            const CaptureObserver& observe, std::optional<Error>& error) {
+CaptureEnd stream_until_end(const ByteSource& source, WriterThread& writer, QueueingSink& sink,
+                            const CaptureRequest& request, const CaptureObserver& observe,
+                            std::optional<Error>& error) {
     sink.restart_silence();
     const auto start = Clock::now();
     while (true) {
@@ -409,7 +421,8 @@ CaptureEnd stream_until_end(WriterThread& writer, QueueingSink& sink, const Capt
         }
         if (!go_on) { return CaptureEnd::interrupted; }
         if (sink.silence_s() > request.idle_timeout_s) {
-            error = Error{ErrorCode::device_lost, fmt::format("silent for {:g} s", request.idle_timeout_s)};
+            error = Error{ErrorCode::device_lost, fmt::format("{}: silent for {:g} s", source.identity().uri,
+                                                              request.idle_timeout_s)};
             return CaptureEnd::device_lost;
         }
     }
@@ -428,10 +441,8 @@ Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& req
 
     CaptureOutcome outcome;
     const Status began = begin(source, sink, thread, control, request);
-    if (began.ok()) {
-        outcome.end = stream_until_end(thread, sink, request, observe, outcome.error);
-        control.stop();
-    }
+    if (began.ok()) { outcome.end = stream_until_end(source, thread, sink, request, observe, outcome.error); }
+    control.stop();
     // Tear-down, in this order: the source (its last callback closes the queue), the queue, the writer, the
     // file.
     source.stop();

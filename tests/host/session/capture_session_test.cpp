@@ -1,0 +1,387 @@
+#include "host/session/capture_session.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <gyrolog_protocol/cobs.h>
+#include <gyrolog_protocol/crc.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "host/capture/capture_reader.hpp"
+#include "host/session/load_capture.hpp"
+#include "host/transport/replay_source.hpp"
+#include "tests/host/session/board_source.hpp"
+
+namespace gyrolog {
+namespace {
+
+bool go_on(const CaptureProgress& /*progress*/) { return true; }
+
+// A frame that is right in everything but its major version.
+Bytes frame_of_major_version(std::uint8_t major) {
+    Bytes body{major, glp_frame_hello, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4};
+    const std::uint32_t crc = glp_crc32(body.data(), body.size());
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+        body.push_back(static_cast<std::uint8_t>(crc >> shift));
+    }
+    Bytes wire(body.size() + 3, 0);
+    const glp_cobs_result encoded =
+        glp_cobs_encode(body.data(), body.size(), wire.data() + 1, wire.size() - 2);
+    EXPECT_EQ(encoded.status, glp_status_ok);
+    wire.resize(encoded.size + 2);
+    return wire;
+}
+
+// The size that a file may have, for as long as this object lives: a disk that fills up.
+class FileSizeLimit {
+public:
+    explicit FileSizeLimit(rlim_t size_bytes) {
+        previous_handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        EXPECT_EQ(getrlimit(RLIMIT_FSIZE, &previous_), 0);
+        const rlimit limited{size_bytes, previous_.rlim_max};
+        EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &limited), 0);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+    ~FileSizeLimit() {
+        setrlimit(RLIMIT_FSIZE, &previous_);
+        std::signal(SIGXFSZ, previous_handler_);
+    }
+
+private:
+    rlimit previous_{};
+    void (*previous_handler_)(int) = SIG_DFL;
+};
+
+class CaptureSession : public testing::Test {
+protected:
+    CaptureSession() {
+        std::string folder = std::filesystem::temp_directory_path() / "gyrolog_session_XXXXXX";
+        EXPECT_NE(mkdtemp(folder.data()), nullptr);
+        folder_ = folder;
+        request_.path = folder_ / "run.pcapng";
+        request_.hello_timeout_s = 5.0;
+        request_.duration_s = 1.0;
+    }
+    ~CaptureSession() override { std::filesystem::remove_all(folder_); }
+
+    Result<CaptureOutcome> capture(ByteSource& source, const CaptureObserver& observe = go_on) const {
+        return run_capture(source, request_, observe);
+    }
+    bool file_is_there() const { return std::filesystem::exists(request_.path); }
+
+    // The stream as the file has it. The file must be whole.
+    static Bytes stored_stream(const std::string& path) {
+        Bytes stream;
+        auto reader = CaptureReader::open(path);
+        EXPECT_TRUE(reader.ok());
+        while (reader.ok()) {
+            const auto captured = reader->next();
+            EXPECT_TRUE(captured.ok());
+            if (!captured.ok() || !*captured) { break; }
+            const Transfer& transfer = (*captured)->transfer;
+            if (!transfer.carries_stream()) { continue; }
+            stream.insert(stream.end(), transfer.data.begin(), transfer.data.end());
+        }
+        EXPECT_EQ(reader->accounts().blocks.end, FileEnd::clean);
+        return stream;
+    }
+    LoadedCapture loaded() const {
+        auto capture = load_capture(request_.path, false);
+        EXPECT_TRUE(capture.ok());
+        return capture.ok() ? std::move(capture).value() : LoadedCapture{};
+    }
+
+    std::filesystem::path folder_;
+    CaptureRequest request_;
+};
+
+// ------------------------------------------------------------------------------------- lines of every kind
+
+TEST_F(CaptureSession, StoresByteForByteWhatTheSourceDelivered) {
+    const auto source = BoardSource::create({});
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_FALSE(outcome->data_lost());
+    EXPECT_GT(source->delivered().size(), 10'000U);
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+    EXPECT_EQ(outcome->link.bytes.total, source->delivered().size());
+    EXPECT_EQ(source->writes(), 0) << "a line with DTR needs no commands";
+    EXPECT_FALSE(source->line_raised()) << "the board is left quiet";
+}
+
+TEST_F(CaptureSession, TellsWhoTheBoardIsAndHowItIsSetUp) {
+    const auto source = BoardSource::create({});
+    request_.configure.rate_mHz = 500'000;
+    request_.configure.gyro_full_scale_dps = 1000;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    ASSERT_TRUE(outcome->progress.hello && outcome->progress.config);
+    EXPECT_EQ(outcome->progress.hello->who_am_i, 0x71);
+    EXPECT_EQ(outcome->progress.config->rate_mHz, 500'000U);
+    EXPECT_EQ(outcome->progress.config->gyro_full_scale_dps, 1000U);
+    EXPECT_NEAR(outcome->progress.rate_hz.value(), 500.0, 500.0 * 0.03);
+    EXPECT_TRUE(outcome->progress.temperature_C.has_value());
+    EXPECT_GT(outcome->progress.file_bytes, outcome->link.bytes.total);
+}
+
+TEST_F(CaptureSession, LineWithoutControlSignalsIsRunByCommands) {
+    const auto source = BoardSource::create({.has_line = false});
+    request_.configure.rate_mHz = 500'000;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_FALSE(outcome->data_lost());
+    EXPECT_EQ(outcome->progress.config->rate_mHz, 500'000U);
+    EXPECT_EQ(source->writes(), 5) << "STOP, CONFIGURE, START, GET_HELLO, and STOP at the end";
+    EXPECT_FALSE(source->board().streaming());
+    EXPECT_EQ(outcome->link.samples.good, source->board().sampling_instants());
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+}
+
+TEST_F(CaptureSession, ReplayedCaptureIsStoredAgainByteForByte) {
+    const auto source = BoardSource::create({});
+    ASSERT_TRUE(capture(*source).ok());
+    const auto replay = ReplaySource::open(request_.path);
+    ASSERT_TRUE(replay.ok());
+    CaptureRequest again;
+    again.path = folder_ / "again.pcapng";
+    const auto outcome = run_capture(**replay, again, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_EQ(stored_stream(again.path), source->delivered());
+}
+
+TEST_F(CaptureSession, ReplayedCaptureCannotBeConfigured) {
+    ASSERT_TRUE(capture(*BoardSource::create({})).ok());
+    const auto replay = ReplaySource::open(request_.path);
+    ASSERT_TRUE(replay.ok());
+    CaptureRequest again;
+    again.path = folder_ / "again.pcapng";
+    again.configure.rate_mHz = 100'000;
+    const auto outcome = run_capture(**replay, again, go_on);
+    ASSERT_FALSE(outcome.ok());
+    EXPECT_EQ(outcome.error().code, ErrorCode::invalid_argument);
+}
+
+// ------------------------------------------------------------------------- boards that cannot be captured
+
+TEST_F(CaptureSession, SilentBoardIsAnErrorAndLeavesNoFile) {
+    const auto source = BoardSource::create({.speaks_instead = Bytes{}});
+    request_.hello_timeout_s = 0.2;
+    const auto outcome = capture(*source);
+    ASSERT_FALSE(outcome.ok());
+    EXPECT_EQ(outcome.error().code, ErrorCode::timeout);
+    EXPECT_NE(outcome.error().message.find("test:board"), std::string::npos) << outcome.error().message;
+    EXPECT_FALSE(file_is_there());
+    EXPECT_FALSE(source->line_raised()) << "what was started is stopped again";
+}
+
+TEST_F(CaptureSession, StrangersBytesAreAnErrorAndAreKept) {
+    const Bytes strange(700, 0x24);
+    const auto source = BoardSource::create({.speaks_instead = strange});
+    request_.hello_timeout_s = 0.2;
+    const auto outcome = capture(*source);
+    ASSERT_FALSE(outcome.ok());
+    EXPECT_EQ(outcome.error().code, ErrorCode::malformed);
+    EXPECT_NE(outcome.error().message.find("test:board: 700 bytes"), std::string::npos)
+        << outcome.error().message;
+    EXPECT_EQ(stored_stream(request_.path), strange);
+    EXPECT_FALSE(source->line_raised()) << "what was started is stopped again";
+}
+
+TEST_F(CaptureSession, AnotherMajorVersionIsNamedAsSuch) {
+    const auto source =
+        BoardSource::create({.speaks_instead = frame_of_major_version(GLP_PROTOCOL_MAJOR + 1)});
+    request_.hello_timeout_s = 0.2;
+    const auto outcome = capture(*source);
+    ASSERT_FALSE(outcome.ok());
+    EXPECT_EQ(outcome.error().code, ErrorCode::unsupported);
+    EXPECT_NE(outcome.error().message.find("another major version"), std::string::npos)
+        << outcome.error().message;
+}
+
+TEST_F(CaptureSession, ConfigurationThatTheSensorDoesNotHaveIsTheCallersMistake) {
+    for (const bool has_line : {true, false}) {
+        const auto source = BoardSource::create({.has_line = has_line});
+        request_.configure.gyro_full_scale_dps = 333;
+        request_.overwrite = true;
+        const auto outcome = capture(*source);
+        ASSERT_FALSE(outcome.ok());
+        EXPECT_EQ(outcome.error().code, ErrorCode::invalid_argument) << outcome.error().message;
+        EXPECT_NE(outcome.error().message.find("test:board"), std::string::npos);
+        EXPECT_FALSE(source->board().streaming());
+    }
+}
+
+TEST_F(CaptureSession, BoardUnpluggedDuringTheHandshakeIsCalledLost) {
+    const auto source = BoardSource::create({.lost_when_written_to = true});
+    request_.configure.rate_mHz = 500'000;
+    const auto outcome = capture(*source);
+    ASSERT_FALSE(outcome.ok());
+    EXPECT_EQ(outcome.error().code, ErrorCode::device_lost) << outcome.error().message;
+    EXPECT_FALSE(file_is_there());
+}
+
+TEST_F(CaptureSession, ExistingFileIsNotTouchedUnlessToldSo) {
+    std::ofstream(request_.path) << "precious";
+    const auto source = BoardSource::create({});
+    const auto outcome = capture(*source);
+    ASSERT_FALSE(outcome.ok());
+    EXPECT_EQ(outcome.error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(std::filesystem::file_size(request_.path), 8U);
+    request_.overwrite = true;
+    EXPECT_TRUE(capture(*source).ok());
+}
+
+// ------------------------------------------------------------------------------------------- how it ends
+
+TEST_F(CaptureSession, DurationIsOfDeviceTime) {
+    const auto source = BoardSource::create({});
+    request_.duration_s = 2.0;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_GE(outcome->progress.device_s, 2.0);
+    EXPECT_LT(outcome->progress.elapsed_s, 2.0) << "the board's clock was made to run twenty times faster";
+}
+
+TEST_F(CaptureSession, StopsOnceThereAreEnoughSamples) {
+    const auto source = BoardSource::create({});
+    request_.duration_s.reset();
+    request_.samples = 1500;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_GE(outcome->link.samples.good, 1500U);
+    EXPECT_EQ(outcome->link.samples.missing, 0U);
+}
+
+// The index of a sample counts from the board's start, not from the capture's.
+TEST_F(CaptureSession, BoardThatWasAlreadyStreamingIsCapturedAtFullLength) {
+    for (const bool has_line : {true, false}) {
+        const auto source = BoardSource::create({.has_line = has_line, .streams_before_start = true});
+        request_.duration_s.reset();
+        request_.samples = 1500;
+        request_.overwrite = true;
+        const auto outcome = capture(*source);
+        ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+        EXPECT_EQ(outcome->end, CaptureEnd::complete);
+        EXPECT_GE(outcome->link.samples.good, 1500U);
+    }
+}
+
+TEST_F(CaptureSession, RestartedStreamDoesNotBeginTheCaptureAnew) {
+    const auto source = BoardSource::create({.restarted_at_s = 1.0});
+    request_.duration_s.reset();
+    request_.samples = 1500;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->link.runs, 2U);
+    EXPECT_GE(outcome->link.samples.good, 1500U);
+    EXPECT_LT(source->board().sampling_instants(), 1500U) << "a second of it came before the restart";
+}
+
+TEST_F(CaptureSession, InterruptedCaptureHasTheBoardsPartialFrame) {
+    const auto source = BoardSource::create({.frozen_from_s = 1.003});
+    request_.duration_s.reset();
+    const auto outcome =
+        capture(*source, [](const CaptureProgress& progress) { return progress.samples < 900; });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::interrupted);
+    EXPECT_NE(outcome->link.samples.good % outcome->progress.config->samples_per_frame, 0U)
+        << "the stop found no frame half full: this test tests nothing";
+    EXPECT_EQ(outcome->link.samples.good, source->board().sampling_instants());
+    EXPECT_FALSE(outcome->data_lost());
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+}
+
+TEST_F(CaptureSession, LostDeviceLeavesAReadableFileWithAllThatCame) {
+    VirtualBoardOptions options;
+    options.faults = {{BoardFault::Kind::unplug, 1.0, 0.0}};
+    const auto source = BoardSource::create({}, std::move(options));
+    request_.duration_s = 60.0;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::device_lost);
+    ASSERT_TRUE(outcome->error.has_value());
+    EXPECT_EQ(outcome->error->message, "test:board: unplugged");
+    EXPECT_GT(outcome->link.samples.good, 900U);
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+    EXPECT_EQ(loaded().decoder->report().samples.good, outcome->link.samples.good);
+}
+
+TEST_F(CaptureSession, SilenceCountsAsALostDevice) {
+    const auto source = BoardSource::create({.frozen_from_s = 0.5});
+    request_.idle_timeout_s = 0.3;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::device_lost);
+    ASSERT_TRUE(outcome->error.has_value());
+    EXPECT_EQ(outcome->error->code, ErrorCode::device_lost);
+    EXPECT_EQ(outcome->error->message, "test:board: silent for 0.3 s");
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+}
+
+TEST_F(CaptureSession, FullDiskEndsTheCaptureAndLeavesAReadableFile) {
+    const auto source = BoardSource::create({});
+    request_.duration_s = 600.0;
+    const auto outcome = [&] {
+        const FileSizeLimit full_disk(100'000);
+        return capture(*source);
+    }();
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::storage_failed);
+    ASSERT_TRUE(outcome->error.has_value());
+    EXPECT_EQ(outcome->error->code, ErrorCode::disk_full);
+    EXPECT_LE(std::filesystem::file_size(request_.path), 100'000U);
+    const Bytes stored = stored_stream(request_.path);
+    EXPECT_GT(stored.size(), 20'000U);
+    ASSERT_LT(stored.size(), source->delivered().size());
+    EXPECT_TRUE(std::equal(stored.begin(), stored.end(), source->delivered().begin()));
+}
+
+// ------------------------------------------------------------------------------------------ a full queue
+
+TEST_F(CaptureSession, FullQueueIsCountedToTheByteAndSeenAsMissingSamples) {
+    // Bursts of 10 kB meet a queue of 2 kB, with pauses in which it drains.
+    const auto source = BoardSource::create({.turn_board_s = 0.5, .turn_host_s = 0.03});
+    request_.queue_bytes = 2048;
+    request_.duration_s = 3.0;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_GT(outcome->bytes_dropped, 0U);
+    EXPECT_EQ(outcome->bytes_dropped, source->bytes_refused());
+    EXPECT_EQ(outcome->transfers_dropped, source->transfers_refused());
+    EXPECT_TRUE(outcome->data_lost());
+    EXPECT_LE(outcome->queue_high_water_bytes, 2048U);
+    EXPECT_GT(outcome->link.samples.missing, 0U);
+    EXPECT_EQ(outcome->link.samples.good + outcome->link.samples.missing,
+              source->board().sampling_instants());
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+    const LoadedCapture stored = loaded();
+    EXPECT_EQ(stored.decoder->report().samples.missing, outcome->link.samples.missing);
+    ASSERT_TRUE(stored.last_checkpoint.has_value());
+    EXPECT_EQ(stored.last_checkpoint->counters.bytes_dropped, outcome->bytes_dropped);
+    EXPECT_EQ(stored.last_checkpoint->counters.transfers_dropped, outcome->transfers_dropped);
+}
+
+TEST_F(CaptureSession, FullQueueHoldsUpASourceThatCanWait) {
+    const auto source = BoardSource::create({.can_wait = true, .turn_board_s = 0.5});
+    request_.queue_bytes = 2048;
+    request_.duration_s = 3.0;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->transfers_dropped, 0U);
+    EXPECT_FALSE(outcome->data_lost());
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+}
+
+}  // namespace
+}  // namespace gyrolog
