@@ -58,10 +58,9 @@ struct NoiseFit {
     NoiseCoefficients identified() const;
 };
 
-// A term is identified when its square is more than 2 standard deviations above zero.
-// Points without degrees of freedom (a curve from print) are weighted alike, relative to their height, as if
-// each had
-// 50. A curve without points gives no identified term and upper limits of 0.
+// A term is identified when its square is more than 2 standard deviations above zero. Points without degrees
+// of freedom (a curve from print) are weighted alike, relative to their height, as if each had 50. A curve
+// without points gives no identified term and upper limits of 0.
 NoiseFit fit_noise(const AllanCurve& curve, double confidence = 0.683);
 
 }  // namespace gyrolog

@@ -3,11 +3,10 @@
 ///
 /// Invariants:
 ///   - Every sampling instant takes one index, whether its sample was kept or lost, and a loss is counted
-///   exactly:
-///     samples in the frames made so far + lost_samples == index of the next instant not yet dealt with.
+///     exactly: samples in the frames made so far + lost_samples == index of the next instant not yet dealt
+///     with.
 ///   - Every frame takes one sequence number when it is made. A frame that finds no room in the ring is
-///   dropped whole:
-///     the wire never carries a torn frame, and the host sees the missing number.
+///     dropped whole: the wire never carries a torn frame, and the host sees the missing number.
 ///   - The samples of one frame are consecutive, and taken under one configuration.
 ///   - Nothing here waits for the host, and nothing is allocated.
 ///

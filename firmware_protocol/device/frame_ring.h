@@ -2,8 +2,7 @@
 ///
 /// Invariants:
 ///   - A frame is put whole or not at all, and leaves whole: once its first byte was given to the endpoint
-///   the rest
-///     follows, whatever is dropped behind it.
+///     the rest follows, whatever is dropped behind it.
 ///   - used never exceeds capacity.
 #ifndef GYROLOG_PROTOCOL_DEVICE_FRAME_RING_H
 #define GYROLOG_PROTOCOL_DEVICE_FRAME_RING_H

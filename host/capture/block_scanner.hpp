@@ -2,10 +2,9 @@
 //
 // Invariants:
 //   - size_bytes() == bytes_in_blocks + bytes damaged + bytes_in_tail once next() has returned nothing. No
-//   byte is ever
-//     unaccounted for.
+//     byte is ever unaccounted for.
 //   - A broken block costs itself: the next block is found by its own lengths and checksum, not by the broken
-//   one's.
+//     one's.
 //   - Memory does not grow with the file.
 #pragma once
 

@@ -2,13 +2,11 @@
 // against the host's.
 //
 //   device time   unwrapped ticks / tick_hz, from the first sample of the capture; a boot of the board begins
-//   anew, and
-//                 is placed by the host's clock
+//                 anew, and is placed by the host's clock
 //   sensor rate   least squares of device time over sampling index, one intercept a run and one slope for all
 //   host clock    host = offset + ratio * device. Delays only ever add, so the line is the lower envelope of
-//   the
-//                 arrivals: the edge of their convex hull above their mean abscissa, which has the least sum
-//                 of distances of all lines below every point (Zhang, Liu, Xia, "Clock Synchronization
+//                 the arrivals: the edge of their convex hull above their mean abscissa, which has the least
+//                 sum of distances of all lines below every point (Zhang, Liu, Xia, "Clock Synchronization
 //                 Algorithms for Network Measurements", INFOCOM 2002, section III)
 #pragma once
 

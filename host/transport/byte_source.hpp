@@ -1,4 +1,5 @@
-// The seam between devices and the rest: USB, a tty, a replayed capture and the virtual board look alike behind it.
+// The seam between devices and the rest: behind it USB, a tty, a replayed capture and the virtual board
+// look alike.
 #pragma once
 
 #include <memory>
@@ -11,8 +12,8 @@
 
 namespace gyrolog {
 
-// What is known of a device before its first frame. For a source that is not USB the identifiers are those of the
-// board it stands for, or zero.
+// What is known of a device before its first frame. For a source that is not USB the identifiers are those of
+// the board it stands for, or zero.
 struct SourceIdentity {
     std::string uri;  // as the user may type it again: "usb:S1", "tty:/dev/ttyACM0", "sim:rate=1000,seed=7"
     std::uint16_t vendor_id = 0;
@@ -33,33 +34,34 @@ enum class SourceEnd {
     failed,       // the error says what
 };
 
-// Receives what a source delivers. Calls come one at a time, from a thread of the source's own, and must not call
-// stop(). on_end comes exactly once after start(), and is the last.
+// Receives what a source delivers. Calls come one at a time, from a thread of the source's own, and must not
+// call stop(). on_end comes exactly once after start(), and is the last.
 class TransferSink {
 public:
     virtual ~TransferSink() = default;
 
-    // False means "no room". A source that is paced by a device drops the transfer's data for good (the sink has
-    // counted it); a source that can wait (can_wait()) tries again.
+    // False means "no room". A source that is paced by a device drops the transfer's data for good (the sink
+    // has counted it); a source that can wait (can_wait()) tries again.
     virtual bool on_transfer(const Transfer& transfer) = 0;
     virtual void on_end(SourceEnd end, const std::optional<Error>& error) = 0;
 };
 
 // Order of calls: start, then write / set_line_state in any order, then stop. stop() returns after on_end.
-// After start() the stream may begin at once on a device that was already streaming: set_line_state(false) quiets it.
+// After start() the stream may begin at once on a device that was already streaming: set_line_state(false)
+// quiets it.
 class ByteSource {
 public:
     virtual ~ByteSource() = default;
 
     virtual const SourceIdentity& identity() const = 0;
     virtual bool can_wait() const = 0;
-    // The stall of the reader that the source rides out without losing a byte, at the given byte rate and bytes per
-    // frame; infinity for a source that can wait.
+    // The stall of the reader that the source rides out without losing a byte, at the given byte rate and
+    // bytes per frame; infinity for a source that can wait.
     virtual double tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const = 0;
 
     virtual Status start(TransferSink& sink) = 0;
-    // Data terminal ready: the start signal (SPEC.md). Error `unsupported` on a line that has none (a pty): the caller
-    // then uses the START and STOP commands.
+    // Data terminal ready: the start signal (SPEC.md). Error `unsupported` on a line that has none (a pty):
+    // the caller then uses the START and STOP commands.
     virtual Status set_line_state(bool data_terminal_ready) = 0;
     // Sends bytes to the device, all of them, within 1 s.
     virtual Status write(ByteView bytes) = 0;

@@ -56,13 +56,11 @@ public:
 // What goes wrong on the bus:
 //   - the device is gone: the stream ends, device_lost
 //   - errors (bad packets, babble): the transfer goes back into the queue with whatever it brought; as many
-//   errors in
-//     a row as there are transfers mean that the device is as good as gone
+//     errors in a row as there are transfers mean that the device is as good as gone
 //   - a stall: all transfers are taken back, the halt is cleared, the queue is filled again; at most
-//   stall_limit times
-//     in a row without data between
+//     stall_limit times in a row without data between
 //   - nothing but empty packets, faster than any board has reason to: the stream ends rather than burn the
-//   processor
+//     processor
 //   - a transfer that the kernel will not take back for want of memory is done without, down to the last
 class BulkInStream {
 public:
