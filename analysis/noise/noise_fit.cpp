@@ -318,6 +318,7 @@ NoiseFit fit_noise(const AllanCurve& curve, double confidence) {
     fit.points = points.size();
     if (points.empty()) { return fit; }
     std::vector<PointScatter> scatter;
+    scatter.reserve(points.size());
     for (const AllanPoint& point : points) { scatter.emplace_back(point, curve.kind); }
     Weighted weighted{
         points, std::move(scatter), DifferenceSpectra(points), design_of(points), {}, {}, {}, {}, {}};

@@ -61,7 +61,8 @@ std::vector<std::string> fact_lines(const Figure& figure, const Typeface& typefa
     const double room_px = left_px >= least_source_share * width_px ? left_px : width_px;
     std::vector<std::string> lines{typeface.shortened(figure.source, size_px, room_px, Ellipsis::middle)};
     for (const std::string& fact : figure.facts) {
-        const std::string longer = lines.back().empty() ? fact : lines.back() + separator + fact;
+        std::string longer = lines.back();
+        longer.append(longer.empty() ? "" : separator).append(fact);
         if (width_of(longer) <= width_px) {
             lines.back() = longer;
         } else {
