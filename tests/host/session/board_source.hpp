@@ -69,6 +69,12 @@ public:
         if (!manner_.has_line) { return Error{ErrorCode::unsupported, "set DTR: no such line"}; }
         if (ended_) { return Error{ErrorCode::device_lost, "set DTR: the board is gone"}; }
         line_raised_ = data_terminal_ready;
+        tell_line_state(data_terminal_ready);
+        Transfer request;
+        request.kind = TransferKind::control;
+        request.setup = {0x21, GLP_CDC_SET_CONTROL_LINE_STATE,
+                         static_cast<std::uint8_t>(data_terminal_ready ? GLP_CDC_LINE_DTR : 0)};
+        tell(request, {}, {});
         if (!manner_.speaks_instead) { board_->on_line_state(data_terminal_ready); }
         return {};
     }
@@ -77,6 +83,10 @@ public:
         const std::lock_guard lock(mutex_);
         if (ended_) { return Error{ErrorCode::device_lost, "write: the board is gone"}; }
         ++writes_;
+        Transfer sent;
+        sent.endpoint = GLP_USB_ENDPOINT_OUT;
+        sent.requested_bytes = static_cast<std::uint32_t>(bytes.size());
+        tell(sent, bytes, {});
         if (manner_.lost_when_written_to) {
             board_->fault({BoardFault::Kind::unplug, 0.0, 0.0});
         } else if (!manner_.speaks_instead) {
@@ -159,13 +169,31 @@ private:
     void deliver(ByteView data) {
         Transfer transfer;
         transfer.endpoint = GLP_USB_ENDPOINT_IN;
-        transfer.id = ++last_id_;
         transfer.requested_bytes = static_cast<std::uint32_t>(manner_.transfer_bytes);
+        tell(transfer, {}, data);
+    }
+
+    void tell(Transfer transfer, ByteView submitted, ByteView completed) {
+        transfer.id = ++last_id_;
+        transfer.time = host_now();
+        transfer.event = Transfer::Event::submission;
+        transfer.data = submitted;
+        hand_over(transfer);
+        transfer.event = Transfer::Event::completion;
+        transfer.data = completed;
+        hand_over(transfer);
+    }
+
+    void tell_line_state(bool data_terminal_ready) {
+        Transfer transfer;
+        transfer.kind = TransferKind::control;
+        transfer.id = ++last_id_;
+        transfer.setup = {0x21, GLP_CDC_SET_CONTROL_LINE_STATE,
+                          static_cast<std::uint8_t>(data_terminal_ready ? GLP_CDC_LINE_DTR : 0)};
         transfer.time = host_now();
         transfer.event = Transfer::Event::submission;
         hand_over(transfer);
         transfer.event = Transfer::Event::completion;
-        transfer.data = data;
         hand_over(transfer);
     }
 
@@ -175,11 +203,11 @@ private:
             std::this_thread::yield();
             taken = sink_->on_transfer(transfer);
         }
-        if (taken) {
-            delivered_.insert(delivered_.end(), transfer.data.begin(), transfer.data.end());
-        } else {
+        if (!taken) {
             ++transfers_refused_;
             bytes_refused_ += transfer.data.size();
+        } else if (transfer.carries_stream()) {
+            delivered_.insert(delivered_.end(), transfer.data.begin(), transfer.data.end());
         }
     }
 

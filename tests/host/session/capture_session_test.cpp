@@ -10,12 +10,12 @@
 #include <gyrolog_protocol/cobs.h>
 #include <gyrolog_protocol/crc.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include "host/capture/capture_reader.hpp"
 #include "host/session/load_capture.hpp"
 #include "host/transport/replay_source.hpp"
 #include "tests/host/session/board_source.hpp"
+#include "tests/support/program.hpp"
 
 namespace gyrolog {
 namespace {
@@ -61,14 +61,10 @@ private:
 class CaptureSession : public testing::Test {
 protected:
     CaptureSession() {
-        std::string folder = std::filesystem::temp_directory_path() / "gyrolog_session_XXXXXX";
-        EXPECT_NE(mkdtemp(folder.data()), nullptr);
-        folder_ = folder;
-        request_.path = folder_ / "run.pcapng";
+        request_.path = folder_.path("run.pcapng");
         request_.hello_timeout_s = 5.0;
         request_.duration_s = 1.0;
     }
-    ~CaptureSession() override { std::filesystem::remove_all(folder_); }
 
     Result<CaptureOutcome> capture(ByteSource& source, const CaptureObserver& observe = go_on) const {
         return run_capture(source, request_, observe);
@@ -97,7 +93,7 @@ protected:
         return capture.ok() ? std::move(capture).value() : LoadedCapture{};
     }
 
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
     CaptureRequest request_;
 };
 
@@ -151,7 +147,7 @@ TEST_F(CaptureSession, ReplayedCaptureIsStoredAgainByteForByte) {
     const auto replay = ReplaySource::open(request_.path);
     ASSERT_TRUE(replay.ok());
     CaptureRequest again;
-    again.path = folder_ / "again.pcapng";
+    again.path = folder_.path("again.pcapng");
     const auto outcome = run_capture(**replay, again, go_on);
     ASSERT_TRUE(outcome.ok()) << outcome.error().message;
     EXPECT_EQ(outcome->end, CaptureEnd::complete);
@@ -163,7 +159,7 @@ TEST_F(CaptureSession, ReplayedCaptureCannotBeConfigured) {
     const auto replay = ReplaySource::open(request_.path);
     ASSERT_TRUE(replay.ok());
     CaptureRequest again;
-    again.path = folder_ / "again.pcapng";
+    again.path = folder_.path("again.pcapng");
     again.configure.rate_mHz = 100'000;
     const auto outcome = run_capture(**replay, again, go_on);
     ASSERT_FALSE(outcome.ok());
