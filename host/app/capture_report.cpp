@@ -123,6 +123,7 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
             {"corrupted_by_reason", reasons_json(link)},
             {"lost_on_device",
              {{"samples", link.samples.lost_on_device}, {"frames", link.frames.lost_on_device}}},
+            {"frames_before_start", link.frames_before_start},
             {"boots", link.boots},
             {"runs", link.runs},
             {"file_bytes",
@@ -144,7 +145,10 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
                                                              format_count(link.bytes_skipped_at_head))
                                                : "");
     text += row("  buffered", link.bytes.buffered, link.bytes.buffered > 0 ? "a frame that was cut off" : "");
-    text += row("frames good", link.frames.good);
+    text += row("frames good", link.frames.good,
+                link.frames_before_start > 0 ? fmt::format("and {} of a stream that ran before the start",
+                                                           format_count(link.frames_before_start))
+                                             : "");
     text += row("  missing", link.frames.missing);
     text += row("  duplicated", link.frames.duplicated);
     text += row("  corrupted", link.frames.corrupted);

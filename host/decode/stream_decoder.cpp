@@ -1,6 +1,48 @@
 #include "host/decode/stream_decoder.hpp"
 
+#include <gyrolog_protocol/usb_identity.h>
+
 namespace gyrolog {
+
+namespace {
+
+// SET_CONTROL_LINE_STATE with DTR, as the host sent it (USB CDC PSTN 1.2, 6.3.12).
+bool raises_line(const Transfer& transfer) {
+    return transfer.event == Transfer::Event::submission && transfer.kind == TransferKind::control &&
+           transfer.setup[0] == 0x21 && transfer.setup[1] == GLP_CDC_SET_CONTROL_LINE_STATE &&
+           (transfer.setup[2] & GLP_CDC_LINE_DTR) != 0;
+}
+
+}  // namespace
+
+bool StreamDecoder::take(const Transfer& transfer) {
+    if (transfer.carries_stream()) {
+        feed(transfer.data, transfer.time);
+        return false;
+    }
+    if (before_start_ || !raises_line(transfer)) { return false; }
+    before_start_ = report();
+    accounts_ = {};
+    timeline_ = {};
+    builder_ = {};
+    hello_.reset();
+    config_.reset();
+    status_.reset();
+    run_ = 0;
+    return true;
+}
+
+LinkReport StreamDecoder::report() const {
+    LinkReport report = accounts_.report(frames_);
+    if (before_start_) {
+        report.frames_before_start = before_start_->frames.good;
+        report.frames.corrupted -= before_start_->frames.corrupted;
+        for (std::size_t reason = 0; reason < report.frames.corrupted_by_reason.size(); ++reason) {
+            report.frames.corrupted_by_reason[reason] -= before_start_->frames.corrupted_by_reason[reason];
+        }
+    }
+    return report;
+}
 
 void StreamDecoder::on_hello(const ReceivedFrame& frame, const glp_hello& hello) {
     if (!accounts_.take_hello(frame.frame, hello)) { return; }

@@ -2,7 +2,7 @@
 // and stored data go through here alike.
 //
 //     StreamDecoder decoder({.keep_samples = true});
-//     for (...) { decoder.feed(transfer.data, transfer.time); }
+//     for (...) { decoder.take(transfer); }
 //     GYROLOG_TRY(Recording recording, decoder.take_recording("night"));
 #pragma once
 
@@ -19,6 +19,7 @@
 #include "host/decode/link_accounts.hpp"
 #include "host/decode/recording_builder.hpp"
 #include "host/decode/sample_timeline.hpp"
+#include "host/transport/transfer.hpp"
 
 namespace gyrolog {
 
@@ -31,9 +32,13 @@ class StreamDecoder : private MessageHandler {
 public:
     explicit StreamDecoder(StreamDecoderOptions options = {}) : options_(options) {}
 
+    // Feeds what a transfer carries of the stream. The transfer by which the host first raises DTR begins the
+    // accounts anew and is answered by true: what a board still had from an earlier listener is in the bytes,
+    // but its gaps are not this stream's.
+    bool take(const Transfer& transfer);
     void feed(ByteView bytes, HostTime arrival) { frames_.feed(bytes, arrival, *this); }
 
-    LinkReport report() const { return accounts_.report(frames_); }
+    LinkReport report() const;
     const SampleTimeline& timeline() const { return timeline_; }
     // As last told by the board.
     const std::optional<glp_hello>& hello() const { return hello_; }
@@ -68,6 +73,7 @@ private:
     std::optional<glp_config> config_;
     std::optional<glp_device_status> status_;
     std::uint32_t run_ = 0;
+    std::optional<LinkReport> before_start_;
 };
 
 }  // namespace gyrolog

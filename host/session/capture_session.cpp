@@ -113,7 +113,8 @@ public:
         std::unique_lock lock(mutex_);
         return changed_.wait_for(lock, time, [&] { return wanted(); });
     }
-    // The three below: inside wait(), or after join().
+    // The ones below: inside wait(), or after join().
+    bool line_was_raised() const { return line_was_raised_; }
     bool has_hello() const { return progress_.hello.has_value(); }
     bool has_config() const { return progress_.config.has_value(); }
     bool enough() const { return enough_; }
@@ -143,9 +144,12 @@ private:
                 fail(std::move(appended).error());
             }
         }
-        if (transfer.carries_stream()) {
-            decoder_.feed(transfer.data, transfer.time);
-            bytes_since_checkpoint_ += transfer.data.size();
+        if (transfer.carries_stream()) { bytes_since_checkpoint_ += transfer.data.size(); }
+        if (decoder_.take(transfer)) {
+            started_ = true;
+            instants_ = 0;
+            next_index_.reset();
+            latest_.reset();
         }
         if (bytes_since_checkpoint_ >= checkpoint_bytes) { checkpoint(false); }
     }
@@ -193,6 +197,7 @@ private:
                                       latest_->temperature * 1e-9 * progress_.config->temp_nC_per_lsb;
         }
         if (progress_.rate_hz) { progress_.device_s = static_cast<double>(instants_) / *progress_.rate_hz; }
+        line_was_raised_ = started_;
         replies_.insert(replies_.end(), new_replies_.begin(), new_replies_.end());
         new_replies_.clear();
         enough_ = (request_.samples && instants_ >= *request_.samples) ||
@@ -224,6 +229,7 @@ private:
     StreamDecoder decoder_;
     std::uint64_t bytes_since_checkpoint_ = 0;
     std::int64_t last_sync_ns_ = clock_ns(CLOCK_MONOTONIC);
+    bool started_ = false;  // by DTR
     std::optional<glp_samples> latest_;
     // Sampling instants that this capture covers, gaps within a run included. A sample's index alone would
     // not do: it counts from the board's start, and a board may have been streaming for hours before the
@@ -238,6 +244,7 @@ private:
     std::vector<glp_reply> replies_;
     std::optional<Error> storage_error_;
     bool enough_ = false;
+    bool line_was_raised_ = false;
 
     std::thread thread_;  // last: starts when everything else is there
 };
@@ -278,6 +285,8 @@ public:
         const std::size_t size = glp_configure_write(&wanted, payload.data(), payload.size());
         return command(glp_frame_configure, ByteView(payload).first(size), Answer::awaited);
     }
+
+    bool has_line() const { return has_line_; }
 
     Status start() {
         start_asked_ = true;
@@ -364,15 +373,15 @@ Status begin(ByteSource& source, QueueingSink& sink, WriterThread& writer, Board
     GYROLOG_CHECK(control.quiet());
     GYROLOG_CHECK(control.configure(request.configure));
     GYROLOG_CHECK(control.start());
-    bool identified = false;
-    writer.wait(milliseconds(static_cast<std::int64_t>(request.hello_timeout_s * 1e3)), [&] {
-        identified = writer.has_hello() && writer.has_config();
-        return identified || sink.end().has_value();
-    });
-    if (identified) { return {}; }
+    // A HELLO from before the start may be that of a stream which somebody else had started.
+    const auto identified = [&] {
+        return (writer.line_was_raised() || !control.has_line()) && writer.has_hello() && writer.has_config();
+    };
+    writer.wait(milliseconds(static_cast<std::int64_t>(request.hello_timeout_s * 1e3)),
+                [&] { return identified() || sink.end().has_value(); });
     // The source may have ended with the frames still in the queue.
     if (sink.end()) { writer.join(); }
-    if (writer.has_hello() && writer.has_config()) { return {}; }
+    if (identified()) { return {}; }
     if (const auto error = sink.error()) { return *error; }
     return Error{ErrorCode::timeout, no_hello};
 }

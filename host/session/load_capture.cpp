@@ -15,12 +15,11 @@ Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples) {
         GYROLOG_TRY(const std::optional<CapturedTransfer> captured, reader.next());
         if (!captured) { break; }
         const Transfer& transfer = captured->transfer;
-        if (!transfer.carries_stream()) { continue; }
-        if (!any_data && !transfer.data.empty()) {
+        if (!any_data && transfer.carries_stream() && !transfer.data.empty()) {
             loaded.first_data = transfer.time;
             any_data = true;
         }
-        loaded.decoder->feed(transfer.data, transfer.time);
+        static_cast<void>(loaded.decoder->take(transfer));
     }
     loaded.file = reader.accounts();
     loaded.metadata = reader.metadata();

@@ -48,7 +48,8 @@ public:
 
 // Order of calls: start, then write / set_line_state in any order, then stop. stop() returns after on_end.
 // After start() the stream may begin at once on a device that was already streaming: set_line_state(false)
-// quiets it.
+// quiets it. Everything is told to the sink: the stream, what was written, and a line state that was set (as
+// SET_CONTROL_LINE_STATE), each at its place in the order.
 class ByteSource {
 public:
     virtual ~ByteSource() = default;
