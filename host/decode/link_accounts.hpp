@@ -3,9 +3,9 @@
 // What proves a loss:
 //   - A frame number left out is a missing frame: the board numbers every frame that it makes.
 //   - A sampling index left out is a missing sample: the board numbers every sampling instant since its
-//   start.
+//     start.
 //   - The indices after a start begin at 0, so a run whose first frames were lost still shows how much is
-//   missing.
+//     missing.
 //   - At the end of a run the STATUS and EVENT frames tell how far the board had counted.
 // Across a reset of the board (another boot id, or numbers that begin again) nothing is missing that these do
 // not prove.
