@@ -336,6 +336,7 @@ TEST_F(CaptureSession, FullDiskEndsTheCaptureAndLeavesAReadableFile) {
     EXPECT_EQ(outcome->end, CaptureEnd::storage_failed);
     ASSERT_TRUE(outcome->error.has_value());
     EXPECT_EQ(outcome->error->code, ErrorCode::disk_full);
+    EXPECT_LT(outcome->progress.device_s, 60.0) << "it ends at once, not when all was asked for";
     EXPECT_LE(std::filesystem::file_size(request_.path), 100'000U);
     const Bytes stored = stored_stream(request_.path);
     EXPECT_GT(stored.size(), 20'000U);
