@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
         action.sa_handler = on_stop_signal;
         sigaction(number, &action, nullptr);
     }
-    std::signal(SIGPIPE, SIG_IGN);
+    static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
     try {
         const gyrolog::Console console{std::cout, std::cerr, isatty(STDERR_FILENO) == 1, &stop_signal};
         const gyrolog::ExitCode code =
