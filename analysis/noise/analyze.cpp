@@ -18,10 +18,15 @@ AxisReport analyze_axis(const Column& column, const Recording& recording, const 
     AxisReport axis;
     axis.axis = column.name.substr(1);
     axis.curve = allan_deviation(column, recording.segments, recording.rate_hz, options);
-    axis.fit = fit_noise(axis.curve, options.confidence);
-    axis.slopes = read_slopes(axis.curve);
-    // The sparse model: a term that the record does not show would add what the last, noisiest averaging
-    // times happened to do.
+    // Averaging factors that the user picked select what is shown, not what the coefficients are made of.
+    AllanCurve whole = axis.curve;
+    if (!options.m.empty()) {
+        AnalysisOptions every_factor = options;
+        every_factor.m.clear();
+        whole = allan_deviation(column, recording.segments, recording.rate_hz, every_factor);
+    }
+    axis.fit = fit_noise(whole, options.confidence);
+    axis.slopes = read_slopes(whole);
     axis.bias = static_bias(column, recording.rate_hz, axis.fit.sparse);
     return axis;
 }

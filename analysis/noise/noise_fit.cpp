@@ -16,6 +16,8 @@ namespace {
 
 constexpr double edf_of_print = 50.0;
 constexpr double identified_sd = 2.0;
+// In the sparse model a term stays sooner: a drift left out makes a mean look known that is not.
+constexpr double kept_sd = 1.0;
 constexpr unsigned all_terms = (1U << noise_terms) - 1;
 
 using Squares = Eigen::Matrix<double, static_cast<int>(noise_terms), 1>;
@@ -283,9 +285,19 @@ void drop_insignificant_terms(Weighted& fit) {
                 weakest = term;
             }
         }
-        if (!(least < identified_sd)) { return; }
+        if (!(least < kept_sd)) { return; }
         fit_terms(fit, fit.solution.active & ~(1U << static_cast<unsigned>(weakest)));
     }
+}
+
+// No more terms than the points can tell apart and leave one over: with two points of white noise, N, B and Q
+// together would meet both exactly and mean nothing.
+unsigned terms_for(std::size_t points) {
+    constexpr std::array by_need{NoiseTerm::N, NoiseTerm::B, NoiseTerm::K, NoiseTerm::Q, NoiseTerm::R};
+    const std::size_t count = std::clamp<std::size_t>(points, 2, noise_terms + 1) - 1;
+    unsigned terms = 0;
+    for (std::size_t i = 0; i < count; ++i) { terms |= 1U << static_cast<unsigned>(by_need[i]); }
+    return terms;
 }
 
 std::vector<AllanPoint> usable_points(const AllanCurve& curve) {
@@ -322,7 +334,7 @@ NoiseFit fit_noise(const AllanCurve& curve, double confidence) {
     for (const AllanPoint& point : points) { scatter.emplace_back(point, curve.kind); }
     Weighted weighted{
         points, std::move(scatter), DifferenceSpectra(points), design_of(points), {}, {}, {}, {}, {}};
-    fit_terms(weighted, all_terms);
+    fit_terms(weighted, terms_for(points.size()));
     fit.best = coefficients_of(weighted.solution.squares);
     fit.worst_residual_sd =
         (weighted.rows * weighted.solution.squares - weighted.right).cwiseAbs().maxCoeff();

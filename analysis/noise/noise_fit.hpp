@@ -45,7 +45,8 @@ struct NoiseFit {
     // an unbiased description of the curve and no statement about them.
     NoiseCoefficients best;
     // The fewest terms that describe the curve: the least significant is left out and the rest fitted again
-    // until all are significant. What another record of this sensor should be expected to do.
+    // until all are at least one standard deviation above zero. What another record of this sensor should be
+    // expected to do.
     NoiseCoefficients sparse;
     std::size_t points = 0;  // of the curve that were used
     double worst_residual_sd =

@@ -73,10 +73,18 @@ std::string row(std::string_view what, std::uint64_t count, std::string_view rem
     return fmt::format("  {:<22}{:>16}{}{}\n", what, format_count(count), remark.empty() ? "" : "  ", remark);
 }
 
-std::string end_text(const std::string& path, const BlockAccounts& file) {
+// Whether the program that wrote the file also closed it; true where a foreign program cannot have said so.
+bool closed_by_writer(const LoadedCapture& capture) {
+    return !capture.metadata || (capture.last_checkpoint && capture.last_checkpoint->last);
+}
+
+std::string end_text(const std::string& path, const LoadedCapture& capture) {
+    const BlockAccounts& file = capture.file.blocks;
     switch (file.end) {
         case FileEnd::clean:
-            return "clean";
+            return closed_by_writer(capture) ? "clean"
+                                             : "clean, but the writer did not close it: it was stopped "
+                                               "short, by a full disk or a kill";
         case FileEnd::torn_tail:
             return fmt::format(
                 "torn tail: the writer died there. {} bytes at the end are in no whole block; all "
@@ -107,6 +115,7 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
     return {{"schema", "gyrolog-check/1"},
             {"file", path},
             {"end", name_of(file.end)},
+            {"closed", closed_by_writer(capture)},
             {"bytes",
              {{"total", link.bytes.total},
               {"in_frames", link.bytes.in_frames},
@@ -137,7 +146,7 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
 std::string check_text(const std::string& path, const LoadedCapture& capture) {
     const LinkReport link = capture.decoder->report();
     std::string text = path + "\n";
-    text += fmt::format("  end of file: {}\n", end_text(path, capture.file.blocks));
+    text += fmt::format("  end of file: {}\n", end_text(path, capture));
     text += row("bytes of the stream", link.bytes.total);
     text += row("  in frames", link.bytes.in_frames);
     text += row("  skipped", link.bytes.skipped,
@@ -248,8 +257,8 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
     }
     line("missing", fmt::format("{} samples in {} dropouts", format_count(link.samples.missing),
                                 link.dropouts.size() + link.dropouts_unlisted));
-    line("file", fmt::format("{}, {}", format_bytes(capture.file.blocks.bytes_total),
-                             end_text(path, capture.file.blocks)));
+    line("file",
+         fmt::format("{}, {}", format_bytes(capture.file.blocks.bytes_total), end_text(path, capture)));
     if (!hello) { line("note", "no HELLO frame: this capture does not say what it is a capture of"); }
     return text;
 }

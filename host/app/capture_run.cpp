@@ -1,19 +1,36 @@
 #include "host/app/capture_run.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "host/app/command.hpp"
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
+#include "host/session/load_capture.hpp"
 #include "host/session/open_source.hpp"
 
 namespace gyrolog {
 namespace {
 
-void sum_up(Console& console, const CaptureOutcome& outcome, const std::string& path) {
-    const LinkReport& link = outcome.link;
+double stored_s(const CaptureOutcome& outcome, const LinkReport& link) {
+    const double rate_hz = outcome.progress.rate_hz.value_or(0.0);
+    return rate_hz > 0.0 ? static_cast<double>(link.samples.good + link.samples.missing) / rate_hz : 0.0;
+}
+
+// The disk refused at some point: what counts is what the file gives back.
+void keep_what_is_stored(const std::string& path, const CaptureOutcome& outcome, LinkReport& link) {
+    const auto stored = load_capture(path, false);
+    if (!stored.ok()) { return; }
+    link = stored->decoder->report();
+    link.samples.missing +=
+        outcome.link.samples.good - std::min(outcome.link.samples.good, link.samples.good);
+}
+
+void sum_up(Console& console, const CaptureOutcome& outcome, const LinkReport& link,
+            const std::string& path) {
     console.err << fmt::format("  {}: {} samples in {}, {}\n", path, format_count(link.samples.good),
-                               format_duration(outcome.progress.device_s),
+                               format_duration(stored_s(outcome, link)),
                                format_bytes(outcome.progress.file_bytes));
     if (link.samples.missing > 0 || link.frames.missing > 0) {
         console.err << fmt::format(
@@ -79,7 +96,9 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
         request->samples.reset();
     }
     ByteSource& source = *opened->source;
-    console.err << "capturing from " << source.identity().uri << " to " << path << '\n';
+    console.err << "capturing from " << source.identity().uri << " to " << path
+                << (real_time && console.progress ? "; Ctrl-C stops, closes the file and analyses it\n"
+                                                  : "\n");
     LiveView view(console);
     const auto outcome = run_capture(source, *request, [&](const CaptureProgress& progress) {
         view.show(progress);
@@ -93,14 +112,15 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
     }
     result.file_written = true;
     result.link = outcome->link;
+    if (outcome->end == CaptureEnd::storage_failed) { keep_what_is_stored(path, *outcome, result.link); }
     result.code = exit_code_of(*outcome);
     if (outcome->error) {
-        console.err << "gyrolog " << command << ": " << outcome->error->message
+        console.err << program_and(command) << ": " << outcome->error->message
                     << (outcome->end == CaptureEnd::device_lost
                             ? "; the board is lost, what came before is saved\n"
                             : "; what was written before is saved\n");
     }
-    sum_up(console, *outcome, path);
+    sum_up(console, *outcome, result.link, path);
     return result;
 }
 

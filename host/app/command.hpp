@@ -33,6 +33,9 @@ Action setup_recover(CLI::App& app);
 // The program without a command: find the board, capture, analyse.
 Action setup_bench_session(CLI::App& app);
 
+// "gyrolog NAME", or "gyrolog" for the program without a command.
+std::string program_and(const char* command);
+
 // "gyrolog NAME: message" on err, and the exit code that goes with the error.
 ExitCode report_error(Console& console, const char* command, const Error& error);
 

@@ -27,7 +27,7 @@ Action setup_analyze(CLI::App& app) {
     app.add_option("--m", request->factors, "Averaging factors: 1,10,100")->type_name("LIST");
     app.add_option("--rate", request->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1e-4, 1e7));
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(CLI::PositiveNumber);

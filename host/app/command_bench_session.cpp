@@ -34,7 +34,6 @@ std::string without_extension(const std::string& path) {
 
 ExitCode bench_session(Console& console, Options options) {
     if (options.path.empty()) { options.path = name_by_time() + ".pcapng"; }
-    if (console.progress) { console.err << "Ctrl-C stops, closes the file and analyses it\n"; }
     const CaptureResult captured = capture_to_file(console, "", options.capture, options.path, true);
     if (!captured.file_written) {
         if (captured.code == ExitCode::no_device) {

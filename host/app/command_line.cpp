@@ -20,12 +20,22 @@ constexpr std::array commands{
 
 }  // namespace
 
+std::string program_and(const char* command) {
+    return *command == '\0' ? "gyrolog" : std::string("gyrolog ") + command;
+}
+
 ExitCode report_error(Console& console, const char* command, const Error& error) {
-    console.err << "gyrolog" << (*command == '\0' ? "" : " ") << command << ": " << error.message << '\n';
+    console.err << program_and(command) << ": " << error.message << '\n';
     return exit_code_of(error);
 }
 
 ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
+    if (!arguments.empty() && !arguments.front().starts_with('-') &&
+        std::ranges::none_of(commands, [&](const Command& c) { return arguments.front() == c.name; })) {
+        console.err << "gyrolog: there is no command '" << arguments.front()
+                    << "'\nrun `gyrolog --help` to see what there is\n";
+        return ExitCode::usage;
+    }
     CLI::App app{
         "gyrolog: an inertial test bench. Without a command it finds the board, captures with a live view,\n"
         "and on Ctrl-C closes the file and analyses it.",

@@ -18,7 +18,8 @@ Result<double> parse_duration_s(std::string_view text) {
     if (unit == "h") { factor = 3600.0; }
     if (unit == "d") { factor = 86400.0; }
     const double duration_s = value * factor;
-    if (problem != std::errc() || factor == 0.0 || !(duration_s > 0.0) || !std::isfinite(duration_s)) {
+    constexpr double ten_years_s = 10.0 * 365.25 * 86400.0;
+    if (problem != std::errc() || factor == 0.0 || !(duration_s > 0.0) || !(duration_s <= ten_years_s)) {
         return Error{ErrorCode::invalid_argument,
                      fmt::format("'{}' is no duration: write 90, 90s, 15m, 6h or 1d", text)};
     }

@@ -20,7 +20,7 @@ Result<CaptureWriter> CaptureWriter::create(const std::string& path, const Sourc
     if (!file.ok()) {
         Error error = std::move(file).error();
         if (error.code == ErrorCode::invalid_argument) {
-            error.message += "; choose another name or --overwrite";
+            error.message += "; choose another name or --force";
         }
         return error;
     }

@@ -245,7 +245,9 @@ SensorModel read_document(const Json& document, std::optional<std::string>& prob
         model.temperature = read_temperature(temperature_keys);
         carry(carried, "temperature", temperature_keys.left_over());
     }
-    const Json& effects = keys.need("effects");
+    static const Json none = Json::array();
+    const Json* given = keys.find("effects");
+    const Json& effects = given == nullptr ? none : *given;
     if (!effects.is_array()) { keys.fail("effects", "is not a list"); }
     for (std::size_t i = 0; effects.is_array() && i < effects.size(); ++i) {
         Keys effect_keys = keys.inside(effects[i], "effects[" + std::to_string(i) + "]");

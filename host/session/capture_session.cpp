@@ -258,7 +258,7 @@ public:
         : source_(source), writer_(writer), sink_(sink) {}
 
     Status quiet() {
-        const Status lowered = source_.set_line_state(false);
+        Status lowered = source_.set_line_state(false);
         if (lowered.ok()) { return {}; }
         if (lowered.error().code != ErrorCode::unsupported) { return lowered; }
         has_line_ = false;
@@ -366,6 +366,14 @@ private:
 
 constexpr const char* no_hello = "no HELLO and CONFIG frame";
 
+// A file that cannot be made is no missing device.
+Error storage_error_of(Error error) {
+    if (error.code == ErrorCode::not_found || error.code == ErrorCode::permission_denied) {
+        error.code = ErrorCode::storage_failed;
+    }
+    return error;
+}
+
 // From a silent board to a stream whose HELLO and CONFIG have come.
 Status begin(ByteSource& source, QueueingSink& sink, WriterThread& writer, BoardControl& control,
              const CaptureRequest& request) {
@@ -441,8 +449,9 @@ CaptureEnd stream_until_end(const ByteSource& source, WriterThread& writer, Queu
 
 Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request,
                                    const CaptureObserver& observe) {
-    GYROLOG_TRY(CaptureWriter writer,
-                CaptureWriter::create(request.path, source.identity(), request.overwrite));
+    auto created = CaptureWriter::create(request.path, source.identity(), request.overwrite);
+    if (!created.ok()) { return storage_error_of(std::move(created).error()); }
+    CaptureWriter writer = std::move(created).value();
     TransferQueue queue(request.queue_bytes);
     QueueingSink sink(queue, source.can_wait());
     WriterThread thread(queue, sink, writer, request);

@@ -1,7 +1,10 @@
 #include "host/session/load_capture.hpp"
 
+#include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
+#include <string_view>
 
 namespace gyrolog {
 
@@ -22,20 +25,25 @@ Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples) {
         static_cast<void>(loaded.decoder->take(transfer));
     }
     loaded.file = reader.accounts();
+    if (loaded.file.blocks.bytes_total == 0) {
+        return Error{ErrorCode::malformed, "read capture '" + path + "': the file is empty"};
+    }
     loaded.metadata = reader.metadata();
     loaded.last_checkpoint = reader.checkpoint();
     return loaded;
 }
 
 bool looks_like_capture(const std::string& path) {
+    if (path.ends_with(".pcapng") || path.ends_with(".pcap")) { return true; }
+    // What is read from a pipe is gone for whoever reads it next.
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(path, unknown)) { return false; }
+    constexpr std::array<std::string_view, 3> beginnings{"\x0A\x0D\x0D\x0A", "\xD4\xC3\xB2\xA1",
+                                                         "\x4D\x3C\xB2\xA1"};
     std::array<char, 4> begin{};
     std::ifstream file(path, std::ios::binary);
-    if (!file.read(begin.data(), begin.size())) { return false; }
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(begin[i]); };
-    const bool pcapng = byte(0) == 0x0A && byte(1) == 0x0D && byte(2) == 0x0D && byte(3) == 0x0A;
-    const bool pcap = (byte(0) == 0xD4 && byte(1) == 0xC3 && byte(2) == 0xB2 && byte(3) == 0xA1) ||
-                      (byte(0) == 0x4D && byte(1) == 0x3C && byte(2) == 0xB2 && byte(3) == 0xA1);
-    return pcapng || pcap || path.ends_with(".pcapng") || path.ends_with(".pcap");
+    return file.read(begin.data(), begin.size()) &&
+           std::ranges::find(beginnings, std::string_view(begin.data(), begin.size())) != beginnings.end();
 }
 
 }  // namespace gyrolog

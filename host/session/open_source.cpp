@@ -18,6 +18,18 @@ Opened opened(Result<std::unique_ptr<Source>> source, bool keeps_limit = false) 
     return OpenedSource{std::move(source).value(), keeps_limit};
 }
 
+// A file that is not there is no missing device.
+Error file_error(Error error) {
+    const bool file = error.code == ErrorCode::not_found || error.code == ErrorCode::permission_denied;
+    return {file ? ErrorCode::failed : error.code, std::move(error.message)};
+}
+
+Opened open_replay(const SourceUri& uri) {
+    auto replay = ReplaySource::open(uri.rest);
+    if (!replay.ok()) { return file_error(std::move(replay).error()); }
+    return opened(std::move(replay));
+}
+
 Opened open_usb(const SourceUri& uri) {
     GYROLOG_TRY(std::shared_ptr<UsbContext> usb, UsbContext::create());
     return opened(UsbSource::open(std::move(usb), uri.rest));
@@ -27,7 +39,11 @@ Opened open_simulated(const SourceUri& uri, const SourceLimit& limit, bool real_
     GYROLOG_TRY(SimOptions options, parse_sim_options(uri.options));
     options.realtime = options.realtime || real_time;
     SensorModel model = typical_mpu9250();
-    if (!options.model_path.empty()) { GYROLOG_TRY(model, read_model(options.model_path)); }
+    if (!options.model_path.empty()) {
+        auto read = read_model(options.model_path);
+        if (!read.ok()) { return file_error(std::move(read).error()); }
+        model = std::move(read).value();
+    }
     return opened(SimSource::create(options, model, {limit.samples, limit.duration_s}), true);
 }
 
@@ -43,7 +59,7 @@ Opened open_source(const std::string& uri, const SourceLimit& limit, bool real_t
         case SourceUri::Kind::sim:
             return open_simulated(parsed, limit, real_time);
         case SourceUri::Kind::replay:
-            return opened(ReplaySource::open(parsed.rest));
+            return open_replay(parsed);
     }
     return Error{ErrorCode::invalid_argument, uri};
 }

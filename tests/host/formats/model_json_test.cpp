@@ -85,7 +85,7 @@ TEST(ModelJson, UnknownKeysAreKeptWhereTheyStood) {
 TEST(ModelJson, AMissingNeededKeyIsNamed) {
     for (const char* key : {"rate_hz", "full_scale_dps", "lsb_dps", "saturation_dps", "axes", "M",
                             "latency_s", "timestamp_jitter_s", "sd_rel", "sd_abs", "ref_noise_dps",
-                            "acc_noise_g", "temp_noise_C", "effects", "schema"}) {
+                            "acc_noise_g", "temp_noise_C", "schema"}) {
         Json json = example();
         json.erase(key);
         EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': " + std::string(key) + " is missing");
