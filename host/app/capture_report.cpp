@@ -155,9 +155,9 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
                                                : "");
     text += row("  buffered", link.bytes.buffered, link.bytes.buffered > 0 ? "a frame that was cut off" : "");
     text += row("frames good", link.frames.good,
-                link.frames_before_start > 0 ? fmt::format("and {} of a stream that ran before the start",
-                                                           format_count(link.frames_before_start))
-                                             : "");
+                link.frames_before_start > 0
+                    ? fmt::format("and {} from before the start", format_count(link.frames_before_start))
+                    : "");
     text += row("  missing", link.frames.missing);
     text += row("  duplicated", link.frames.duplicated);
     text += row("  corrupted", link.frames.corrupted);

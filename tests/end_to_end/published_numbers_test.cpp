@@ -86,7 +86,10 @@ TEST(PublishedNumbers, MatlabConventionFollowsItsOwnFormula) {
     const std::vector<double> values = thousand_values();
     std::vector<long double> theta;
     long double sum = 0;
-    for (const double value : values) { theta.push_back(sum += value); }
+    for (const double value : values) {
+        sum += static_cast<long double>(value);
+        theta.push_back(sum);
+    }
     const json curve = analyse(values, "1,10,100", "overlapping", "matlab");
     for (const json& point : curve) {
         const auto m = point["m"].get<std::size_t>();

@@ -79,6 +79,22 @@ class Scenario(unittest.TestCase):
         self.assertEqual(produced["frames_lost"], 0)
         self.assertEqual(check["samples"]["good"], produced["samples"])
 
+    def assert_replays(self, capture, samples):
+        """umockdev serves the file to the program here on the host, and the stream is the same to the bit."""
+        if shutil.which("umockdev-run") is None:
+            self.skipTest("umockdev is not installed")
+        again = self.folder / "again.pcapng"
+        again.unlink(missing_ok=True)
+        replayed = subprocess.run(
+            [HERE.parents[1] / "tools" / "umockdev_replay", self.file(capture), BUILD / "gyrolog", "capture",
+             "--device", "usb:", "--rate", "1000", "--samples", str(samples), "-o", again],
+            capture_output=True, text=True, timeout=120, check=False)
+        self.assertEqual(replayed.returncode, OK, replayed.stderr[-2000:])
+        ours, theirs = (b"".join(transfer.data for transfer in usbmon_record.from_pcapng(path.read_bytes()))
+                        for path in (self.file(capture), again))
+        self.assertGreater(len(theirs), 0.99 * len(ours))
+        self.assertEqual(theirs, ours[:len(theirs)])
+
     def assert_lasts(self, capture, rate_hz, duration_s):
         """The clock of the sensor may be 1 % off, and the first and last frame are not sharp."""
         samples = self.json(f"{capture}.check.out")["samples"]["good"]
@@ -113,6 +129,9 @@ class CaptureFromVhciBoard(Scenario):
     def test_it_can_be_analysed(self):
         self.assert_exit("capture.analyze", OK)
 
+    def test_umockdev_replays_it_to_the_program(self):
+        self.assert_replays("capture.pcapng", 30000)
+
     def test_wireshark_opens_it(self):
         tshark = shutil.which("tshark")
         if tshark is None:
@@ -137,6 +156,9 @@ class FastCapture(Scenario):
 
 class CaptureFromAcmGadget(Scenario):
     name = "20_capture_acm_gadget"
+
+    def test_umockdev_replays_it_to_the_program(self):
+        self.assert_replays("capture.pcapng", 30000)
 
     def test_a_capture_ends_well(self):
         self.assert_exit("capture", OK)
