@@ -82,7 +82,10 @@ TEST(Grid, IsNotMisledByStampsRoundedToMilliseconds) {
 // ms.
 TEST(Grid, OfBurstsGivesTheMeanRateOnly) {
     std::vector<double> t_s;
-    for (int i = 0; i < 20000; ++i) { t_s.push_back(0.05 * (i / 5) + 0.002 * (i % 5)); }
+    for (int i = 0; i < 20000; ++i) {
+        const int burst = i / 5;
+        t_s.push_back(0.05 * burst + 0.002 * (i % 5));
+    }
     const Grid grid = grid_from_stamps(t_s);
     EXPECT_EQ(grid.stamps, StampKind::arrival);
     EXPECT_NEAR(grid.rate_hz, 100.0, 0.01);
@@ -92,7 +95,10 @@ TEST(Grid, OfBurstsGivesTheMeanRateOnly) {
 
 TEST(Grid, OfBurstsIsNotMisledByAStallOfTheHost) {
     std::vector<double> t_s;
-    for (int i = 0; i < 20000; ++i) { t_s.push_back(0.05 * (i / 5) + 0.002 * (i % 5)); }
+    for (int i = 0; i < 20000; ++i) {
+        const int burst = i / 5;
+        t_s.push_back(0.05 * burst + 0.002 * (i % 5));
+    }
     for (int i = 19960; i < 20000; ++i) { t_s[static_cast<std::size_t>(i)] = 200.4 + 0.0001 * (i - 19960); }
     EXPECT_NEAR(grid_from_stamps(t_s).rate_hz, 100.0, 0.005);
 }

@@ -52,7 +52,7 @@ public:
     std::optional<SourceEnd> end;
 };
 
-std::unique_ptr<SimSource> source_of(SimOptions options, SimLimit limit) {
+std::unique_ptr<SimSource> source_of(const SimOptions& options, const SimLimit& limit) {
     auto source = SimSource::create(options, typical_mpu9250(), limit);
     EXPECT_TRUE(source.ok()) << (source.ok() ? "" : source.error().message);
     return std::move(source).value();
