@@ -5,16 +5,16 @@
 #include <cmath>
 #include <cstddef>
 
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/plot/number_text.hpp"
 
 namespace gyrolog {
 namespace {
 
-constexpr double deg_per_rad_here = 180.0 / 3.14159265358979323846;
 constexpr double s_per_h = 3600.0;
 
 // sqrt(2 ln 2 / pi): the level of the flat part over B. IEEE Std 952-1997 C.1.3.
-const double flat_level = std::sqrt(2.0 * std::log(2.0) / 3.14159265358979323846);
+const double flat_level = std::sqrt(2.0 * std::log(2.0) / pi);
 
 constexpr double tau_of_N_s = 1.0;
 constexpr double tau_of_K_s = 3.0;
@@ -220,8 +220,8 @@ void add_guides(Panel& panel) {
 
 }  // namespace
 
-DeviationUnit DeviationUnit::rad_per_s_as_deg_per_s() { return {"°/s", deg_per_rad_here, s_per_h}; }
-DeviationUnit DeviationUnit::rad_per_s() { return {"rad/s", 1.0, deg_per_rad_here * s_per_h}; }
+DeviationUnit DeviationUnit::rad_per_s_as_deg_per_s() { return {"°/s", deg_per_rad, s_per_h}; }
+DeviationUnit DeviationUnit::rad_per_s() { return {"rad/s", 1.0, deg_per_rad * s_per_h}; }
 
 Figure figure_of(const AllanFigure& allan) {
     Panel panel;

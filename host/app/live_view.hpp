@@ -8,7 +8,7 @@
 
 namespace gyrolog {
 
-// "MPU-9250, 100 Hz, ±500 °/s, DLPF off": what the board said of itself.
+// "MPU-9250, 100 Hz, ±500 °/s, low-pass off": what the board said of itself.
 std::string describe_sensor(const glp_hello& hello, const glp_config& config);
 
 // One line, redrawn in place, cut to the terminal's width. Says nothing where the console has no progress.
