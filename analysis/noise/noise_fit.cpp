@@ -314,13 +314,19 @@ std::string_view name_of(NoiseTerm term) {
     return names[static_cast<std::size_t>(term)];
 }
 
-NoiseCoefficients NoiseFit::identified() const {
+std::string_view name_of(FitMethod method) { return method == FitMethod::curve ? "curve" : "likelihood"; }
+
+NoiseModel NoiseFit::identified() const {
     const auto value = [&](NoiseTerm term) {
         const FittedCoefficient& fitted = (*this)[term];
         return fitted.state == FittedCoefficient::State::identified ? fitted.value : 0.0;
     };
-    return {value(NoiseTerm::Q), value(NoiseTerm::N), value(NoiseTerm::B), value(NoiseTerm::K),
-            value(NoiseTerm::R)};
+    NoiseModel model;
+    model.coefficients = {value(NoiseTerm::Q), value(NoiseTerm::N), value(NoiseTerm::B), value(NoiseTerm::K),
+                          value(NoiseTerm::R)};
+    for (const FittedGaussMarkov& noise : gauss_markov) { model.gauss_markov.push_back(noise.value); }
+    for (const FittedSinusoid& line : sinusoids) { model.sinusoids.push_back(line.value); }
+    return model;
 }
 
 NoiseFit fit_noise(const AllanCurve& curve, double confidence) {
@@ -335,14 +341,14 @@ NoiseFit fit_noise(const AllanCurve& curve, double confidence) {
     Weighted weighted{
         points, std::move(scatter), DifferenceSpectra(points), design_of(points), {}, {}, {}, {}, {}};
     fit_terms(weighted, terms_for(points.size()));
-    fit.best = coefficients_of(weighted.solution.squares);
+    fit.best.coefficients = coefficients_of(weighted.solution.squares);
     fit.worst_residual_sd =
         (weighted.rows * weighted.solution.squares - weighted.right).cwiseAbs().maxCoeff();
     for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(noise_terms); ++j) {
         fit.terms[static_cast<std::size_t>(j)] = judged(weighted, j, confidence);
     }
     drop_insignificant_terms(weighted);
-    fit.sparse = coefficients_of(weighted.solution.squares);
+    fit.sparse.coefficients = coefficients_of(weighted.solution.squares);
     return fit;
 }
 

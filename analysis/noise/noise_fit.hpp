@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "analysis/allan/allan_curve.hpp"
 #include "analysis/noise/noise_model.hpp"
@@ -36,18 +37,45 @@ struct FittedCoefficient {
     double lo = 0.0;  // two-sided interval at the fit's confidence
     double hi = 0.0;
     double upper = 0.0;  // upper end of that interval, by the scatter a value as large would have
+    double bound = 0.0;  // Cramer-Rao bound of the standard deviation under the fitted model; 0: not known
 };
 
+struct FittedGaussMarkov {
+    GaussMarkov value;
+    double sigma_sd = 0.0;
+    double correlation_sd_s = 0.0;
+};
+
+struct FittedSinusoid {
+    Sinusoid value;
+    double amplitude_sd = 0.0;
+    double frequency_sd_hz = 0.0;
+};
+
+// How the coefficients were found.
+enum class FitMethod {
+    curve,       // weighted least squares on an Allan curve
+    likelihood,  // likelihood of the samples
+};
+
+std::string_view name_of(FitMethod method);
+
 struct NoiseFit {
+    FitMethod method = FitMethod::curve;
     double confidence = 0.683;
     std::array<FittedCoefficient, noise_terms> terms;  // indexed by NoiseTerm
+    // Correlation of the estimates of identified terms, indexed by NoiseTerm twice; 0 for the others.
+    std::array<std::array<double, noise_terms>, noise_terms> correlation{};
+    // Beyond Q, N, B, K and R, where the data call for them.
+    std::vector<FittedGaussMarkov> gauss_markov;
+    std::vector<FittedSinusoid> sinusoids;
     // The best-fitting curve: holds the estimates of terms that are not identifiable as well, so that it is
     // an unbiased description of the curve and no statement about them.
-    NoiseCoefficients best;
+    NoiseModel best;
     // The fewest terms that describe the curve: the least significant is left out and the rest fitted again
     // until all are at least one standard deviation above zero. What another record of this sensor should be
     // expected to do.
-    NoiseCoefficients sparse;
+    NoiseModel sparse;
     std::size_t points = 0;  // of the curve that were used
     double worst_residual_sd =
         0.0;  // the largest departure of a point from the fitted curve, in its standard deviations
@@ -56,7 +84,7 @@ struct NoiseFit {
         return terms[static_cast<std::size_t>(term)];
     }
     // The identified terms as they are reported; 0 for the others.
-    NoiseCoefficients identified() const;
+    NoiseModel identified() const;
 };
 
 // A term is identified when its square is more than 2 standard deviations above zero. Points without degrees

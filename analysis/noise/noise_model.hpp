@@ -6,7 +6,7 @@
 //   sigma^2(tau) = N^2 / tau + (2 ln 2 / pi) B^2 + K^2 tau / 3 + R^2 tau^2 / 2 + 3 Q^2 / tau^2
 #pragma once
 
-#include <array>
+#include <vector>
 
 namespace gyrolog {
 
@@ -23,6 +23,37 @@ struct NoiseCoefficients {
 
     double allan_variance(double tau_s) const;  // (rad/s)^2
     double psd(double f_hz) const;              // two-sided, (rad/s)^2/Hz
+};
+
+// First-order Gauss-Markov noise, correlation exp(-t / T) (IEEE Std 952-1997 C.1.5, with q_c^2 T = 2
+// sigma^2):
+//   S(f) = 2 sigma^2 T / (1 + (2 pi f T)^2)
+//   sigma^2(tau) = 2 sigma^2 T / tau (1 - T / (2 tau) (3 - 4 exp(-tau / T) + exp(-2 tau / T)))
+struct GaussMarkov {
+    double sigma_rad_per_s = 0.0;
+    double correlation_s = 0.0;
+
+    double allan_variance(double tau_s) const;
+    double psd(double f_hz) const;
+};
+
+// A sin(2 pi f t + phase) (IEEE Std 952-1997 C.1.6): sigma^2(tau) = A^2 (sin^2(pi f tau) / (pi f tau))^2. A
+// line has no spectral density.
+struct Sinusoid {
+    double amplitude_rad_per_s = 0.0;
+    double frequency_hz = 0.0;
+
+    double allan_variance(double tau_s) const;
+};
+
+// Everything that a still sensor's noise is described by. Independent of each other: variances add.
+struct NoiseModel {
+    NoiseCoefficients coefficients;
+    std::vector<GaussMarkov> gauss_markov{};
+    std::vector<Sinusoid> sinusoids{};
+
+    double allan_variance(double tau_s) const;
+    double psd(double f_hz) const;  // without the sinusoids
 };
 
 }  // namespace gyrolog

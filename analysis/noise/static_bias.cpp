@@ -6,7 +6,7 @@
 
 namespace gyrolog {
 
-StaticBias static_bias(const Column& column, double rate_hz, const NoiseCoefficients& noise) {
+StaticBias static_bias(const Column& column, double rate_hz, const NoiseModel& noise) {
     StaticBias bias;
     const auto samples = static_cast<double>(column.size());
     if (column.size() < 2) { return bias; }

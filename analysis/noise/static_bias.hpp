@@ -17,6 +17,6 @@ struct StaticBias {
 // the root of half the mean square difference between the mean of this record and that of one like it right
 // after. For white noise it is the standard deviation over sqrt(n); for flicker and random walk no number of
 // samples gets below it.
-StaticBias static_bias(const Column& column, double rate_hz, const NoiseCoefficients& noise);
+StaticBias static_bias(const Column& column, double rate_hz, const NoiseModel& noise);
 
 }  // namespace gyrolog

@@ -23,7 +23,7 @@ SensorModel fitted_model(const AnalysisReport& report, const Recording& recordin
         const auto found = std::ranges::find(report.axes, axis_names[axis], &AxisReport::axis);
         if (found == report.axes.end()) { continue; }
         AxisModel& fitted = model.axes[axis];
-        fitted.noise = found->fit.identified();
+        fitted.noise = found->fit.identified().coefficients;
         fitted.bias_rad_s = found->bias.value;
         for (const NoiseTerm term : all_noise_terms) { add_relative_sd(found->fit, term, fitted.sd_rel); }
         const Column* column = recording.find(std::string("g") + axis_names[axis]);

@@ -31,11 +31,11 @@ AllanCurve exact_curve(const NoiseCoefficients& noise) {
 TEST(NoiseFit, OfAnExactCurveIsItsModel) {
     const NoiseCoefficients all{1e-5, 0.01, 0.002, 1e-4, 1e-7};
     const NoiseFit fit = fit_noise(exact_curve(all));
-    EXPECT_NEAR(fit.best.Q_rad, all.Q_rad, 1e-6 * all.Q_rad);
-    EXPECT_NEAR(fit.best.N_rad_per_sqrt_s, all.N_rad_per_sqrt_s, 1e-8 * all.N_rad_per_sqrt_s);
-    EXPECT_NEAR(fit.best.B_rad_per_s, all.B_rad_per_s, 1e-6 * all.B_rad_per_s);
-    EXPECT_NEAR(fit.best.K_rad_per_s_sqrt_s, all.K_rad_per_s_sqrt_s, 1e-4 * all.K_rad_per_s_sqrt_s);
-    EXPECT_NEAR(fit.best.R_rad_per_s2, all.R_rad_per_s2, 1e-2 * all.R_rad_per_s2);
+    EXPECT_NEAR(fit.best.coefficients.Q_rad, all.Q_rad, 1e-6 * all.Q_rad);
+    EXPECT_NEAR(fit.best.coefficients.N_rad_per_sqrt_s, all.N_rad_per_sqrt_s, 1e-8 * all.N_rad_per_sqrt_s);
+    EXPECT_NEAR(fit.best.coefficients.B_rad_per_s, all.B_rad_per_s, 1e-6 * all.B_rad_per_s);
+    EXPECT_NEAR(fit.best.coefficients.K_rad_per_s_sqrt_s, all.K_rad_per_s_sqrt_s, 1e-4 * all.K_rad_per_s_sqrt_s);
+    EXPECT_NEAR(fit.best.coefficients.R_rad_per_s2, all.R_rad_per_s2, 1e-2 * all.R_rad_per_s2);
     EXPECT_LT(fit.worst_residual_sd, 1e-4);
 }
 
@@ -60,8 +60,8 @@ TEST(NoiseFit, OfNothingClaimsNothing) {
 TEST(NoiseFit, OfOnePointIsWhiteNoise) {
     AllanCurve curve = exact_curve(truth);
     curve.points.resize(1);
-    EXPECT_GT(fit_noise(curve).best.N_rad_per_sqrt_s, 0.0);
-    EXPECT_EQ(fit_noise(curve).best.B_rad_per_s, 0.0);
+    EXPECT_GT(fit_noise(curve).best.coefficients.N_rad_per_sqrt_s, 0.0);
+    EXPECT_EQ(fit_noise(curve).best.coefficients.B_rad_per_s, 0.0);
 }
 
 TEST(NoiseFit, NeverGivesANumberThatIsNone) {
@@ -114,9 +114,9 @@ TEST(NoiseFit, IsUnbiasedAndItsIntervalsCoverTheTruth) {
     for (std::uint64_t seed = 100; seed < 124; ++seed) {
         const Column column{"gx", "rad/s", test::sensor_noise(truth, samples, 10.0, seed), 1.0, 0.0, "rad_s"};
         const NoiseFit fit = fit_noise(allan_deviation(column, {{{0, samples, 0}}}, 10.0));
-        N.add(fit[NoiseTerm::N], fit.best.N_rad_per_sqrt_s, truth.N_rad_per_sqrt_s);
-        B.add(fit[NoiseTerm::B], fit.best.B_rad_per_s, truth.B_rad_per_s);
-        K.add(fit[NoiseTerm::K], fit.best.K_rad_per_s_sqrt_s, truth.K_rad_per_s_sqrt_s);
+        N.add(fit[NoiseTerm::N], fit.best.coefficients.N_rad_per_sqrt_s, truth.N_rad_per_sqrt_s);
+        B.add(fit[NoiseTerm::B], fit.best.coefficients.B_rad_per_s, truth.B_rad_per_s);
+        K.add(fit[NoiseTerm::K], fit.best.coefficients.K_rad_per_s_sqrt_s, truth.K_rad_per_s_sqrt_s);
     }
     EXPECT_EQ(N.identified, 24);
     EXPECT_EQ(B.identified, 24);
