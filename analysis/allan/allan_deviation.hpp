@@ -1,12 +1,22 @@
-// Allan deviation of a uniformly sampled signal with holes.
+// Deviations of the Allan family, of a uniformly sampled signal with holes.
 //
 //   theta_k = x_1 + ... + x_k,  theta_0 = 0     integrated signal, N + 1 points for N samples
-//   d_k = theta_{k+2m} - 2 theta_{k+m} + theta_k
-//   sigma^2(m tau0) = sum_k d_k^2 / (2 m^2 terms)
+//   d_k = theta_{k+2m} - 2 theta_{k+m} + theta_k,   h_k = d_{k+m} - d_k
 //
-// overlapping: every k (NIST SP 1065 eq. 11, written for samples of rate); standard: every m-th k (eq. 10).
-// Both as in IEEE Std 952-1997 annex C for gyros. A difference is used only where all its 2m samples exist,
-// on the record's true time grid. Sums over sensor counts are exact up to the squares. Unit: the column's.
+//   overlapping            mean over every k of d_k^2 / (2 m^2)                     NIST SP 1065 eq. 11
+//   standard               the same over every m-th k                               eqs. 6, 7
+//   standard_halving       as standard, at m = 1, 2, 4, ...: pairs averaged again and again
+//   modified               mean over j of (d_j + ... + d_{j+m-1})^2 / (2 m^4)       eq. 14
+//   hadamard               mean over every m-th k of h_k^2 / (6 m^2)                eqs. 17, 18
+//   overlapping_hadamard   the same over every k                                    eq. 20
+//   total                  mean over i = 1 ... N - 1 of (theta*_{i+m} - 2 theta*_i + theta*_{i-m})^2 / (2
+//   m^2),
+//                          theta* = theta reflected about its first and its last point   eq. 25
+//
+// give the square, with tau = m / rate. The first two are IEEE Std 952-1997 annex C for gyros. A term is used
+// only where all its samples exist, on the record's true time grid (every m-th: of that grid). Total
+// deviation reflects each unbroken stretch of 2m samples or more about its own ends, and averages over the
+// terms of all of them. Sums over sensor counts are exact up to the squares. Unit: the column's.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +32,16 @@ struct AllanOptions {
     DeviationKind kind = DeviationKind::overlapping;
     PhaseConvention convention = PhaseConvention::sp1065;
     double confidence = 0.683;      // of the two-sided interval, between 0 and 1
-    std::vector<std::int64_t> m{};  // averaging factors; empty: averaging_factors() of the longest segment
+    std::vector<std::int64_t> m{};  // averaging factors; empty: averaging_factors() of the longest segment,
+                                    // or the powers of two among them for standard_halving
     unsigned threads = 1;           // the result is the same bits for any number
 };
 
-// Factors for which the record has no complete difference give no point.
+// Factors for which the record has no complete term give no point. Samples that are all equal give deviations
+// of 0, with intervals of 0 length.
+//
+// `total` is given as the formula says, without removal of its bias (NIST SP 1065 section 5.2.11: low by
+// 0.481 tau / T of the variance for flicker and 0.750 tau / T for walking rate); its interval has it removed.
 //
 // Intervals: edf sigma^2 / sigma_true^2 is taken as chi-square, with the equivalent degrees of freedom of the
 // power law identified at that averaging time (power_law.hpp) or at a shorter one, whichever has the longer

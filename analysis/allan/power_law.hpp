@@ -29,28 +29,4 @@ using VarianceShares = std::array<double, power_laws>;
 // variance against Barnes' B1. Fewer, or averages that do not vary: nothing.
 std::optional<PowerLaw> identify_power_law(std::span<const double> averages);
 
-// How many independent differences the overlapping ones are worth: equivalent degrees of freedom of the mean
-// of squared Allan differences at averaging factor m, in runs of so many neighbouring differences each, one
-// at every `stride` samples (1: overlapping, m: standard):
-//
-//   edf = (sum of terms)^2 / sum over runs, lags j of (terms - |j|) rho(j stride)^2
-//
-// rho: autocorrelation of the Allan difference (Greenhall and Riley 2003, "Uncertainty of stability variances
-// based on finite differences", eqs. 9-13; NIST SP 1065 section 5.4.1), summed over all lags below 4m instead
-// of by their tables. Differences of different runs are taken as independent.
-class DegreesOfFreedom {
-public:
-    // For mixtures of these laws only: the sums over lags are taken here, once.
-    DegreesOfFreedom(std::span<const PowerLaw> laws, std::int64_t m, std::int64_t stride,
-                     std::span<const std::int64_t> terms_of_runs);
-
-    // 0 without any difference.
-    double of(const VarianceShares& shares) const;
-    double of(PowerLaw law) const;
-
-private:
-    std::array<std::array<double, power_laws>, power_laws> products_{};  // sums over lags of rho_a rho_b
-    double terms_ = 0.0;
-};
-
 }  // namespace gyrolog

@@ -18,12 +18,13 @@ AxisReport analyze_axis(const Column& column, const Recording& recording, const 
     AxisReport axis;
     axis.axis = column.name.substr(1);
     axis.curve = allan_deviation(column, recording.segments, recording.rate_hz, options);
-    // Averaging factors that the user picked select what is shown, not what the coefficients are made of.
+    // What the user picked selects what is shown, not what the coefficients are made of.
     AllanCurve whole = axis.curve;
-    if (!options.m.empty()) {
-        AnalysisOptions every_factor = options;
-        every_factor.m.clear();
-        whole = allan_deviation(column, recording.segments, recording.rate_hz, every_factor);
+    if (!options.m.empty() || options.kind != DeviationKind::overlapping) {
+        AnalysisOptions best = options;
+        best.m.clear();
+        best.kind = DeviationKind::overlapping;
+        whole = allan_deviation(column, recording.segments, recording.rate_hz, best);
     }
     axis.fit = fit_noise(whole, options.confidence);
     axis.slopes = read_slopes(whole);
@@ -37,7 +38,7 @@ std::vector<std::string> refused_factors(const AnalysisOptions& options, const A
     for (const std::int64_t m : options.m) {
         if (std::ranges::find(curve.points, m, &AllanPoint::m) == curve.points.end()) {
             warnings.push_back("m = " + std::to_string(m) +
-                               " left out: the record has no 2m samples without a hole between them");
+                               " left out: the record has no unbroken stretch long enough for it");
         }
     }
     return warnings;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/allan/confidence.hpp"
-#include "analysis/allan/power_law.hpp"
+#include "analysis/allan/degrees_of_freedom.hpp"
 
 namespace gyrolog {
 namespace {
@@ -97,8 +97,7 @@ public:
         if (point.terms <= 0 || point.m <= 0) { return; }
         constexpr std::array laws = {PowerLaw::white_angle, PowerLaw::white_rate, PowerLaw::flicker_rate,
                                      PowerLaw::rate_walk};
-        const std::int64_t stride = kind == DeviationKind::standard ? point.m : 1;
-        degrees_.emplace(laws, point.m, stride, std::array{point.terms});
+        degrees_.emplace(laws, rule_of(kind), point.m, std::array{point.terms});
     }
 
     // Standard deviation of the Allan variance estimate under a model. A ramp is no noise, but where it

@@ -17,7 +17,7 @@ namespace {
 Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
     AnalysisOptions options;
     options.confidence = request.confidence;
-    if (request.deviation == name_of(DeviationKind::standard)) { options.kind = DeviationKind::standard; }
+    options.kind = deviation_kind(request.deviation).value_or(options.kind);
     if (request.convention == name_of(PhaseConvention::matlab)) {
         options.convention = PhaseConvention::matlab;
     }

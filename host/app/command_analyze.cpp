@@ -1,5 +1,8 @@
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "analysis/allan/allan_curve.hpp"
 #include "host/app/analysis_run.hpp"
 #include "host/app/command.hpp"
 
@@ -15,8 +18,11 @@ Action setup_analyze(CLI::App& app) {
     app.add_option("--plot", request->plot_path, "Draw the Allan curves")->type_name("FILE.png");
     app.add_option("--model", request->model_path, "Write the noise model for simulations")
         ->type_name("FILE");
-    app.add_option("--deviation", request->deviation, "Which deviation")
-        ->check(CLI::IsMember({"overlapping", "standard"}))
+    std::vector<std::string> deviations;
+    for (const DeviationKind kind : all_deviation_kinds) { deviations.emplace_back(name_of(kind)); }
+    app.add_option("--deviation", request->deviation,
+                   "Which deviation (standard_halving: m = 1, 2, 4, ..., error 1/sqrt(2(n-1)) of n averages)")
+        ->check(CLI::IsMember(deviations))
         ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--convention", request->convention,

@@ -59,12 +59,21 @@ void expect_published(const json& curve, const std::vector<double>& published, i
     }
 }
 
-TEST(PublishedNumbers, NineValuesGiveTheTablesOverlappingDeviation) {
-    expect_published(analyse(nine_values(), "1,2", "overlapping"), {91.22945, 85.95287}, 7);
+TEST(PublishedNumbers, NineValuesGiveTheTablesDeviations) {
+    const std::vector<std::pair<std::string, std::vector<double>>> table = {
+        {"overlapping", {91.22945, 85.95287}}, {"standard", {91.22945, 115.8082}},
+        {"modified", {91.22945, 74.78849}},    {"overlapping_hadamard", {70.80607, 85.61487}},
+        {"total", {91.22945, 93.90379}},
+    };
+    for (const auto& [deviation, values] : table) {
+        SCOPED_TRACE(deviation);
+        expect_published(analyse(nine_values(), "1,2", deviation), values, 7);
+    }
 }
 
-TEST(PublishedNumbers, NineValuesGiveTheTablesStandardDeviation) {
-    expect_published(analyse(nine_values(), "1,2", "standard"), {91.22945, 115.8082}, 7);
+TEST(PublishedNumbers, NineValuesGiveTheTablesHadamardDeviation) {
+    // 70.80608 is printed for the first, but 70.80607 for the overlapping one, which is the same number.
+    expect_published(analyse(nine_values(), "1,2", "hadamard"), {70.80607, 116.7980}, 7);
 }
 
 TEST(PublishedNumbers, ThousandValuesGiveTheTablesOverlappingDeviation) {
@@ -75,9 +84,19 @@ TEST(PublishedNumbers, ThousandValuesGiveTheTablesOverlappingDeviation) {
     EXPECT_EQ(curve[2]["terms"], 801);
 }
 
-TEST(PublishedNumbers, ThousandValuesGiveTheTablesStandardDeviation) {
-    expect_published(analyse(thousand_values(), "1,10,100", "standard"),
-                     {2.922319e-01, 9.965736e-02, 3.897804e-02}, 7);
+TEST(PublishedNumbers, ThousandValuesGiveTheTablesDeviations) {
+    const std::vector<std::pair<std::string, std::vector<double>>> table = {
+        {"standard", {2.922319e-01, 9.965736e-02, 3.897804e-02}},
+        {"modified", {2.922319e-01, 6.172376e-02, 2.170921e-02}},
+        // Printed as 3.910860e-02 at m = 100: to nine digits it is 3.91086056e-02.
+        {"hadamard", {2.943883e-01, 1.052754e-01, 3.910861e-02}},
+        {"overlapping_hadamard", {2.943883e-01, 9.581083e-02, 3.237638e-02}},
+        {"total", {2.922319e-01, 9.134743e-02, 3.406530e-02}},
+    };
+    for (const auto& [deviation, values] : table) {
+        SCOPED_TRACE(deviation);
+        expect_published(analyse(thousand_values(), "1,10,100", deviation), values, 7);
+    }
 }
 
 // sigma^2 = sum over k = 1 ... N - 2m of (theta_{k+2m} - 2 theta_{k+m} + theta_k)^2 / (2 m^2 (N - 2m)), with

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/allan/allan_deviation.hpp"
+#include "analysis/allan/degrees_of_freedom.hpp"
 #include "analysis/allan/power_law.hpp"
 
 namespace gyrolog {
@@ -86,8 +87,9 @@ TEST(PowerLaw, IsNotIdentifiedFromFewerThanFourAverages) {
     EXPECT_EQ(identify_power_law(std::vector<double>(50, 1.0)), std::nullopt);
 }
 
-double degrees(PowerLaw law, std::int64_t m, std::int64_t stride, std::vector<std::int64_t> runs) {
-    return DegreesOfFreedom(std::array{law}, m, stride, runs).of(law);
+double degrees(PowerLaw law, std::int64_t m, std::vector<std::int64_t> runs,
+               DeviationKind kind = DeviationKind::overlapping) {
+    return DegreesOfFreedom(std::array{law}, rule_of(kind), m, runs).of(law);
 }
 
 // The definition of the equivalent degrees of freedom, 2 E(s)^2 / var(s), from many realisations.
@@ -117,15 +119,14 @@ TEST(EquivalentDegreesOfFreedom, AreThoseOfSimulatedNoise) {
     constexpr int runs = 600;
     for (const NoiseCase& noise : noise_cases) {
         for (const std::int64_t m : {2, 16, 64}) {
-            for (const DeviationKind kind : {DeviationKind::overlapping, DeviationKind::standard}) {
-                const std::int64_t stride = kind == DeviationKind::standard ? m : 1;
-                const std::int64_t terms = (static_cast<std::int64_t>(samples) - 2 * m) / stride + 1;
-                const double edf = degrees(noise.law, m, stride, {terms});
+            for (const DeviationKind kind : all_deviation_kinds) {
+                const std::int64_t terms = rule_of(kind).terms(samples + 1, m);
+                const double edf = degrees(noise.law, m, {terms}, kind);
                 // The variance of s is known to sqrt((2 + 12 / edf) / runs); four sigma, and 8 % for noise
                 // that is sampled instead of continuous.
                 const double tolerance = 4.0 * std::sqrt((2.0 + 12.0 / edf) / runs) + 0.08;
                 EXPECT_NEAR(edf_by_simulation(noise, samples, m, kind, runs) / edf, 1.0, tolerance)
-                    << "law " << static_cast<int>(noise.law) << " m " << m << " stride " << stride;
+                    << "law " << static_cast<int>(noise.law) << ' ' << name_of(kind) << " m " << m;
             }
         }
     }
@@ -135,20 +136,20 @@ TEST(EquivalentDegreesOfFreedom, DoNotDependOnHowTheLagsAreSummed) {
     // m = 64 is summed lag by lag, m = 65 in pieces; both close to the limit of large m.
     for (const PowerLaw law :
          {PowerLaw::flicker_angle, PowerLaw::white_rate, PowerLaw::flicker_rate, PowerLaw::rate_walk}) {
-        const double direct = degrees(law, 64, 1, {64 * 40});
-        const double pieces = degrees(law, 65, 1, {65 * 40});
+        const double direct = degrees(law, 64, {64 * 40});
+        const double pieces = degrees(law, 65, {65 * 40});
         EXPECT_NEAR(pieces / direct, 1.0, law == PowerLaw::flicker_angle ? 1e-2 : 1e-4)
             << static_cast<int>(law);
     }
 }
 
 TEST(EquivalentDegreesOfFreedom, OfOneDifferenceIsOne) {
-    EXPECT_DOUBLE_EQ(degrees(PowerLaw::flicker_rate, 1000, 1, {1}), 1.0);
+    EXPECT_DOUBLE_EQ(degrees(PowerLaw::flicker_rate, 1000, {1}), 1.0);
 }
 
 TEST(EquivalentDegreesOfFreedom, AddOverRunsThatAreFarApart) {
-    const double one = degrees(PowerLaw::white_rate, 10, 1, {500});
-    const double two = degrees(PowerLaw::white_rate, 10, 1, {500, 500});
+    const double one = degrees(PowerLaw::white_rate, 10, {500});
+    const double two = degrees(PowerLaw::white_rate, 10, {500, 500});
     EXPECT_DOUBLE_EQ(two, 2.0 * one);
 }
 

@@ -1,0 +1,159 @@
+#include "analysis/allan/degrees_of_freedom.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <boost/math/quadrature/gauss.hpp>
+
+#include "analysis/allan/difference_covariance.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::size_t index_of(PowerLaw law) { return static_cast<std::size_t>(law); }
+
+// Sums over lags of products rho_a rho_b, for pairs of the laws wanted.
+class LagSums {
+public:
+    LagSums(std::span<const PowerLaw> laws, const DeviationRule& rule, std::int64_t m) : m_(m) {
+        for (const PowerLaw law : laws) {
+            noises_.push_back({index_of(law), DifferenceCovariance(law, rule, m)});
+        }
+    }
+
+    void add(double lag, double weight) {
+        std::array<double, power_laws> rho{};
+        for (const Noise& noise : noises_) { rho[noise.index] = noise.covariance.correlation(lag); }
+        for (const Noise& a : noises_) {
+            for (const Noise& b : noises_) {
+                sums_[a.index][b.index] += weight * rho[a.index] * rho[b.index];
+            }
+        }
+    }
+
+    // Lags 1 ... last, each with the weight 2 (1 - lag / terms). Near the multiples of m, where rho has its
+    // corners, lag by lag; between, where it is smooth, as integrals over pieces that double in length away
+    // from the corners.
+    void add_lags(std::int64_t last, double terms) {
+        constexpr std::int64_t near = 12;
+        const auto add_one = [&](double lag, double width) { add(lag, 2.0 * width * (1.0 - lag / terms)); };
+        std::int64_t lag = 1;
+        while (lag <= last) {
+            const std::int64_t below = lag / m_ * m_;
+            const std::int64_t corner = (lag + m_ / 2) / m_ * m_;
+            // A piece may be as long as it is far from the corners on both sides.
+            const std::int64_t to_next = below + m_ - near - lag;
+            const std::int64_t length = std::min(std::min(lag - below, (to_next + 1) / 2), last + 1 - lag);
+            if (std::abs(lag - corner) <= near || length <= 6) {
+                add_one(static_cast<double>(lag), 1.0);
+                ++lag;
+                continue;
+            }
+            using Gauss = boost::math::quadrature::gauss<double, 7>;
+            const double half = static_cast<double>(length) / 2.0;
+            const double centre = static_cast<double>(lag) - 0.5 + half;
+            for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+                const double x = Gauss::abscissa()[i];
+                const double width = half * Gauss::weights()[i];
+                add_one(centre + half * x, width);
+                if (x != 0.0) { add_one(centre - half * x, width); }
+            }
+            lag += length;
+        }
+    }
+
+    const auto& sums() const { return sums_; }
+
+private:
+    struct Noise {
+        std::size_t index = 0;
+        DifferenceCovariance covariance;
+    };
+    std::vector<Noise> noises_;
+    std::int64_t m_;
+    std::array<std::array<double, power_laws>, power_laws> sums_{};
+};
+
+// NIST SP 1065, table 7: b T / tau - c. White angle noise, not in it: every term beyond an end holds that end
+// twice, theta_0 say, m times the same number of variance 4; those squares scatter together.
+double total_edf(PowerLaw law, double terms, double m, double overlapping_edf) {
+    const double averages = (terms + 1.0) / m;
+    switch (law) {
+        case PowerLaw::white_angle:
+        case PowerLaw::flicker_angle: {
+            const double mean = 6.0 * (terms + 2.0 - 2.0 * m) + 20.0 * (m - 1.0);
+            const double of_ends = 2.0 * 2.0 * std::pow(4.0 * (m - 1.0), 2);
+            return 2.0 * mean * mean / (of_ends + 2.0 * mean * mean / overlapping_edf);
+        }
+        case PowerLaw::white_rate:
+            return 1.500 * averages;
+        case PowerLaw::flicker_rate:
+            return 1.168 * averages - 0.222;
+        case PowerLaw::rate_walk:
+            return 0.927 * averages - 0.358;
+    }
+    return overlapping_edf;
+}
+
+// For each law, by how much reflection shortens the sum over lags of overlapping differences.
+std::array<double, power_laws> shortening_by_reflection(const LagSums& lags, const DeviationRule& rule,
+                                                        std::int64_t terms, std::int64_t m) {
+    std::array<double, power_laws> factors{};
+    factors.fill(1.0);
+    if (!rule.reflected) { return factors; }
+    const auto count = static_cast<double>(terms);
+    for (std::size_t a = 0; a < power_laws; ++a) {
+        const double length = lags.sums()[a][a];
+        if (length <= 0.0) { continue; }
+        const double edf = total_edf(static_cast<PowerLaw>(a), count, static_cast<double>(m), count / length);
+        factors[a] = count / std::max(1.0, edf) / length;
+    }
+    return factors;
+}
+
+}  // namespace
+
+DegreesOfFreedom::DegreesOfFreedom(std::span<const PowerLaw> laws, const DeviationRule& rule, std::int64_t m,
+                                   std::span<const std::int64_t> terms_of_runs) {
+    const std::int64_t stride = rule.stride(m);
+    for (const std::int64_t terms : terms_of_runs) {
+        if (terms <= 0) { continue; }
+        const auto count = static_cast<double>(terms);
+        const std::int64_t last = std::min(terms - 1, (rule.order + 2) * m / stride);
+        LagSums lags(laws, rule, m);
+        lags.add(0.0, 1.0);
+        if (stride == 1 && m > 64) {
+            lags.add_lags(last, count);
+        } else {
+            for (std::int64_t j = 1; j <= last; ++j) {
+                lags.add(static_cast<double>(j * stride), 2.0 * (1.0 - static_cast<double>(j) / count));
+            }
+        }
+        const auto factor = shortening_by_reflection(lags, rule, terms, m);
+        terms_ += count;
+        for (std::size_t a = 0; a < power_laws; ++a) {
+            for (std::size_t b = 0; b < power_laws; ++b) {
+                products_[a][b] += count * lags.sums()[a][b] * std::sqrt(factor[a] * factor[b]);
+            }
+        }
+    }
+}
+
+double DegreesOfFreedom::of(const VarianceShares& shares) const {
+    double total = 0.0;
+    double sum = 0.0;
+    for (std::size_t a = 0; a < power_laws; ++a) {
+        total += shares[a];
+        for (std::size_t b = 0; b < power_laws; ++b) { sum += shares[a] * shares[b] * products_[a][b]; }
+    }
+    return sum > 0.0 ? terms_ * terms_ * total * total / sum : 0.0;
+}
+
+double DegreesOfFreedom::of(PowerLaw law) const {
+    VarianceShares shares{};
+    shares[index_of(law)] = 1.0;
+    return of(shares);
+}
+
+}  // namespace gyrolog
