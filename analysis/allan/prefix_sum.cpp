@@ -3,32 +3,38 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace gyrolog {
 namespace {
 
 template <typename T>
-std::vector<T> exact_sums(std::span<const std::int16_t> counts, std::int64_t centre) {
-    std::vector<T> theta(counts.size() + 1);
-    std::int64_t sum = 0;
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-        sum += counts[i] - centre;
-        theta[i + 1] = static_cast<T>(sum);
-    }
-    return theta;
-}
+struct ExactSums {
+    std::vector<T> theta;  // modulo the width of T
+    std::int64_t spread = 0;
+};
 
-// |theta_{k+2m} - 2 theta_{k+m} + theta_k| <= 2 (max theta - min theta).
-bool second_differences_fit_32_bits(std::span<const std::int16_t> counts, std::int64_t centre) {
+template <typename T>
+ExactSums<T> exact_sums(std::span<const std::int16_t> counts, std::int64_t centre) {
+    ExactSums<T> sums{std::vector<T>(counts.size() + 1)};
     std::int64_t sum = 0;
     std::int64_t low = 0;
     std::int64_t high = 0;
-    for (const std::int16_t x : counts) {
-        sum += x - centre;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        sum += counts[i] - centre;
         low = std::min(low, sum);
         high = std::max(high, sum);
+        sums.theta[i + 1] = static_cast<T>(sum);
     }
-    return 2 * (high - low) <= std::numeric_limits<std::int32_t>::max();
+    sums.spread = high - low;
+    return sums;
+}
+
+// |theta_{k+2m} - 2 theta_{k+m} + theta_k| <= 2 (max theta - min theta), and theta itself, which begins at 0,
+// is within that too.
+bool second_differences_fit_32_bits(std::int64_t spread) {
+    return 2 * spread <= std::numeric_limits<std::int32_t>::max();
 }
 
 class CompensatedSum {
@@ -59,13 +65,14 @@ std::vector<double> compensated_sums(std::span<const double> x, double centre) {
 
 double raw_mean(const Column& column) {
     if (column.size() == 0) { return 0.0; }
+    const auto samples = static_cast<double>(column.size());
+    if (const auto* counts = std::get_if<std::vector<std::int16_t>>(&column.data)) {
+        return static_cast<double>(std::accumulate(counts->begin(), counts->end(), std::int64_t{0})) /
+               samples;
+    }
     CompensatedSum sum;
-    std::visit(
-        [&](const auto& data) {
-            for (const auto x : data) { sum.add(x); }
-        },
-        column.data);
-    return sum.value() / static_cast<double>(column.size());
+    for (const double x : std::get<std::vector<double>>(column.data)) { sum.add(x); }
+    return sum.value() / samples;
 }
 
 PrefixSum::PrefixSum(const Column& column, double centre, std::size_t first, std::size_t count) {
@@ -75,10 +82,12 @@ PrefixSum::PrefixSum(const Column& column, double centre, std::size_t first, std
     }
     const auto counts = std::span(std::get<std::vector<std::int16_t>>(column.data)).subspan(first, count);
     const std::int64_t whole = std::llround(centre);
-    if (second_differences_fit_32_bits(counts, whole)) {
-        theta_ = exact_sums<std::int32_t>(counts, whole);
+    auto narrow = exact_sums<std::int32_t>(counts, whole);
+    spread_ = narrow.spread;
+    if (second_differences_fit_32_bits(spread_)) {
+        theta_ = std::move(narrow.theta);
     } else {
-        theta_ = exact_sums<std::int64_t>(counts, whole);
+        theta_ = exact_sums<std::int64_t>(counts, whole).theta;
     }
 }
 

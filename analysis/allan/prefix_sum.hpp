@@ -28,6 +28,8 @@ public:
 
     std::size_t points() const;
     double operator[](std::size_t k) const;
+    // Of counts, max theta - min theta: no second difference is larger than twice that. 0 of reals.
+    std::int64_t spread() const { return spread_; }
 
     // 32-bit whole numbers where no second difference of theta can leave 32 bits, else 64-bit ones; reals as
     // they are.
@@ -35,6 +37,7 @@ public:
 
 private:
     std::variant<std::vector<std::int32_t>, std::vector<std::int64_t>, std::vector<double>> theta_;
+    std::int64_t spread_ = 0;
 };
 
 }  // namespace gyrolog
