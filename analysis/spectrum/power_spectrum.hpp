@@ -4,20 +4,21 @@
 // -rate/2 ... rate/2 is the variance. Unit: the column's, squared, per Hz.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "analysis/recording/recording.hpp"
+#include "analysis/spectrum/averaged_periodogram.hpp"
 
 namespace gyrolog {
 
 struct SpectrumPoint {
-    double f_hz = 0.0;
+    double f_hz = 0.0;  // middle of the band it averages
     double density = 0.0;
     double lo = 0.0;  // confidence interval by chi-square
     double hi = 0.0;
-    double dof = 0.0;  // degrees of freedom: twice the number of independent periodogram ordinates averaged
+    double dof = 0.0;       // degrees of freedom: 2 density^2 / its variance
+    double width_hz = 0.0;  // of the band; bands do not overlap, and join where every one has a bin
 };
 
 struct PowerSpectrum {
@@ -25,26 +26,17 @@ struct PowerSpectrum {
     std::vector<SpectrumPoint> points;  // by rising frequency, evenly on a logarithmic axis
 };
 
-// A steady line that stands out of the noise around it.
-struct SpectralLine {
-    double f_hz = 0.0;  // as sampled: a line above rate / 2 appears folded
-    double f_sd_hz = 0.0;
-    double amplitude = 0.0;  // peak, of A sin(2 pi f t + phase), in the column's unit
-    double amplitude_sd = 0.0;
-    double false_alarm = 0.0;  // probability that noise alone has such a line anywhere in this spectrum
-};
-
 struct SpectrumOptions {
     double confidence = 0.683;
     int points_per_decade = 20;
 };
 
-// Empty for fewer than 16 samples in the longest segment.
+// From two periods in the longest segment up to half the rate. Empty for fewer than 16 samples in the longest
+// segment. The lowest three or four points of a spectrum that rises towards 0 as steeply as 1/f^2 come out
+// high, the lowest by 40 %: the taper smears each over four bins.
 PowerSpectrum power_spectrum(const Column& column, std::span<const Segment> segments, double rate_hz,
                              const SpectrumOptions& options = {});
-
-// The strongest lines with a false alarm probability below `false_alarm`, at most `most`, strongest first.
-std::vector<SpectralLine> find_lines(const Column& column, std::span<const Segment> segments, double rate_hz,
-                                     double false_alarm = 1e-4, std::size_t most = 8);
+PowerSpectrum power_spectrum(std::span<const AveragedPeriodogram> periodograms,
+                             const SpectrumOptions& options = {});
 
 }  // namespace gyrolog
