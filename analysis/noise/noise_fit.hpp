@@ -79,6 +79,10 @@ struct NoiseFit {
     std::size_t points = 0;  // of the curve that were used
     double worst_residual_sd =
         0.0;  // the largest departure of a point from the fitted curve, in its standard deviations
+    // Of a likelihood fit: the typical departure of the spectrum from the model beyond chance, as a share of
+    // the model; and the frequency above which the record was left out, 0 for none.
+    double model_error = 0.0;
+    double upper_frequency_hz = 0.0;
 
     const FittedCoefficient& operator[](NoiseTerm term) const {
         return terms[static_cast<std::size_t>(term)];

@@ -40,14 +40,14 @@ double Sinusoid::allan_variance(double tau_s) const {
 }
 
 double NoiseModel::allan_variance(double tau_s) const {
-    double sum = coefficients.allan_variance(tau_s);
+    double sum = coefficients.allan_variance(tau_s) + converter.density() / tau_s;
     for (const GaussMarkov& noise : gauss_markov) { sum += noise.allan_variance(tau_s); }
     for (const Sinusoid& line : sinusoids) { sum += line.allan_variance(tau_s); }
     return sum;
 }
 
 double NoiseModel::psd(double f_hz) const {
-    double sum = coefficients.psd(f_hz);
+    double sum = coefficients.psd(f_hz) + converter.density();
     for (const GaussMarkov& noise : gauss_markov) { sum += noise.psd(f_hz); }
     return sum;
 }

@@ -46,11 +46,20 @@ struct Sinusoid {
     double allan_variance(double tau_s) const;
 };
 
+// Error of a converter with a given step, as white noise of variance step^2 / 12 a sample.
+struct RateQuantisation {
+    double step_rad_per_s = 0.0;
+    double rate_hz = 1.0;  // at which it samples
+
+    double density() const { return step_rad_per_s * step_rad_per_s / (12.0 * rate_hz); }  // two-sided
+};
+
 // Everything that a still sensor's noise is described by. Independent of each other: variances add.
 struct NoiseModel {
     NoiseCoefficients coefficients;
     std::vector<GaussMarkov> gauss_markov{};
     std::vector<Sinusoid> sinusoids{};
+    RateQuantisation converter{};
 
     double allan_variance(double tau_s) const;
     double psd(double f_hz) const;  // without the sinusoids
