@@ -26,6 +26,9 @@ AxisReport analyze_axis(const Column& column, const Recording& recording, const 
         best.kind = DeviationKind::overlapping;
         whole = allan_deviation(column, recording.segments, recording.rate_hz, best);
     }
+    const auto periodograms = averaged_periodograms(column, recording.segments, recording.rate_hz);
+    axis.spectrum = power_spectrum(periodograms, {.confidence = options.confidence});
+    axis.lines = find_lines(periodograms, column, recording.segments, recording.rate_hz);
     axis.fit = fit_noise(whole, options.confidence);
     axis.slopes = read_slopes(whole);
     axis.bias = static_bias(column, recording.rate_hz, axis.fit.sparse);

@@ -12,6 +12,8 @@
 #include "analysis/noise/slope_reading.hpp"
 #include "analysis/noise/static_bias.hpp"
 #include "analysis/recording/recording.hpp"
+#include "analysis/spectrum/power_spectrum.hpp"
+#include "analysis/spectrum/spectral_lines.hpp"
 
 namespace gyrolog {
 
@@ -28,6 +30,8 @@ struct AxisReport {
     AllanCurve curve;
     NoiseFit fit;
     SlopeReading slopes;
+    PowerSpectrum spectrum;
+    std::vector<SpectralLine> lines;  // strongest first
 };
 
 struct AnalysisReport {
