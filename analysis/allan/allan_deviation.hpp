@@ -25,6 +25,7 @@
 
 #include "analysis/allan/allan_curve.hpp"
 #include "analysis/recording/recording.hpp"
+#include "analysis/recording/stage_observer.hpp"
 
 namespace gyrolog {
 
@@ -35,6 +36,7 @@ struct AllanOptions {
     std::vector<std::int64_t> m{};  // averaging factors; empty: averaging_factors() of the longest segment,
                                     // or the powers of two among them for standard_halving
     unsigned threads = 1;           // the result is the same bits for any number
+    StageObserver on_stage{};       // of "integrate", "deviation", "intervals"
 };
 
 // Factors for which the record has no complete term give no point. Samples that are all equal give deviations

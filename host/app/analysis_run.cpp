@@ -1,5 +1,8 @@
 #include "host/app/analysis_run.hpp"
 
+#include <algorithm>
+#include <thread>
+
 #include "analysis/noise/analyze.hpp"
 #include "analysis/simulate/fitted_model.hpp"
 #include "host/app/analysis_plot.hpp"
@@ -22,16 +25,19 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
         options.convention = PhaseConvention::matlab;
     }
     if (!request.factors.empty()) { GYROLOG_TRY(options.m, parse_whole_numbers(request.factors)); }
-    options.threads = 0;
+    options.threads = std::max(1U, std::thread::hardware_concurrency());
+    options.on_stage = request.on_stage;
     return options;
 }
 
 Status write_results(Console& console, const AnalysisRequest& request, const Recording& recording,
                      const AnalysisReport& report) {
     if (!request.json_path.empty()) {
+        request.on_stage("json");
         GYROLOG_CHECK(write_text(console, request.json_path, analysis_json(report)));
     }
     if (!request.plot_path.empty()) {
+        request.on_stage("plot");
         GYROLOG_CHECK(write_analysis_plot(report, request.plot_path));
     }
     if (!request.model_path.empty()) {
@@ -40,8 +46,10 @@ Status write_results(Console& console, const AnalysisRequest& request, const Rec
                 ErrorCode::invalid_argument,
                 "a model needs rates, and this recording has counts: give their scale with --lsb-dps"};
         }
+        request.on_stage("model");
         GYROLOG_CHECK(write_model(fitted_model(report, recording), request.model_path));
     }
+    request.on_stage("report");
     if (request.json_path != "-") { console.out << analysis_text(report) << std::flush; }
     for (const std::string* path : {&request.json_path, &request.plot_path, &request.model_path}) {
         if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
@@ -54,7 +62,8 @@ Status write_results(Console& console, const AnalysisRequest& request, const Rec
 ExitCode analyze_to_files(Console& console, const char* command, const AnalysisRequest& request) {
     const auto options = options_of(request);
     if (!options.ok()) { return report_error(console, command, options.error()); }
-    const auto recording = read_recording({request.recording_path, request.rate_hz, request.lsb_dps});
+    const auto recording =
+        read_recording({request.recording_path, request.rate_hz, request.lsb_dps, request.on_stage});
     if (!recording.ok()) {
         report_error(console, command, recording.error());
         return recording.error().code == ErrorCode::invalid_argument ? ExitCode::usage : ExitCode::failed;

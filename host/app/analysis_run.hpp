@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/recording/stage_observer.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 
@@ -22,6 +23,7 @@ struct AnalysisRequest {
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
     double confidence = 0.683;
+    StageObserver on_stage{};  // of those of reading and analysing, then "json", "plot", "model", "report"
 };
 
 // Prints the report for people on `out`, unless the JSON goes there.

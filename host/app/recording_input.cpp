@@ -11,7 +11,8 @@ namespace gyrolog {
 namespace {
 
 Result<Recording> read_capture(const RecordingInput& input) {
-    GYROLOG_TRY(LoadedCapture capture, load_capture(input.path, true));
+    GYROLOG_TRY(LoadedCapture capture, load_capture(input.path, true, input.on_stage));
+    input.on_stage("place");
     auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
     if (capture.file.blocks.end == FileEnd::damaged) {
@@ -30,6 +31,7 @@ Result<Recording> read_capture(const RecordingInput& input) {
 
 Result<Recording> read_recording(const RecordingInput& input) {
     if (looks_like_capture(input.path)) { return read_capture(input); }
+    input.on_stage("read");
     CsvReadOptions options;
     options.rate_hz = input.rate_hz;
     options.lsb_dps = input.lsb_dps;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "analysis/recording/recording.hpp"
+#include "analysis/recording/stage_observer.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
@@ -13,6 +14,7 @@ struct RecordingInput {
     std::string path;
     std::optional<double> rate_hz;  // overrides the file's own
     std::optional<double> lsb_dps;  // scale of text columns in counts
+    StageObserver on_stage{};       // of "read", and for a capture "decode", "place"
 };
 
 Result<Recording> read_recording(const RecordingInput& input);

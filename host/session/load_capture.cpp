@@ -8,13 +8,15 @@
 
 namespace gyrolog {
 
-Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples) {
+Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
+                                   const StageObserver& on_stage) {
     GYROLOG_TRY(CaptureReader reader, CaptureReader::open(path));
     LoadedCapture loaded;
     loaded.decoder = std::make_unique<StreamDecoder>(
         StreamDecoderOptions{.keep_samples = keep_samples, .observer = nullptr});
     bool any_data = false;
     while (true) {
+        on_stage("read");
         GYROLOG_TRY(const std::optional<CapturedTransfer> captured, reader.next());
         if (!captured) { break; }
         const Transfer& transfer = captured->transfer;
@@ -22,6 +24,7 @@ Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples) {
             loaded.first_data = transfer.time;
             any_data = true;
         }
+        on_stage("decode");
         static_cast<void>(loaded.decoder->take(transfer));
     }
     loaded.file = reader.accounts();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "analysis/recording/stage_observer.hpp"
 #include "host/base/result.hpp"
 #include "host/capture/capture_reader.hpp"
 #include "host/decode/stream_decoder.hpp"
@@ -20,7 +21,9 @@ struct LoadedCapture {
 };
 
 // Errors: those of CaptureReader. A capture without one good frame is no error.
-Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples);
+// Stages: "read", "decode", by turns.
+Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
+                                   const StageObserver& on_stage = {});
 
 // Whether the file begins like a capture (pcapng or pcap) rather than like text. False when it cannot be
 // read.
