@@ -34,7 +34,7 @@ struct AllanOptions {
     PhaseConvention convention = PhaseConvention::sp1065;
     double confidence = 0.683;      // of the two-sided interval, between 0 and 1
     std::vector<std::int64_t> m{};  // averaging factors; empty: averaging_factors() of the longest segment,
-                                    // or the powers of two among them for standard_halving
+                                    // or the powers of two for standard_halving
     unsigned threads = 1;           // the result is the same bits for any number
     StageObserver on_stage{};       // of "integrate", "deviation", "intervals"
 };
@@ -45,9 +45,8 @@ struct AllanOptions {
 // `total` is given as the formula says, without removal of its bias (NIST SP 1065 section 5.2.11: low by
 // 0.481 tau / T of the variance for flicker and 0.750 tau / T for walking rate); its interval has it removed.
 //
-// Intervals: edf sigma^2 / sigma_true^2 is taken as chi-square, with the equivalent degrees of freedom of the
-// power law identified at that averaging time (power_law.hpp) or at a shorter one, whichever has the longer
-// memory.
+// Intervals are those of intervals.hpp, for the power laws fitted to the record's own overlapping curve
+// (power_law_levels.hpp).
 AllanCurve allan_deviation(const Column& column, std::span<const Segment> segments, double rate_hz,
                            const AllanOptions& options = {});
 

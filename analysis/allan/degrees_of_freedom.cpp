@@ -7,11 +7,10 @@
 #include <boost/math/quadrature/gauss.hpp>
 
 #include "analysis/allan/difference_covariance.hpp"
+#include "analysis/allan/total_variance.hpp"
 
 namespace gyrolog {
 namespace {
-
-constexpr std::size_t index_of(PowerLaw law) { return static_cast<std::size_t>(law); }
 
 // Sums over lags of products rho_a rho_b, for pairs of the laws wanted.
 class LagSums {
@@ -75,27 +74,6 @@ private:
     std::array<std::array<double, power_laws>, power_laws> sums_{};
 };
 
-// NIST SP 1065, table 7: b T / tau - c. White angle noise, not in it: every term beyond an end holds that end
-// twice, theta_0 say, m times the same number of variance 4; those squares scatter together.
-double total_edf(PowerLaw law, double terms, double m, double overlapping_edf) {
-    const double averages = (terms + 1.0) / m;
-    switch (law) {
-        case PowerLaw::white_angle:
-        case PowerLaw::flicker_angle: {
-            const double mean = 6.0 * (terms + 2.0 - 2.0 * m) + 20.0 * (m - 1.0);
-            const double of_ends = 2.0 * 2.0 * std::pow(4.0 * (m - 1.0), 2);
-            return 2.0 * mean * mean / (of_ends + 2.0 * mean * mean / overlapping_edf);
-        }
-        case PowerLaw::white_rate:
-            return 1.500 * averages;
-        case PowerLaw::flicker_rate:
-            return 1.168 * averages - 0.222;
-        case PowerLaw::rate_walk:
-            return 0.927 * averages - 0.358;
-    }
-    return overlapping_edf;
-}
-
 // For each law, by how much reflection shortens the sum over lags of overlapping differences.
 std::array<double, power_laws> shortening_by_reflection(const LagSums& lags, const DeviationRule& rule,
                                                         std::int64_t terms, std::int64_t m) {
@@ -106,7 +84,7 @@ std::array<double, power_laws> shortening_by_reflection(const LagSums& lags, con
     for (std::size_t a = 0; a < power_laws; ++a) {
         const double length = lags.sums()[a][a];
         if (length <= 0.0) { continue; }
-        const double edf = total_edf(static_cast<PowerLaw>(a), count, static_cast<double>(m), count / length);
+        const double edf = total_edf(static_cast<PowerLaw>(a), terms, m, count / length);
         factors[a] = count / std::max(1.0, edf) / length;
     }
     return factors;

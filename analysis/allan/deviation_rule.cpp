@@ -39,6 +39,26 @@ double DeviationRule::norm(std::int64_t m) const {
     return (order == 2 ? 2.0 : 6.0) * samples * samples * (window_mean ? samples * samples : 1.0);
 }
 
+TermRun run_of(const DeviationRule& rule, std::span<const Segment> segments, std::size_t segment,
+               PhaseConvention convention, std::int64_t m) {
+    const std::int64_t stride = rule.stride(m);
+    const std::int64_t place = segments[segment].first_index - segments.front().first_index;
+    const std::int64_t aligned = (place + stride - 1) / stride * stride;
+    const std::int64_t left_out = convention == PhaseConvention::matlab ? 1 : 0;
+    const std::int64_t begin = aligned - place + left_out;
+    return {begin, rule.terms(static_cast<std::int64_t>(segments[segment].count) + 1 - begin, m)};
+}
+
+std::vector<std::int64_t> terms_of_runs(const DeviationRule& rule, std::span<const Segment> segments,
+                                        PhaseConvention convention, std::int64_t m) {
+    std::vector<std::int64_t> all;
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+        const TermRun run = run_of(rule, segments, s, convention, m);
+        if (run.terms > 0) { all.push_back(run.terms); }
+    }
+    return all;
+}
+
 const DeviationRule& rule_of(DeviationKind kind) { return rules.at(static_cast<std::size_t>(kind)); }
 
 std::string_view name_of(DeviationKind kind) { return rule_of(kind).name; }

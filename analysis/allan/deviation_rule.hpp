@@ -2,10 +2,14 @@
 // of the integrated signal theta.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "analysis/allan/allan_curve.hpp"
+#include "analysis/recording/recording.hpp"
 
 namespace gyrolog {
 
@@ -32,5 +36,18 @@ struct DeviationRule {
 };
 
 const DeviationRule& rule_of(DeviationKind kind);
+
+// The terms in one unbroken stretch: the first k, counted from the stretch's theta_0, and their number. Terms
+// that are strided lie on the record's grid, whose origin is the first sample of the first segment.
+struct TermRun {
+    std::int64_t begin = 0;
+    std::int64_t terms = 0;
+};
+TermRun run_of(const DeviationRule& rule, std::span<const Segment> segments, std::size_t segment,
+               PhaseConvention convention, std::int64_t m);
+
+// The numbers of terms in the stretches that have any.
+std::vector<std::int64_t> terms_of_runs(const DeviationRule& rule, std::span<const Segment> segments,
+                                        PhaseConvention convention, std::int64_t m);
 
 }  // namespace gyrolog

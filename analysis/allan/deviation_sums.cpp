@@ -43,7 +43,7 @@ private:
 };
 
 template <typename T, typename Difference>
-double strided_squares(const T* theta, const IntegratedSignal::Run& run, std::int64_t stride,
+double strided_squares(const T* theta, const TermRun& run, std::int64_t stride,
                        const Difference& difference) {
     Squares squares;
     for (std::int64_t j = 0; j < run.terms; ++j) {
@@ -81,7 +81,7 @@ private:
 };
 
 template <typename Sum, typename T>
-double window_squares(const T* theta, const IntegratedSignal::Run& run, std::size_t m) {
+double window_squares(const T* theta, const TermRun& run, std::size_t m) {
     using Number = std::conditional_t<std::same_as<Sum, WholeMovingSum>, std::int64_t, double>;
     Sum window;
     for (std::size_t i = 0; i < m; ++i) {
@@ -115,7 +115,7 @@ double reflected_squares(const T* theta, std::int64_t begin, std::int64_t points
 
 double squares_of(const IntegratedSignal& signal, const DeviationRule& rule, std::size_t stretch,
                   std::int64_t factor) {
-    const IntegratedSignal::Run run = signal.run(rule, stretch, factor);
+    const TermRun run = run_of(rule, signal.segments, stretch, signal.convention, factor);
     if (run.terms == 0) { return 0.0; }
     const auto m = static_cast<std::size_t>(factor);
     return std::visit(
@@ -141,30 +141,13 @@ double squares_of(const IntegratedSignal& signal, const DeviationRule& rule, std
 
 }  // namespace
 
-IntegratedSignal::IntegratedSignal(const Column& column, std::span<const Segment> segments,
-                                   PhaseConvention convention) {
+IntegratedSignal::IntegratedSignal(const Column& column, std::span<const Segment> of, PhaseConvention phase)
+    : segments(of), convention(phase) {
     const double centre = raw_mean(column);
     for (const Segment& segment : segments) {
         stretches.push_back({PrefixSum(column, centre, segment.first, segment.count),
                              convention == PhaseConvention::matlab ? std::size_t{1} : std::size_t{0}});
-        first_index.push_back(segment.first_index - segments.front().first_index);
-        longest = std::max(longest, static_cast<std::int64_t>(segment.count));
     }
-}
-
-IntegratedSignal::Run IntegratedSignal::run(const DeviationRule& rule, std::size_t stretch,
-                                            std::int64_t m) const {
-    const std::int64_t stride = rule.stride(m);
-    const std::int64_t aligned = (first_index[stretch] + stride - 1) / stride * stride;
-    const std::int64_t begin =
-        aligned - first_index[stretch] + static_cast<std::int64_t>(stretches[stretch].begin);
-    return {begin, rule.terms(static_cast<std::int64_t>(stretches[stretch].theta.points()) - begin, m)};
-}
-
-std::vector<std::int64_t> IntegratedSignal::terms(const DeviationRule& rule, std::int64_t m) const {
-    std::vector<std::int64_t> all;
-    for (std::size_t s = 0; s < stretches.size(); ++s) { all.push_back(run(rule, s, m).terms); }
-    return all;
 }
 
 std::vector<double> deviation_sums(const IntegratedSignal& signal, const DeviationRule& rule,

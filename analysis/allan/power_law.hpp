@@ -1,13 +1,10 @@
-// Power-law noise: which kind dominates an average of m samples, and how strongly its Allan differences are
-// correlated, which decides how much an Allan deviation is worth.
+// Power-law noise.
 //
 // The names are those of a rate sensor; in brackets the clock's name and the exponent of the rate's spectrum.
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <optional>
-#include <span>
+#include <cstddef>
 
 namespace gyrolog {
 
@@ -19,14 +16,13 @@ enum class PowerLaw {
     rate_walk,      // rate random walk, K   (random-walk frequency, f^-2)
 };
 inline constexpr std::size_t power_laws = 5;
+inline constexpr std::array all_power_laws = {PowerLaw::white_angle, PowerLaw::flicker_angle,
+                                              PowerLaw::white_rate, PowerLaw::flicker_rate,
+                                              PowerLaw::rate_walk};
 
-// How the Allan variance divides among the power laws, indexed by PowerLaw. Need not sum to 1.
+constexpr std::size_t index_of(PowerLaw law) { return static_cast<std::size_t>(law); }
+
+// How a variance divides among the power laws, indexed by PowerLaw. Need not sum to 1.
 using VarianceShares = std::array<double, power_laws>;
-
-// The dominating power law of a series of contiguous averages (NaN: an average that does not exist).
-// Thirty averages or more: by the lag-1 autocorrelation, differencing while it is too high (NIST SP 1065,
-// section 5.5; Riley and Greenhall 2004). Four to twenty-nine: by the ratio of sample variance to Allan
-// variance against Barnes' B1. Fewer, or averages that do not vary: nothing.
-std::optional<PowerLaw> identify_power_law(std::span<const double> averages);
 
 }  // namespace gyrolog

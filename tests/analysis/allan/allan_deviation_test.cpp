@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 
 #include "analysis/allan/averaging_factors.hpp"
+#include "analysis/allan/deviation_rule.hpp"
 #include "tests/analysis/allan/nbs14.hpp"
 
 namespace gyrolog {
@@ -113,23 +115,82 @@ TEST(AllanDeviation, MatlabConventionFollowsItsOwnFormula) {
     }
 }
 
-// The definition, term by term, on a grid where missing samples are NaN.
-double by_definition(const std::vector<double>& grid, std::size_t m, std::size_t stride) {
+// The definitions, term by term and with the averages themselves, on a grid where missing samples are NaN.
+double average(const std::vector<double>& grid, std::size_t first, std::size_t m) {
+    double sum = 0.0;
+    for (std::size_t i = first; i < first + m; ++i) { sum += i < grid.size() ? grid[i] : std::nan(""); }
+    return sum / static_cast<double>(m);
+}
+
+double difference(const std::vector<double>& grid, std::size_t k, std::size_t m) {
+    return average(grid, k + m, m) - average(grid, k, m);
+}
+
+double windowed(const std::vector<double>& grid, std::size_t k, std::size_t m) {
+    double sum = 0.0;
+    for (std::size_t i = k; i < k + m; ++i) { sum += difference(grid, i, m); }
+    return sum / static_cast<double>(m);
+}
+
+double second_difference(const std::vector<double>& grid, std::size_t k, std::size_t m) {
+    return difference(grid, k + m, m) - difference(grid, k, m);
+}
+
+struct Definition {
+    DeviationKind kind;
+    double (*term)(const std::vector<double>& grid, std::size_t k, std::size_t m);
+    bool strided;
+    double norm;
+};
+
+const std::vector<Definition> definitions = {
+    {DeviationKind::overlapping, difference, false, 2.0},
+    {DeviationKind::standard, difference, true, 2.0},
+    {DeviationKind::standard_halving, difference, true, 2.0},
+    {DeviationKind::modified, windowed, false, 2.0},
+    {DeviationKind::hadamard, second_difference, true, 6.0},
+    {DeviationKind::overlapping_hadamard, second_difference, false, 6.0},
+};
+
+// 0 where there is no term.
+double by_definition(const Definition& definition, const std::vector<double>& grid, std::size_t m) {
     double squares = 0.0;
     double terms = 0.0;
-    for (std::size_t k = 0; k + 2 * m <= grid.size(); k += stride) {
-        double first = 0.0;
-        double second = 0.0;
-        for (std::size_t i = 0; i < m; ++i) {
-            first += grid[k + i];
-            second += grid[k + m + i];
-        }
-        const double d = (second - first) / static_cast<double>(m);
+    for (std::size_t k = 0; k < grid.size(); k += definition.strided ? m : 1) {
+        const double d = definition.term(grid, k, m);
         if (std::isnan(d)) { continue; }
         squares += d * d;
         terms += 1.0;
     }
-    return std::sqrt(squares / (2.0 * terms));
+    return terms > 0.0 ? std::sqrt(squares / (definition.norm * terms)) : 0.0;
+}
+
+// Of one unbroken stretch, with theta written out beyond both ends.
+struct TotalSum {
+    double squares = 0.0;
+    double terms = 0.0;
+};
+
+TotalSum total_by_definition(std::span<const double> y, std::size_t m) {
+    if (2 * m > y.size()) { return {}; }
+    const std::size_t last = y.size();
+    std::vector<double> theta{0.0};
+    for (const double value : y) { theta.push_back(theta.back() + value); }
+    const auto reflected = [&](std::ptrdiff_t k) {
+        const auto end = static_cast<std::ptrdiff_t>(last);
+        if (k < 0) { return 2.0 * theta[0] - theta[static_cast<std::size_t>(-k)]; }
+        if (k > end) { return 2.0 * theta[last] - theta[static_cast<std::size_t>(2 * end - k)]; }
+        return theta[static_cast<std::size_t>(k)];
+    };
+    TotalSum sum;
+    const auto step = static_cast<std::ptrdiff_t>(m);
+    for (std::ptrdiff_t i = 1; i < static_cast<std::ptrdiff_t>(last); ++i) {
+        const double d =
+            (reflected(i + step) - 2.0 * reflected(i) + reflected(i - step)) / static_cast<double>(m);
+        sum.squares += d * d / 2.0;
+        sum.terms += 1.0;
+    }
+    return sum;
 }
 
 struct Holed {
@@ -165,17 +226,147 @@ Holed record_with_holes() {
     return holed;
 }
 
-TEST(AllanDeviation, AcrossHolesUsesTheCompleteDifferencesAndNoOther) {
+TEST(AllanDeviation, AcrossHolesUsesTheCompleteTermsAndNoOther) {
     const Holed holed = record_with_holes();
-    for (const DeviationKind kind : {DeviationKind::overlapping, DeviationKind::standard}) {
+    for (const Definition& definition : definitions) {
+        AllanOptions options;
+        options.kind = definition.kind;
+        options.m = {1, 2, 3, 7, 16, 60, 101};
+        if (definition.kind != DeviationKind::modified) {  // m^2 samples in a term
+            options.m.insert(options.m.end(), {500, 802, 1024, 1200});
+        }
+        const AllanCurve curve = allan_deviation(holed.counts, holed.segments, 100.0, options);
+        std::size_t points = 0;
+        for (const std::int64_t m : options.m) {
+            const double expected = by_definition(definition, holed.grid, static_cast<std::size_t>(m));
+            if (expected == 0.0) { continue; }
+            ASSERT_LT(points, curve.points.size());
+            EXPECT_EQ(curve.points[points].m, m);
+            EXPECT_NEAR(curve.points[points].deviation, expected, 1e-11 * expected)
+                << name_of(definition.kind) << " m " << m;
+            ++points;
+        }
+        EXPECT_EQ(points, curve.points.size()) << name_of(definition.kind);
+    }
+}
+
+TEST(AllanDeviation, TotalReflectsEachStretchAboutItsOwnEndsAndAveragesOverAllTerms) {
+    const Holed holed = record_with_holes();
+    const std::vector<double> values = holed.counts.values();
+    AllanOptions options;
+    options.kind = DeviationKind::total;
+    options.m = {1, 2, 7, 50, 51, 500, 750, 1200};
+    const AllanCurve curve = allan_deviation(holed.counts, holed.segments, 100.0, options);
+    ASSERT_EQ(curve.points.size(), options.m.size());
+    for (const AllanPoint& point : curve.points) {
+        TotalSum sum;
+        for (const Segment& segment : holed.segments) {
+            const TotalSum part = total_by_definition(std::span(values).subspan(segment.first, segment.count),
+                                                      static_cast<std::size_t>(point.m));
+            sum.squares += part.squares;
+            sum.terms += part.terms;
+        }
+        EXPECT_EQ(static_cast<double>(point.terms), sum.terms);
+        const double expected = std::sqrt(sum.squares / sum.terms);
+        EXPECT_NEAR(point.deviation, expected, 1e-9 * expected) << "m " << point.m;
+    }
+}
+
+TEST(AllanDeviation, HalvingTakesPowersOfTwoAndTheTextbooksError) {
+    const auto y = test::nbs14_1000_point_frequency();
+    AllanOptions options;
+    options.kind = DeviationKind::standard_halving;
+    const AllanCurve curve = allan_deviation(column_of(y), whole(y.size()), 1.0, options);
+    ASSERT_EQ(curve.points.size(), 9U);
+    std::vector<double> averages = y;
+    std::int64_t m = 1;
+    for (const AllanPoint& point : curve.points) {
+        EXPECT_EQ(point.m, m);
+        double squares = 0.0;
+        for (std::size_t i = 1; i < averages.size(); ++i) {
+            squares += std::pow(averages[i] - averages[i - 1], 2);
+        }
+        const auto n = static_cast<double>(averages.size());
+        EXPECT_NEAR(point.deviation, std::sqrt(squares / (2.0 * (n - 1.0))), 1e-12);
+        EXPECT_NEAR(point.hi / point.deviation - 1.0, 1.00064 / std::sqrt(2.0 * (n - 1.0)), 1e-5);
+        for (std::size_t i = 0; i < averages.size() / 2; ++i) {
+            averages[i] = (averages[2 * i] + averages[2 * i + 1]) / 2.0;
+        }
+        averages.resize(averages.size() / 2);
+        m *= 2;
+    }
+}
+
+TEST(AllanDeviation, OfEqualSamplesIsZeroWithAnIntervalOfNoLength) {
+    for (const DeviationKind kind : all_deviation_kinds) {
         AllanOptions options;
         options.kind = kind;
-        const AllanCurve curve = allan_deviation(holed.counts, holed.segments, 100.0, options);
-        ASSERT_GT(curve.points.size(), 50U);
-        for (const AllanPoint& point : curve.points) {
-            const auto m = static_cast<std::size_t>(point.m);
-            const double expected = by_definition(holed.grid, m, kind == DeviationKind::standard ? m : 1);
-            EXPECT_NEAR(point.deviation, expected, 1e-11 * expected) << "m " << m;
+        for (const double value : {0.0, 1.0 / 3.0, -7e5}) {
+            const AllanCurve curve =
+                allan_deviation(column_of(std::vector<double>(100, value)), whole(100), 1.0, options);
+            EXPECT_GE(curve.points.size(), 6U);
+            for (const AllanPoint& point : curve.points) {
+                EXPECT_EQ(point.deviation, 0.0);
+                EXPECT_EQ(point.lo, 0.0);
+                EXPECT_EQ(point.hi, 0.0);
+                EXPECT_GE(point.edf, 1.0);
+            }
+        }
+    }
+}
+
+TEST(AllanDeviation, OfTheShortestRecordsIsFiniteWithAnIntervalAroundIt) {
+    const std::vector<double> y = {3.0, -1.0, 4.0, 1.0, -5.0, 9.0, 2.0, -6.0, 5.0, 3.0};
+    for (const DeviationKind kind : all_deviation_kinds) {
+        for (const PhaseConvention convention : {PhaseConvention::sp1065, PhaseConvention::matlab}) {
+            for (std::size_t samples = 1; samples <= y.size(); ++samples) {
+                for (const auto& factors :
+                     {std::vector<std::int64_t>{}, {-3, 0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 1000}}) {
+                    AllanOptions options;
+                    options.kind = kind;
+                    options.convention = convention;
+                    options.m = factors;
+                    const std::vector<double> part(y.begin(),
+                                                   y.begin() + static_cast<std::ptrdiff_t>(samples));
+                    const AllanCurve curve = allan_deviation(column_of(part), whole(samples), 10.0, options);
+                    const std::size_t skipped = convention == PhaseConvention::matlab ? 1 : 0;
+                    const std::size_t needed = static_cast<std::size_t>(rule_of(kind).order) + skipped;
+                    EXPECT_EQ(curve.points.empty(), samples < needed) << name_of(kind) << ' ' << samples;
+                    for (const AllanPoint& point : curve.points) {
+                        EXPECT_GT(point.terms, 0);
+                        EXPECT_TRUE(std::isfinite(point.hi));
+                        EXPECT_LT(point.lo, point.hi);
+                        EXPECT_GE(point.edf, 1.0 - 1e-9);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(AllanDeviation, OfOneSampleLessIsTheMatlabConvention) {
+    const auto y = test::nbs14_1000_point_frequency();
+    const std::vector<double> later(y.begin() + 1, y.end());
+    for (const DeviationKind kind : all_deviation_kinds) {
+        for (const std::int64_t m : {1, 10, 100}) {
+            EXPECT_NEAR(deviation_at(y, m, kind, PhaseConvention::matlab), deviation_at(later, m, kind),
+                        1e-12)
+                << name_of(kind);
+        }
+    }
+}
+
+TEST(AllanDeviation, HadamardAndNoOtherIgnoresARamp) {
+    auto y = test::nbs14_1000_point_frequency();
+    for (const DeviationKind kind : all_deviation_kinds) {
+        const double before = deviation_at(y, 100, kind);
+        auto ramped = y;
+        for (std::size_t i = 0; i < ramped.size(); ++i) { ramped[i] += 0.01 * static_cast<double>(i); }
+        const double after = deviation_at(ramped, 100, kind);
+        if (kind == DeviationKind::hadamard || kind == DeviationKind::overlapping_hadamard) {
+            EXPECT_NEAR(after, before, 1e-10);
+        } else {
+            EXPECT_GT(after, 10.0 * before);
         }
     }
 }
@@ -192,14 +383,20 @@ TEST(AllanDeviation, OfSegmentsThatTouchEqualsThatOfTheWholeButForDifferencesAcr
 }
 
 TEST(AllanDeviation, CountsAndRealNumbersAgree) {
-    Holed holed = record_with_holes();
-    const AllanCurve exact = allan_deviation(holed.counts, holed.segments, 100.0);
-    holed.counts.data = holed.counts.values();
-    const AllanCurve reals = allan_deviation(holed.counts, holed.segments, 100.0);
-    ASSERT_EQ(exact.points.size(), reals.points.size());
-    for (std::size_t i = 0; i < exact.points.size(); ++i) {
-        EXPECT_NEAR(exact.points[i].deviation, reals.points[i].deviation, 1e-12 * exact.points[i].deviation);
-        EXPECT_EQ(exact.points[i].terms, reals.points[i].terms);
+    const Holed holed = record_with_holes();
+    Column as_reals = holed.counts;
+    as_reals.data = holed.counts.values();
+    for (const DeviationKind kind : all_deviation_kinds) {
+        AllanOptions options;
+        options.kind = kind;
+        const AllanCurve exact = allan_deviation(holed.counts, holed.segments, 100.0, options);
+        const AllanCurve reals = allan_deviation(as_reals, holed.segments, 100.0, options);
+        ASSERT_EQ(exact.points.size(), reals.points.size());
+        for (std::size_t i = 0; i < exact.points.size(); ++i) {
+            EXPECT_NEAR(exact.points[i].deviation, reals.points[i].deviation,
+                        1e-12 * exact.points[i].deviation);
+            EXPECT_EQ(exact.points[i].terms, reals.points[i].terms);
+        }
     }
 }
 
@@ -216,15 +413,19 @@ TEST(AllanDeviation, SumsThatLeave32BitsStayExact) {
 TEST(AllanDeviation, IsTheSameBitsForAnyNumberOfThreads) {
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
-    std::vector<double> y(100000);
+    std::vector<double> y(30000);
     for (double& value : y) { value = normal(random); }
-    AllanOptions options;
-    const AllanCurve one = allan_deviation(column_of(y), whole(y.size()), 1.0, options);
-    for (const unsigned threads : {2U, 5U}) {
-        options.threads = threads;
-        const AllanCurve many = allan_deviation(column_of(y), whole(y.size()), 1.0, options);
-        for (std::size_t i = 0; i < one.points.size(); ++i) {
-            EXPECT_EQ(one.points[i].deviation, many.points[i].deviation);
+    for (const DeviationKind kind : all_deviation_kinds) {
+        AllanOptions options;
+        options.kind = kind;
+        const AllanCurve one = allan_deviation(column_of(y), whole(y.size()), 1.0, options);
+        for (const unsigned threads : {2U, 5U}) {
+            options.threads = threads;
+            const AllanCurve many = allan_deviation(column_of(y), whole(y.size()), 1.0, options);
+            for (std::size_t i = 0; i < one.points.size(); ++i) {
+                EXPECT_EQ(one.points[i].deviation, many.points[i].deviation);
+                EXPECT_EQ(one.points[i].hi, many.points[i].hi);
+            }
         }
     }
 }

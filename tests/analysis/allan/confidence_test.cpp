@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/allan/allan_deviation.hpp"
 #include "analysis/allan/degrees_of_freedom.hpp"
+#include "analysis/allan/deviation_sums.hpp"
 #include "analysis/allan/power_law.hpp"
 
 namespace gyrolog {
@@ -74,19 +74,6 @@ const NoiseCase noise_cases[] = {
     {PowerLaw::rate_walk, [](std::size_t n, std::uint64_t seed) { return integrated(white(n, seed)); }},
 };
 
-TEST(PowerLaw, IsIdentifiedFromManyAverages) {
-    for (const NoiseCase& noise : noise_cases) {
-        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-            EXPECT_EQ(identify_power_law(noise.make(2000, seed)), noise.law) << "seed " << seed;
-        }
-    }
-}
-
-TEST(PowerLaw, IsNotIdentifiedFromFewerThanFourAverages) {
-    EXPECT_EQ(identify_power_law(std::vector<double>{1.0, 2.0, 4.0}), std::nullopt);
-    EXPECT_EQ(identify_power_law(std::vector<double>(50, 1.0)), std::nullopt);
-}
-
 double degrees(PowerLaw law, std::int64_t m, std::vector<std::int64_t> runs,
                DeviationKind kind = DeviationKind::overlapping) {
     return DegreesOfFreedom(std::array{law}, rule_of(kind), m, runs).of(law);
@@ -95,9 +82,6 @@ double degrees(PowerLaw law, std::int64_t m, std::vector<std::int64_t> runs,
 // The definition of the equivalent degrees of freedom, 2 E(s)^2 / var(s), from many realisations.
 double edf_by_simulation(const NoiseCase& noise, std::size_t samples, std::int64_t m, DeviationKind kind,
                          int runs) {
-    AllanOptions options;
-    options.m = {m};
-    options.kind = kind;
     double sum = 0.0;
     double squares = 0.0;
     for (int run = 0; run < runs; ++run) {
@@ -106,7 +90,8 @@ double edf_by_simulation(const NoiseCase& noise, std::size_t samples, std::int64
         y.erase(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(samples));
         const Column column{"gx", "rad/s", y, 1.0, 0.0, "rad_s"};
         const std::vector<Segment> whole = {{0, samples, 0}};
-        const double s = std::pow(allan_deviation(column, whole, 1.0, options).points.at(0).deviation, 2);
+        const IntegratedSignal signal(column, whole, PhaseConvention::sp1065);
+        const double s = deviation_sums(signal, rule_of(kind), std::array{m}, 1).front();
         sum += s;
         squares += s * s;
     }
@@ -151,40 +136,6 @@ TEST(EquivalentDegreesOfFreedom, AddOverRunsThatAreFarApart) {
     const double one = degrees(PowerLaw::white_rate, 10, {500});
     const double two = degrees(PowerLaw::white_rate, 10, {500, 500});
     EXPECT_DOUBLE_EQ(two, 2.0 * one);
-}
-
-// An interval at 68.3 % must cover the truth in 68.3 % of records, at every averaging time, the last ones
-// too.
-TEST(AllanInterval, CoversTheTruthAsOftenAsItSays) {
-    constexpr std::size_t samples = 4096;
-    constexpr int records = 200;
-    for (const auto& noise : {noise_cases[1], noise_cases[3]}) {
-        const bool is_white = noise.law == PowerLaw::white_rate;
-        int all = 0;
-        int covered = 0;
-        int late = 0;
-        int late_covered = 0;
-        for (int record = 0; record < records; ++record) {
-            const auto y = noise.make(samples, 77 + static_cast<std::uint64_t>(record));
-            const Column column{"gx", "rad/s", y, 1.0, 0.0, "rad_s"};
-            AllanOptions options;
-            options.m = {2, 8, 32, 128, 512, 1024, 2048};
-            for (const AllanPoint& p : allan_deviation(column, {{{0, samples, 0}}}, 1.0, options).points) {
-                const auto m = static_cast<double>(p.m);
-                const double truth =
-                    is_white ? 1.0 / std::sqrt(m) : std::sqrt((2.0 * m * m + 1.0) / (6.0 * m));
-                const bool inside = p.lo <= truth && truth <= p.hi;
-                ++all;
-                covered += inside ? 1 : 0;
-                if (p.m >= 512) {
-                    ++late;
-                    late_covered += inside ? 1 : 0;
-                }
-            }
-        }
-        EXPECT_NEAR(static_cast<double>(covered) / all, 0.683, 0.06);
-        EXPECT_NEAR(static_cast<double>(late_covered) / late, 0.683, 0.10);
-    }
 }
 
 }  // namespace
