@@ -5,17 +5,41 @@
 #include "analysis/allan/allan_curve.hpp"
 #include "host/app/analysis_run.hpp"
 #include "host/app/command.hpp"
+#include "host/app/curve_run.hpp"
+#include "host/app/option_check.hpp"
+#include "host/app/stage_clock.hpp"
 
 namespace gyrolog {
+namespace {
+
+ExitCode analyze_either(Console& console, const AnalysisRequest& request, const std::string& curve_path) {
+    if (request.recording_path.empty() == curve_path.empty()) {
+        const char* problem = curve_path.empty() ? "give a RECORDING, or --curve with an Allan curve"
+                                                 : "give a RECORDING or --curve, not both";
+        return report_error(console, "analyze", {ErrorCode::invalid_argument, problem});
+    }
+    if (curve_path.empty()) { return analyze_to_files(console, "analyze", request); }
+    return analyze_curve_to_files(console, "analyze",
+                                  {curve_path, request.json_path, request.plot_path, request.model_path,
+                                   request.rate_hz, request.confidence});
+}
+
+}  // namespace
 
 Action setup_analyze(CLI::App& app) {
     auto request = std::make_shared<AnalysisRequest>();
+    auto curve_path = std::make_shared<std::string>();
     app.add_option("RECORDING", request->recording_path,
-                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)")
-        ->required();
+                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
+    CLI::Option* curve =
+        app.add_option("--curve", *curve_path,
+                       "Instead of a recording: an Allan curve from print (tau_s,x_dps or x_deg_per_h, ...)")
+            ->type_name("FILE.csv");
     app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")
         ->type_name("FILE");
-    app.add_option("--plot", request->plot_path, "Draw the Allan curves")->type_name("FILE.png");
+    app.add_option("--plot", request->plot_path, "Draw the Allan curves")
+        ->type_name("FILE.png")
+        ->check(png_file());
     app.add_option("--model", request->model_path, "Write the noise model for simulations")
         ->type_name("FILE");
     std::vector<std::string> deviations;
@@ -30,18 +54,31 @@ Action setup_analyze(CLI::App& app) {
         ->check(CLI::IsMember({"sp1065", "matlab"}))
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_option("--m", request->factors, "Averaging factors: 1,10,100")->type_name("LIST");
+    app.add_option("--m", request->factors, "Averaging factors: 1,10,100; or all, which takes long on long recordings")->type_name("LIST");
     app.add_option("--rate", request->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
-        ->check(CLI::Range(1e-4, 1e7));
+        ->check(number_from_to(1e-4, 1e7, "Hz"));
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     app.add_option("--confidence", request->confidence, "Probability of the intervals")
-        ->check(CLI::Range(0.01, 0.9999))
+        ->check(number_from_to(0.01, 0.9999))
         ->type_name("P")
         ->capture_default_str();
-    return [request](Console& console) { return analyze_to_files(console, "analyze", *request); };
+    auto timing = std::make_shared<bool>(false);
+    app.add_flag("--timing", *timing, "Print on standard error where the time went");
+    for (const char* of_samples : {"--deviation", "--convention", "--m", "--lsb-dps"}) {
+        curve->excludes(app.get_option(of_samples));
+    }
+    return [request, curve_path, timing](Console& console) {
+        if (!*timing) { return analyze_either(console, *request, *curve_path); }
+        StageClock clock;
+        request->on_stage = StageObserver([&clock](const char* stage) { clock.enter(stage); });
+        const ExitCode code = analyze_either(console, *request, *curve_path);
+        clock.stop();
+        write_timing(console.err, clock);
+        return code;
+    };
 }
 
 }  // namespace gyrolog

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "host/formats/noise_unit.hpp"
+#include "host/formats/noise_json.hpp"
 
 namespace gyrolog {
 namespace {
@@ -33,24 +33,6 @@ Json point_json(const AllanPoint& point, const RateUnit& unit) {
             {"unit", unit.name}};
 }
 
-Json coefficient_json(const FittedCoefficient& fitted, NoiseTerm term, const RateUnit& unit) {
-    const double scale = unit.per_column_unit;
-    if (fitted.state == FittedCoefficient::State::not_identifiable) {
-        return {
-            {"state", "not_identifiable"}, {"upper", fitted.upper * scale}, {"unit", noise_unit(term, unit)}};
-    }
-    return {{"state", "identified"},   {"value", fitted.value * scale}, {"sd", fitted.sd * scale},
-            {"lo", fitted.lo * scale}, {"hi", fitted.hi * scale},       {"unit", noise_unit(term, unit)}};
-}
-
-Json slopes_json(const SlopeReading& slopes, const RateUnit& unit) {
-    Json json = Json::object();
-    if (slopes.N) { json["N"] = slopes.N->coefficient * unit.per_column_unit; }
-    if (slopes.B) { json["B"] = slopes.B->coefficient * unit.per_column_unit; }
-    if (slopes.K) { json["K"] = slopes.K->coefficient * unit.per_column_unit; }
-    return json;
-}
-
 Json axis_json(const AxisReport& axis, const RateUnit& unit) {
     Json json;
     json["bias"] = {{"value", axis.bias.value * unit.per_column_unit},
@@ -59,9 +41,7 @@ Json axis_json(const AxisReport& axis, const RateUnit& unit) {
                     {"unit", unit.name}};
     json["allan"] = Json::array();
     for (const AllanPoint& point : axis.curve.points) { json["allan"].push_back(point_json(point, unit)); }
-    for (const NoiseTerm term : all_noise_terms) {
-        json["coefficients"][std::string(name_of(term))] = coefficient_json(axis.fit[term], term, unit);
-    }
+    put_noise_fit(json, axis.fit, unit);
     json["slope_read"] = slopes_json(axis.slopes, unit);
     return json;
 }
@@ -77,7 +57,8 @@ std::string analysis_json(const AnalysisReport& report) {
     json["confidence"] = report.confidence;
     json["axes"] = Json::object();
     for (const AxisReport& axis : report.axes) { json["axes"][axis.axis] = axis_json(axis, report.unit); }
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    json["warnings"] = report.warnings;
+    return json_text(json);
 }
 
 }  // namespace gyrolog

@@ -1,31 +1,20 @@
 #include "host/formats/recording_csv.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/recording/grid.hpp"
 #include "host/formats/csv_column.hpp"
-#include "host/formats/text_file.hpp"
+#include "host/formats/csv_table.hpp"
 
 namespace gyrolog {
 namespace {
 
 constexpr double standard_gravity_m_s2 = 9.80665;
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 Error malformed(std::string message) { return {ErrorCode::malformed, std::move(message)}; }
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.front())) { text.remove_prefix(1); }
-    while (!text.empty() && is_blank(text.back())) { text.remove_suffix(1); }
-    return text;
-}
 
 struct InputColumn {
     std::string header;
@@ -36,124 +25,33 @@ struct InputColumn {
     bool is_gyro() const { return meaning && meaning->is_gyro(); }
 };
 
-// Takes text in pieces that may end anywhere, and keeps the numbers.
-class Table {
-public:
-    // With `needs_stamps` an empty field of t_s is an error.
-    explicit Table(bool needs_stamps) : needs_stamps_(needs_stamps) {}
-
-    Status feed(std::string_view piece) {
-        while (!piece.empty()) {
-            const std::size_t end = piece.find('\n');
-            if (end == std::string_view::npos) {
-                rest_.append(piece);
-                return {};
-            }
-            if (rest_.empty()) {
-                GYROLOG_CHECK(line(piece.substr(0, end)));
-            } else {
-                rest_.append(piece.substr(0, end));
-                GYROLOG_CHECK(line(rest_));
-                rest_.clear();
-            }
-            piece.remove_prefix(end + 1);
-        }
-        return {};
-    }
-
-    Status finish() {
-        if (!rest_.empty()) { GYROLOG_CHECK(line(rest_)); }
-        if (columns_.empty()) {
-            return malformed("empty: line 1 must name the columns, such as t_s,gx_dps,gy_dps,gz_dps");
-        }
-        return {};
-    }
-
-    std::vector<InputColumn>& columns() { return columns_; }
-
-private:
-    Status line(std::string_view text) {
-        ++number_;
-        if (!text.empty() && text.back() == '\r') { text.remove_suffix(1); }
-        if (number_ == 1) { return header(text); }
-        // In a table of one column an empty line is an empty field, that is a missing sample.
-        if (text.empty() && columns_.size() > 1) { return {}; }
-        const char* at = text.data();
-        const char* const end = at + text.size();
-        for (std::size_t c = 0; c < columns_.size(); ++c) {
-            if (c > 0) {
-                if (at == end) { return wrong_count(text); }
-                ++at;  // the comma
-            }
-            GYROLOG_CHECK(field(columns_[c], at, end));
-        }
-        return at == end ? Status() : wrong_count(text);
-    }
-
-    // Reads one field and leaves `at` on the comma after it, or the end of the line.
-    Status field(InputColumn& column, const char*& at, const char* end) {
-        if (!column.meaning) {
-            at = std::find(at, end, ',');
-            return {};
-        }
-        const char* const begin = at;
-        while (at != end && is_blank(*at)) { ++at; }
-        double value = missing;
-        if (at != end && *at != ',') {
-            if (*at == '+' && end - at > 1 && at[1] != '-') { ++at; }
-            const auto [stop, problem] = std::from_chars(at, end, value);
-            at = stop;
-            while (at != end && is_blank(*at)) { ++at; }
-            if (problem != std::errc() || (at != end && *at != ',') || std::isinf(value)) {
-                return malformed(place(column) + "'" + std::string(begin, std::find(begin, end, ',')) +
-                                 "' is no number; leave the field empty where a sample is missing");
+// With `needs_stamps` an empty field of t_s is an error.
+CsvTable recording_table(bool needs_stamps) {
+    const auto rule = [needs_stamps](std::vector<CsvTableColumn>& columns) -> Status {
+        bool any_gyro = false;
+        for (CsvTableColumn& column : columns) {
+            const auto meaning = csv_column(column.header);
+            column.used = meaning.has_value();
+            any_gyro = any_gyro || (meaning && meaning->is_gyro());
+            if (needs_stamps && meaning && meaning->kind == CsvColumn::Kind::time_stamp) {
+                column.mend_if_empty = "no time stamp; give the sampling rate with --rate";
             }
         }
-        if (needs_stamps_ && std::isnan(value) && column.is(CsvColumn::Kind::time_stamp)) {
-            return malformed(place(column) + "no time stamp; give the sampling rate with --rate");
-        }
-        column.values.push_back(value);
-        return {};
-    }
+        if (any_gyro) { return {}; }
+        return malformed(
+            "line 1: no gyro column; it must name the columns with their units, such as "
+            "t_s,gx_dps,gy_dps,gz_dps (or _rad_s, _lsb, _deg, _rad)");
+    };
+    return {"t_s,gx_dps,gy_dps,gz_dps", rule};
+}
 
-    Status header(std::string_view text) {
-        if (text.starts_with("\xEF\xBB\xBF")) { text.remove_prefix(3); }
-        while (true) {
-            const std::size_t comma = text.find(',');
-            const std::string name(trimmed(text.substr(0, comma)));
-            for (const InputColumn& column : columns_) {
-                if (column.header == name) {
-                    return malformed("line 1: column '" + name + "' appears twice");
-                }
-            }
-            columns_.push_back({name, csv_column(name), {}});
-            if (comma == std::string_view::npos) { break; }
-            text.remove_prefix(comma + 1);
-        }
-        const bool any_gyro = std::ranges::any_of(columns_, &InputColumn::is_gyro);
-        if (!any_gyro) {
-            return malformed(
-                "line 1: no gyro column; it must name the columns with their units, such as "
-                "t_s,gx_dps,gy_dps,gz_dps (or _rad_s, _lsb, _deg, _rad)");
-        }
-        return {};
+std::vector<InputColumn> input_columns(CsvTable& table) {
+    std::vector<InputColumn> columns;
+    for (CsvTableColumn& column : table.columns()) {
+        columns.push_back({column.header, csv_column(column.header), std::move(column.values)});
     }
-
-    Status wrong_count(std::string_view text) const {
-        const auto fields = std::count(text.begin(), text.end(), ',') + 1;
-        return malformed("line " + std::to_string(number_) + ": " + std::to_string(fields) +
-                         " fields where line 1 names " + std::to_string(columns_.size()));
-    }
-
-    std::string place(const InputColumn& column) const {
-        return "line " + std::to_string(number_) + ", column '" + column.header + "': ";
-    }
-
-    bool needs_stamps_;
-    std::vector<InputColumn> columns_;
-    std::string rest_;
-    std::size_t number_ = 0;
-};
+    return columns;
+}
 
 void keep_rows(std::vector<double>& values, const std::vector<bool>& present) {
     std::size_t kept = 0;
@@ -177,10 +75,10 @@ struct Gridded {
     }
 };
 
-Result<Gridded> on_grid(Table& table, const CsvReadOptions& options) {
+Result<Gridded> on_grid(std::vector<InputColumn> columns, const CsvReadOptions& options) {
     Gridded gridded;
     std::size_t rows = 0;
-    for (InputColumn& column : table.columns()) {
+    for (InputColumn& column : columns) {
         if (!column.meaning) { continue; }
         rows = column.values.size();
         if (column.is(CsvColumn::Kind::time_stamp)) {
@@ -275,13 +173,14 @@ std::string unknown_columns(std::span<const InputColumn> columns) {
     return names.empty() ? names : "ignored columns of unknown name: " + names;
 }
 
-Result<Recording> recording_of(Table& table, std::string name, const CsvReadOptions& options) {
+Result<Recording> recording_of(std::vector<InputColumn> columns, std::string name,
+                               const CsvReadOptions& options) {
     Recording recording;
     recording.name = std::move(name);
-    if (std::string warning = unknown_columns(table.columns()); !warning.empty()) {
+    if (std::string warning = unknown_columns(columns); !warning.empty()) {
         recording.warnings.push_back(std::move(warning));
     }
-    GYROLOG_TRY(Gridded gridded, on_grid(table, options));
+    GYROLOG_TRY(Gridded gridded, on_grid(std::move(columns), options));
     drop_missing_samples(gridded);
     differentiate_angles(gridded);
     if (gridded.columns.front().values.empty()) { return malformed("no complete sample"); }
@@ -303,19 +202,10 @@ Result<Recording> recording_of(Table& table, std::string name, const CsvReadOpti
     return recording;
 }
 
-Status feed_file(Table& table, const std::string& path) {
-    GYROLOG_TRY(TextReader reader, TextReader::open(path));
-    while (true) {
-        GYROLOG_TRY(const std::string_view piece, reader.read());
-        if (piece.empty()) { return table.finish(); }
-        GYROLOG_CHECK(table.feed(piece));
-    }
-}
-
 Result<Recording> read_file(const std::string& path, const CsvReadOptions& options) {
-    Table table(!options.rate_hz);
-    GYROLOG_CHECK(feed_file(table, path));
-    return recording_of(table, path.substr(path.find_last_of('/') + 1), options);
+    CsvTable table = recording_table(!options.rate_hz);
+    GYROLOG_CHECK(read_csv_file(table, path));
+    return recording_of(input_columns(table), path.substr(path.find_last_of('/') + 1), options);
 }
 
 }  // namespace
@@ -328,10 +218,10 @@ Result<Recording> read_recording_csv(const std::string& path, const CsvReadOptio
 
 Result<Recording> parse_recording_csv(std::string_view text, std::string name,
                                       const CsvReadOptions& options) {
-    Table table(!options.rate_hz);
+    CsvTable table = recording_table(!options.rate_hz);
     GYROLOG_CHECK(table.feed(text));
     GYROLOG_CHECK(table.finish());
-    return recording_of(table, std::move(name), options);
+    return recording_of(input_columns(table), std::move(name), options);
 }
 
 }  // namespace gyrolog

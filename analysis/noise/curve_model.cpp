@@ -1,0 +1,548 @@
+#include "analysis/noise/curve_model.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <unsupported/Eigen/NonLinearOptimization>
+#include <utility>
+
+#include "analysis/allan/confidence.hpp"
+
+namespace gyrolog {
+namespace {
+
+using Kind = CurveTerm::Kind;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double db_per_neper = 10.0 / std::numbers::ln10;  // of a variance
+constexpr double margin_to_enter = 6.0;
+constexpr double margin_to_stay = 2.0;
+constexpr std::size_t steps_max = 30;
+constexpr std::size_t terms_max = 9;
+constexpr std::array linear_kinds = {Kind::Q, Kind::N, Kind::B, Kind::K, Kind::R};
+
+// Where the Allan deviation is highest: tau / T = 1.89 of Gauss-Markov noise (IEEE Std 952-1997 C.1.5), f tau
+// = 0.371 of a sinusoid (C.1.6).
+constexpr double gauss_markov_peak = 1.89;
+constexpr double sinusoid_peak = 0.371;
+
+bool has_shape(Kind kind) { return kind == Kind::gauss_markov || kind == Kind::sinusoid; }
+std::size_t parameters_of(Kind kind) { return has_shape(kind) ? 2 : 1; }
+
+std::size_t parameters_of(const std::vector<CurveTerm>& terms) {
+    std::size_t count = 0;
+    for (const CurveTerm& term : terms) { count += parameters_of(term.kind); }
+    return count;
+}
+
+// The curve as it is fitted.
+struct Target {
+    std::vector<double> tau_s;
+    VectorXd log_variance;  // natural logarithm of the Allan variance
+
+    Index points() const { return log_variance.size(); }
+};
+
+Target target_of(const AllanCurve& curve) {
+    Target target;
+    std::vector<double> logs;
+    for (const AllanPoint& point : curve.points) {
+        if (!(point.deviation > 0.0 && point.tau_s > 0.0)) { continue; }
+        target.tau_s.push_back(point.tau_s);
+        logs.push_back(2.0 * std::log(point.deviation));
+    }
+    target.log_variance = Eigen::Map<const VectorXd>(logs.data(), static_cast<Index>(logs.size()));
+    return target;
+}
+
+// Terms as a vector of logarithms: of the squares of all sizes, then of all shapes. Positive sizes need no
+// bounds then, and a step means the same for a quantisation of 1e-9 as for a white noise of 1e-3.
+VectorXd logarithms_of(const std::vector<CurveTerm>& terms) {
+    VectorXd logs(static_cast<Index>(parameters_of(terms)));
+    Index at = 0;
+    for (const CurveTerm& term : terms) { logs[at++] = 2.0 * std::log(term.size); }
+    for (const CurveTerm& term : terms) {
+        if (has_shape(term.kind)) { logs[at++] = std::log(term.shape); }
+    }
+    return logs;
+}
+
+std::vector<CurveTerm> terms_of(const std::vector<CurveTerm>& like, const VectorXd& logs) {
+    std::vector<CurveTerm> terms = like;
+    Index at = 0;
+    for (CurveTerm& term : terms) { term.size = std::exp(std::clamp(logs[at++], -200.0, 200.0) / 2.0); }
+    for (CurveTerm& term : terms) {
+        if (has_shape(term.kind)) { term.shape = std::exp(std::clamp(logs[at++], -60.0, 60.0)); }
+    }
+    return terms;
+}
+
+// Allan variance by point and term.
+MatrixXd variances_of(const std::vector<CurveTerm>& terms, const std::vector<double>& tau_s) {
+    MatrixXd variances(static_cast<Index>(tau_s.size()), static_cast<Index>(terms.size()));
+    for (Index j = 0; j < variances.cols(); ++j) {
+        const CurveTerm& term = terms[static_cast<std::size_t>(j)];
+        for (Index i = 0; i < variances.rows(); ++i) {
+            variances(i, j) = term.allan_variance(tau_s[static_cast<std::size_t>(i)]);
+        }
+    }
+    return variances;
+}
+
+// Curve over model, dB.
+VectorXd residuals_db(const Target& target, const std::vector<CurveTerm>& terms) {
+    const VectorXd model = variances_of(terms, target.tau_s).rowwise().sum().cwiseMax(1e-300);
+    return db_per_neper * (target.log_variance - model.array().log().matrix());
+}
+
+// Derivatives of the model in dB by the logarithms of its parameters: for a size it is the share that the
+// term has of the variance.
+MatrixXd sensitivities_db(const Target& target, const std::vector<CurveTerm>& terms) {
+    const MatrixXd variances = variances_of(terms, target.tau_s);
+    const VectorXd total = variances.rowwise().sum().cwiseMax(1e-300);
+    MatrixXd slopes(target.points(), static_cast<Index>(parameters_of(terms)));
+    slopes.leftCols(variances.cols()) = variances;
+    Index column = variances.cols();
+    constexpr double step = 1e-4;
+    for (const CurveTerm& term : terms) {
+        if (!has_shape(term.kind)) { continue; }
+        const CurveTerm above{term.kind, term.size, term.shape * std::exp(step)};
+        const CurveTerm below{term.kind, term.size, term.shape * std::exp(-step)};
+        slopes.col(column++) =
+            (variances_of({above}, target.tau_s) - variances_of({below}, target.tau_s)) / (2.0 * step);
+    }
+    return db_per_neper * total.cwiseInverse().asDiagonal() * slopes;
+}
+
+// What Eigen's Levenberg-Marquardt (MINPACK's lmder) asks for.
+struct Problem {
+    const Target& target;
+    const std::vector<CurveTerm>& like;
+
+    int inputs() const { return static_cast<int>(parameters_of(like)); }
+    int values() const { return static_cast<int>(target.points()); }
+    int operator()(const VectorXd& logs, VectorXd& residuals) const {
+        residuals = residuals_db(target, terms_of(like, logs));
+        return 0;
+    }
+    int df(const VectorXd& logs, MatrixXd& jacobian) const {
+        jacobian = -sensitivities_db(target, terms_of(like, logs));
+        return 0;
+    }
+};
+
+struct Candidate {
+    std::vector<CurveTerm> terms;
+    VectorXd residuals;  // dB
+    double sum = std::numeric_limits<double>::infinity();
+};
+
+// Least squares from where `start` is. `tolerance`: relative, of the sum of squares.
+Candidate fitted_from(const Target& target, const std::vector<CurveTerm>& start, double tolerance) {
+    VectorXd logs = logarithms_of(start);
+    Problem problem{target, start};
+    Eigen::LevenbergMarquardt<Problem> search(problem);
+    search.parameters.ftol = tolerance;
+    search.parameters.xtol = tolerance;
+    search.parameters.maxfev = 400;
+    search.minimize(logs);
+    Candidate candidate;
+    candidate.terms = terms_of(start, logs);
+    candidate.residuals = residuals_db(target, candidate.terms);
+    candidate.sum = candidate.residuals.squaredNorm();
+    return candidate;
+}
+
+// The likelihood of residuals as curve_model.hpp takes them: reading errors and a smooth part.
+class ResidualScatter {
+public:
+    ResidualScatter(const Target& target, double reading_sd_db)
+        : reading_variance_(reading_sd_db * reading_sd_db) {
+        const Index n = target.points();
+        MatrixXd correlation(n, n);
+        for (Index i = 0; i < n; ++i) {
+            for (Index j = 0; j < n; ++j) {
+                const double octaves = std::log2(target.tau_s[static_cast<std::size_t>(i)] /
+                                                 target.tau_s[static_cast<std::size_t>(j)]);
+                correlation(i, j) = std::exp(-std::abs(octaves));
+            }
+        }
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(correlation);
+        vectors_ = solver.eigenvectors();
+        values_ = solver.eigenvalues().cwiseMax(0.0);
+    }
+
+    struct Fit {
+        double minus_two_log_likelihood = std::numeric_limits<double>::infinity();  // without its constant
+        double smooth_sd_db = 0.0;
+    };
+
+    // The likelihood has one maximum in practice; a grid and a golden section find it without derivatives.
+    Fit fit(const VectorXd& residuals) const {
+        const VectorXd powers = (vectors_.transpose() * residuals).cwiseAbs2();
+        constexpr int steps = 40;
+        constexpr double smallest_db = 0.01;
+        constexpr double octaves_per_step = 0.25;  // up to 10 dB
+        Fit best{minus_two_log_likelihood(powers, 0.0), 0.0};
+        for (int i = 0; i <= steps; ++i) {
+            const double sd_db = smallest_db * std::exp2(octaves_per_step * i);
+            const double value = minus_two_log_likelihood(powers, sd_db);
+            if (value < best.minus_two_log_likelihood) { best = {value, sd_db}; }
+        }
+        return best;
+    }
+
+    MatrixXd covariance(double smooth_sd_db) const {
+        return vectors_ * variances(smooth_sd_db).asDiagonal() * vectors_.transpose();
+    }
+
+private:
+    VectorXd variances(double smooth_sd_db) const {
+        return (smooth_sd_db * smooth_sd_db * values_).array() + reading_variance_;
+    }
+    double minus_two_log_likelihood(const VectorXd& powers, double smooth_sd_db) const {
+        const VectorXd variance = variances(smooth_sd_db);
+        return variance.array().log().sum() + powers.cwiseQuotient(variance).sum();
+    }
+
+    double reading_variance_;
+    MatrixXd vectors_;  // of the smooth part's correlation
+    VectorXd values_;
+};
+
+struct Judged {
+    Candidate candidate;
+    double criterion = std::numeric_limits<double>::infinity();
+    double smooth_sd_db = 0.0;
+};
+
+Judged judged(const ResidualScatter& scatter, Candidate candidate) {
+    if (candidate.terms.empty()) { return {}; }
+    const auto fit = scatter.fit(candidate.residuals);
+    const double penalty = static_cast<double>(parameters_of(candidate.terms)) *
+                           std::log(static_cast<double>(candidate.residuals.size()));
+    return {std::move(candidate), fit.minus_two_log_likelihood + penalty, fit.smooth_sd_db};
+}
+
+// A size at which the term stays below the curve everywhere.
+CurveTerm below_curve(const Target& target, Kind kind, double shape) {
+    CurveTerm unit{kind, 1.0, shape};
+    double least = std::numeric_limits<double>::infinity();
+    for (Index i = 0; i < target.points(); ++i) {
+        const double variance = unit.allan_variance(target.tau_s[static_cast<std::size_t>(i)]);
+        if (variance > 0.0) { least = std::min(least, target.log_variance[i] - std::log(variance)); }
+    }
+    constexpr double part_of_variance = 0.3;
+    unit.size = std::sqrt(part_of_variance * std::exp(least));
+    return unit;
+}
+
+// Correlation times or frequencies of which the curve has the hump, evenly on a logarithmic axis.
+std::vector<double> shapes_to_try(const Target& target, Kind kind) {
+    if (!has_shape(kind)) { return {0.0}; }
+    const auto [first, last] = std::minmax_element(target.tau_s.begin(), target.tau_s.end());
+    const double per_octave = kind == Kind::sinusoid ? 4.0 : 1.5;
+    const int steps = std::max(2, static_cast<int>(std::ceil(std::log2(*last / *first) * per_octave)));
+    std::vector<double> shapes;
+    for (int i = 0; i < steps; ++i) {
+        const double tau_s = *first * std::pow(*last / *first, (i + 0.5) / steps);
+        shapes.push_back(kind == Kind::sinusoid ? sinusoid_peak / tau_s : tau_s / gauss_markov_peak);
+    }
+    return shapes;
+}
+
+// Its hump lies on the curve: elsewhere it is another name for N, K or R.
+bool within_curve(const Target& target, const CurveTerm& term) {
+    if (!has_shape(term.kind)) { return true; }
+    const double hump_s =
+        term.kind == Kind::sinusoid ? sinusoid_peak / term.shape : gauss_markov_peak * term.shape;
+    const auto [first, last] = std::minmax_element(target.tau_s.begin(), target.tau_s.end());
+    return hump_s >= *first && hump_s <= *last;
+}
+
+// The best fit with one more term; without terms where there is none.
+Candidate with_term(const Target& target, const Candidate& before, Kind kind) {
+    constexpr double coarse = 1e-3;
+    constexpr double fine = 1e-10;
+    Candidate best;
+    for (const double shape : shapes_to_try(target, kind)) {
+        std::vector<CurveTerm> start = before.terms;
+        start.push_back(below_curve(target, kind, shape));
+        Candidate candidate = fitted_from(target, start, coarse);
+        const bool inside =
+            std::ranges::all_of(candidate.terms, [&](const auto& t) { return within_curve(target, t); });
+        if (inside && candidate.sum < best.sum) { best = std::move(candidate); }
+    }
+    if (best.terms.empty()) { return best; }
+    Candidate refined = fitted_from(target, best.terms, fine);
+    const bool inside =
+        std::ranges::all_of(refined.terms, [&](const auto& t) { return within_curve(target, t); });
+    return inside && refined.sum <= best.sum ? refined : best;
+}
+
+Candidate without_term(const Target& target, const Candidate& before, std::size_t term) {
+    std::vector<CurveTerm> start = before.terms;
+    start.erase(start.begin() + static_cast<std::ptrdiff_t>(term));
+    return fitted_from(target, start, 1e-10);
+}
+
+CurveResidual residual_of(const Target& target, const VectorXd& residuals) {
+    CurveResidual residual;
+    residual.rms_db = std::sqrt(residuals.squaredNorm() / static_cast<double>(residuals.size()));
+    Index worst = 0;
+    residuals.cwiseAbs().maxCoeff(&worst);
+    residual.worst_db = residuals[worst];
+    residual.worst_tau_s = target.tau_s[static_cast<std::size_t>(worst)];
+    return residual;
+}
+
+// Stepwise search for the terms that the curve calls for.
+class TermSearch {
+public:
+    TermSearch(const Target& target, double reading_sd_db)
+        : target_(target), scatter_(target, reading_sd_db) {}
+
+    void run() {
+        start();
+        do { remove_idle_terms(); } while (steps.size() < steps_max && add_term());
+    }
+
+    const Judged& result() const { return now_; }
+    const ResidualScatter& scatter() const { return scatter_; }
+    std::vector<CurveFitStep> steps;
+    std::vector<RejectedTerm> rejected;
+
+private:
+    void start() {
+        Candidate candidate;
+        for (const Kind kind : {Kind::N, Kind::B, Kind::K}) {
+            candidate.terms.push_back(below_curve(target_, kind, 0.0));
+        }
+        now_ = judged(scatter_, fitted_from(target_, candidate.terms, 1e-10));
+        note(CurveFitStep::Change::start, Kind::N);
+    }
+
+    bool has(Kind kind) const {
+        return std::ranges::any_of(now_.candidate.terms,
+                                   [&](const CurveTerm& term) { return term.kind == kind; });
+    }
+
+    // A term more must leave points over to judge it by.
+    bool room_for(Kind kind) const {
+        const std::size_t parameters = parameters_of(now_.candidate.terms) + parameters_of(kind);
+        return now_.candidate.terms.size() < terms_max &&
+               parameters + 2 <= static_cast<std::size_t>(target_.points());
+    }
+
+    bool add_term() {
+        Judged best;
+        Kind added = Kind::N;
+        rejected.clear();
+        for (const Kind kind :
+             {Kind::Q, Kind::N, Kind::B, Kind::K, Kind::R, Kind::gauss_markov, Kind::sinusoid}) {
+            if ((!has_shape(kind) && has(kind)) || !room_for(kind)) { continue; }
+            Judged with = judged(scatter_, with_term(target_, now_.candidate, kind));
+            if (with.candidate.terms.empty()) { continue; }
+            rejected.push_back({with.candidate.terms.back(), now_.criterion - with.criterion,
+                                residual_of(target_, with.candidate.residuals).rms_db});
+            if (with.criterion < best.criterion) {
+                best = std::move(with);
+                added = kind;
+            }
+        }
+        if (!(best.criterion < now_.criterion - margin_to_enter)) { return false; }
+        now_ = std::move(best);
+        note(CurveFitStep::Change::added, added);
+        return true;
+    }
+
+    void remove_idle_terms() {
+        while (now_.candidate.terms.size() > 1) {
+            Judged best;
+            Kind removed = Kind::N;
+            for (std::size_t i = 0; i < now_.candidate.terms.size(); ++i) {
+                Judged without = judged(scatter_, without_term(target_, now_.candidate, i));
+                if (without.criterion < best.criterion) {
+                    best = std::move(without);
+                    removed = now_.candidate.terms[i].kind;
+                }
+            }
+            if (!(best.criterion < now_.criterion + margin_to_stay)) { return; }
+            now_ = std::move(best);
+            note(CurveFitStep::Change::removed, removed);
+        }
+    }
+
+    void note(CurveFitStep::Change change, Kind kind) {
+        steps.push_back({change, kind, now_.candidate.terms, residual_of(target_, now_.candidate.residuals),
+                         now_.criterion});
+    }
+
+    const Target& target_;
+    ResidualScatter scatter_;
+    Judged now_;
+};
+
+// How the estimates of the parameters' logarithms depend on the curve in dB.
+MatrixXd estimators_of(const MatrixXd& sensitivities) {
+    return sensitivities.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+NoiseModel model_of(const std::vector<CurveTerm>& terms) {
+    NoiseModel model;
+    for (const CurveTerm& term : terms) {
+        switch (term.kind) {
+            case Kind::Q:
+                model.coefficients.Q_rad = term.size;
+                break;
+            case Kind::N:
+                model.coefficients.N_rad_per_sqrt_s = term.size;
+                break;
+            case Kind::B:
+                model.coefficients.B_rad_per_s = term.size;
+                break;
+            case Kind::K:
+                model.coefficients.K_rad_per_s_sqrt_s = term.size;
+                break;
+            case Kind::R:
+                model.coefficients.R_rad_per_s2 = term.size;
+                break;
+            case Kind::gauss_markov:
+                model.gauss_markov.push_back({term.size, term.shape});
+                break;
+            case Kind::sinusoid:
+                model.sinusoids.push_back({term.size, term.shape});
+                break;
+        }
+    }
+    return model;
+}
+
+// The square of an absent term at which the curve would lie as many standard deviations below as the
+// confidence says; its scatter is that of a curve that holds it.
+double upper_limit(const Target& target, const TermSearch& search, Kind kind, double sigmas) {
+    const Candidate& fit = search.result().candidate;
+    const MatrixXd covariance = search.scatter().covariance(search.result().smooth_sd_db);
+    CurveTerm term = below_curve(target, kind, 0.0);
+    const double scale = term.size * term.size;
+    double estimate = 0.0;
+    double square = 1e-6;  // in units of `scale`
+    for (int pass = 0; pass < 8; ++pass) {
+        std::vector<CurveTerm> terms = fit.terms;
+        term.size = std::sqrt(square * scale);
+        terms.push_back(term);
+        const auto column = static_cast<Index>(terms.size()) - 1;
+        MatrixXd slopes = sensitivities_db(target, terms);
+        slopes.col(column) /= square;  // by the square itself, not its logarithm
+        const Eigen::RowVectorXd estimator = estimators_of(slopes).row(column);
+        if (pass == 0) { estimate = std::max(0.0, estimator.dot(fit.residuals)); }
+        square = estimate + sigmas * std::sqrt((estimator * covariance * estimator.transpose()).value());
+    }
+    return std::sqrt(square * scale);
+}
+
+void report_coefficients(const Target& target, const TermSearch& search, CurveModelFit& fit) {
+    const double sigmas = normal_quantile(0.5 + fit.noise.confidence / 2.0);
+    const MatrixXd estimators = estimators_of(sensitivities_db(target, fit.terms));
+    const MatrixXd covariance =
+        estimators * search.scatter().covariance(fit.smooth_sd_db) * estimators.transpose();
+    const auto sd_of = [&](Index parameter) {
+        return std::sqrt(std::max(0.0, covariance(parameter, parameter)));
+    };
+    std::array<std::optional<Index>, noise_terms> at;
+    auto shape_at = static_cast<Index>(fit.terms.size());
+    for (std::size_t j = 0; j < fit.terms.size(); ++j) {
+        const CurveTerm& term = fit.terms[j];
+        const double size_sd = term.size * sd_of(static_cast<Index>(j)) / 2.0;
+        const double shape_sd = has_shape(term.kind) ? term.shape * sd_of(shape_at++) : 0.0;
+        if (term.kind == Kind::gauss_markov) {
+            fit.noise.gauss_markov.push_back({{term.size, term.shape}, size_sd, shape_sd});
+        } else if (term.kind == Kind::sinusoid) {
+            fit.noise.sinusoids.push_back({{term.size, term.shape}, size_sd, shape_sd});
+        } else {
+            at[static_cast<std::size_t>(term.kind)] = static_cast<Index>(j);
+            const double factor = std::exp(sigmas * size_sd / term.size);
+            fit.noise.terms[static_cast<std::size_t>(term.kind)] = {FittedCoefficient::State::identified,
+                                                                    term.size,
+                                                                    size_sd,
+                                                                    term.size / factor,
+                                                                    term.size * factor,
+                                                                    term.size * factor,
+                                                                    0.0};
+        }
+    }
+    for (const Kind kind : linear_kinds) {
+        const auto row = static_cast<std::size_t>(kind);
+        if (!at[row]) {
+            fit.noise.terms[row].upper = upper_limit(target, search, kind, sigmas);
+            continue;
+        }
+        for (std::size_t column = 0; column < noise_terms; ++column) {
+            if (!at[column]) { continue; }
+            const double product = sd_of(*at[row]) * sd_of(*at[column]);
+            if (product > 0.0) {
+                fit.noise.correlation[row][column] = covariance(*at[row], *at[column]) / product;
+            }
+        }
+    }
+}
+
+}  // namespace
+
+double CurveTerm::allan_variance(double tau_s) const {
+    switch (kind) {
+        case Kind::gauss_markov:
+            return GaussMarkov{size, shape}.allan_variance(tau_s);
+        case Kind::sinusoid:
+            return Sinusoid{size, shape}.allan_variance(tau_s);
+        case Kind::Q:
+            return NoiseCoefficients{size, 0.0, 0.0, 0.0, 0.0}.allan_variance(tau_s);
+        case Kind::N:
+            return NoiseCoefficients{0.0, size, 0.0, 0.0, 0.0}.allan_variance(tau_s);
+        case Kind::B:
+            return NoiseCoefficients{0.0, 0.0, size, 0.0, 0.0}.allan_variance(tau_s);
+        case Kind::K:
+            return NoiseCoefficients{0.0, 0.0, 0.0, size, 0.0}.allan_variance(tau_s);
+        case Kind::R:
+            return NoiseCoefficients{0.0, 0.0, 0.0, 0.0, size}.allan_variance(tau_s);
+    }
+    return 0.0;
+}
+
+std::string_view name_of(CurveTerm::Kind kind) {
+    constexpr std::array<std::string_view, 7> names = {"Q", "N", "B", "K", "R", "Gauss-Markov", "sinusoid"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+CurveModelFit fit_curve_model(const AllanCurve& curve, const CurveFitOptions& options) {
+    CurveModelFit fit;
+    fit.noise.method = FitMethod::curve;
+    fit.noise.confidence = options.confidence;
+    const Target target = target_of(curve);
+    fit.noise.points = target.tau_s.size();
+    if (target.tau_s.size() < curve_fit_points_min) { return fit; }
+    const double reading_sd_db = 2.0 * db_per_neper * options.reading_error;
+    TermSearch search(target, reading_sd_db);
+    search.run();
+    fit.terms = search.result().candidate.terms;
+    std::ranges::sort(fit.terms, [](const CurveTerm& a, const CurveTerm& b) {
+        return a.kind != b.kind ? a.kind < b.kind : a.shape < b.shape;
+    });
+    fit.smooth_sd_db = search.result().smooth_sd_db;
+    fit.residual = residual_of(target, search.result().candidate.residuals);
+    fit.steps = std::move(search.steps);
+    fit.rejected = std::move(search.rejected);
+    fit.noise.best = model_of(fit.terms);
+    fit.noise.sparse = fit.noise.best;
+    fit.noise.worst_residual_sd =
+        std::abs(fit.residual.worst_db) / std::hypot(reading_sd_db, fit.smooth_sd_db);
+    report_coefficients(target, search, fit);
+    return fit;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,55 @@
+#include "host/app/curve_run.hpp"
+
+#include <fmt/format.h>
+
+#include "analysis/noise/curve_report.hpp"
+#include "host/app/command.hpp"
+#include "host/app/curve_model_file.hpp"
+#include "host/app/curve_plot.hpp"
+#include "host/app/result_output.hpp"
+#include "host/formats/curve_csv.hpp"
+#include "host/formats/curve_json.hpp"
+#include "host/formats/curve_text.hpp"
+#include "host/formats/model_json.hpp"
+
+namespace gyrolog {
+namespace {
+
+void warn(Console& console, const char* command, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) {
+        console.err << program_and(command) << ": warning: " << warning << '\n';
+    }
+}
+
+Status write_results(Console& console, const char* command, const CurveRequest& request,
+                     const CurveReport& report) {
+    if (!request.json_path.empty()) {
+        GYROLOG_CHECK(write_text(console, request.json_path, curve_json(report)));
+    }
+    if (!request.plot_path.empty()) { GYROLOG_CHECK(write_curve_plot(report, request.plot_path)); }
+    if (!request.model_path.empty()) {
+        GYROLOG_TRY(const ModelOfCurves result, model_of_curves(report, request.rate_hz));
+        warn(console, command, result.warnings);
+        GYROLOG_CHECK(write_model(result.model, request.model_path));
+    }
+    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", curve_text(report))); }
+    for (const std::string* path : {&request.json_path, &request.plot_path, &request.model_path}) {
+        if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
+    }
+    return {};
+}
+
+}  // namespace
+
+ExitCode analyze_curve_to_files(Console& console, const char* command, const CurveRequest& request) {
+    auto curves = read_curve_csv(request.curve_path);
+    if (!curves.ok()) { return report_error(console, command, curves.error()); }
+    CurveFitOptions options;
+    options.confidence = request.confidence;
+    const CurveReport report = analyze_curves(std::move(curves).value(), options);
+    if (request.json_path == "-") { warn(console, command, report.warnings); }
+    const Status written = write_results(console, command, request, report);
+    return written.ok() ? ExitCode::ok : report_error(console, command, written.error());
+}
+
+}  // namespace gyrolog

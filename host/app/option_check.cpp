@@ -1,0 +1,49 @@
+#include "host/app/option_check.hpp"
+
+#include <charconv>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace gyrolog {
+namespace {
+
+std::optional<double> number_in(const std::string& text) {
+    const char* const end = text.data() + text.size();
+    double number = 0.0;
+    const auto [stop, problem] = std::from_chars(text.data(), end, number);
+    if (problem != std::errc() || stop != end) { return std::nullopt; }
+    return number;
+}
+
+CLI::Validator number_where(bool (*holds)(double, double, double), double lowest, double highest,
+                            const std::string& demand) {
+    return {[=](const std::string& text) -> std::string {
+                const auto number = number_in(text);
+                if (!number) { return fmt::format("'{}' is no number", text); }
+                return holds(*number, lowest, highest) ? "" : fmt::format("{} {}", text, demand);
+            },
+            ""};
+}
+
+}  // namespace
+
+CLI::Validator number_from_to(double lowest, double highest, const std::string& unit) {
+    return number_where(
+        [](double x, double lo, double hi) { return x >= lo && x <= hi; }, lowest, highest,
+        fmt::format("must be from {:.10g} to {:.10g}{}{}", lowest, highest, unit.empty() ? "" : " ", unit));
+}
+
+CLI::Validator positive_number() {
+    return number_where([](double x, double, double) { return x > 0.0; }, 0.0, 0.0, "must be more than 0");
+}
+
+CLI::Validator png_file() {
+    return {[](const std::string& path) -> std::string {
+                if (path.ends_with(".png") || path.ends_with(".PNG")) { return ""; }
+                return fmt::format("'{}' does not end in .png, and figures are PNG only", path);
+            },
+            ""};
+}
+
+}  // namespace gyrolog

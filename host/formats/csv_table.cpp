@@ -1,0 +1,157 @@
+#include "host/formats/csv_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "host/formats/text_file.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+Error malformed(std::string message) { return {ErrorCode::malformed, std::move(message)}; }
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_blank(text.front())) { text.remove_prefix(1); }
+    while (!text.empty() && is_blank(text.back())) { text.remove_suffix(1); }
+    return text;
+}
+
+// Files that are no comma-separated UTF-8 have names for their columns that would puzzle more than help.
+Status check_encoding(std::string_view header) {
+    if (header.starts_with("\xFF\xFE") || header.starts_with("\xFE\xFF")) {
+        return malformed("the text is UTF-16: save it as UTF-8 or ASCII");
+    }
+    if (header.find('\0') != std::string_view::npos) {
+        return malformed("line 1 holds zero bytes: not a text file, or UTF-16; save it as UTF-8 or ASCII");
+    }
+    if (header.find(',') != std::string_view::npos) { return {}; }
+    for (const auto& [separator, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}}) {
+        if (trimmed(header).find(separator) != std::string_view::npos) {
+            return malformed(
+                fmt::format("line 1: the columns are separated by {}: separate them by commas, with a point "
+                            "in the numbers",
+                            name));
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Status CsvTable::feed(std::string_view piece) {
+    while (!piece.empty()) {
+        const std::size_t end = piece.find('\n');
+        if (end == std::string_view::npos) {
+            rest_.append(piece);
+            return {};
+        }
+        if (rest_.empty()) {
+            GYROLOG_CHECK(line(piece.substr(0, end)));
+        } else {
+            rest_.append(piece.substr(0, end));
+            GYROLOG_CHECK(line(rest_));
+            rest_.clear();
+        }
+        piece.remove_prefix(end + 1);
+    }
+    return {};
+}
+
+Status CsvTable::finish() {
+    if (!rest_.empty()) { GYROLOG_CHECK(line(rest_)); }
+    if (columns_.empty()) { return malformed("empty: line 1 must name the columns, such as " + example_); }
+    return {};
+}
+
+Status CsvTable::line(std::string_view text) {
+    ++number_;
+    if (!text.empty() && text.back() == '\r') { text.remove_suffix(1); }
+    if (number_ == 1) { return header(text); }
+    // In a table of one column an empty line is an empty field.
+    if (text.empty() && columns_.size() > 1) { return {}; }
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+        if (c > 0) {
+            if (at == end) { return wrong_count(text); }
+            ++at;  // the comma
+        }
+        GYROLOG_CHECK(field(columns_[c], at, end));
+    }
+    return at == end ? Status() : wrong_count(text);
+}
+
+// Reads one field and leaves `at` on the comma after it, or the end of the line.
+Status CsvTable::field(CsvTableColumn& column, const char*& at, const char* end) const {
+    if (!column.used) {
+        at = std::find(at, end, ',');
+        return {};
+    }
+    const char* const begin = at;
+    while (at != end && is_blank(*at)) { ++at; }
+    double value = missing;
+    if (at != end && *at != ',') {
+        if (*at == '+' && end - at > 1 && at[1] != '-') { ++at; }
+        const auto [stop, problem] = std::from_chars(at, end, value);
+        at = stop;
+        while (at != end && is_blank(*at)) { ++at; }
+        if (problem != std::errc() || (at != end && *at != ',') || std::isinf(value)) {
+            return malformed(place(column) + "'" + std::string(begin, std::find(begin, end, ',')) +
+                             "' is no number; leave the field empty where a value is missing");
+        }
+    }
+    if (std::isnan(value)) {
+        if (!column.mend_if_empty.empty()) { return malformed(place(column) + column.mend_if_empty); }
+    } else if (value < column.lowest || value > column.highest) {
+        return malformed(fmt::format("{}{} is not between {:g} and {:g}", place(column), value, column.lowest,
+                                     column.highest));
+    }
+    column.values.push_back(value);
+    return {};
+}
+
+Status CsvTable::header(std::string_view text) {
+    GYROLOG_CHECK(check_encoding(text));
+    if (text.starts_with("\xEF\xBB\xBF")) { text.remove_prefix(3); }
+    while (true) {
+        const std::size_t comma = text.find(',');
+        const std::string name(trimmed(text.substr(0, comma)));
+        for (const CsvTableColumn& column : columns_) {
+            if (column.header == name) { return malformed("line 1: column '" + name + "' appears twice"); }
+        }
+        CsvTableColumn column;
+        column.header = name;
+        columns_.push_back(std::move(column));
+        if (comma == std::string_view::npos) { break; }
+        text.remove_prefix(comma + 1);
+    }
+    return rule_(columns_);
+}
+
+Status CsvTable::wrong_count(std::string_view text) const {
+    const auto fields = std::count(text.begin(), text.end(), ',') + 1;
+    return malformed("line " + std::to_string(number_) + ": " + std::to_string(fields) +
+                     " fields where line 1 names " + std::to_string(columns_.size()));
+}
+
+std::string CsvTable::place(const CsvTableColumn& column) const {
+    return "line " + std::to_string(number_) + ", column '" + column.header + "': ";
+}
+
+Status read_csv_file(CsvTable& table, const std::string& path) {
+    GYROLOG_TRY(TextReader reader, TextReader::open(path));
+    while (true) {
+        GYROLOG_TRY(const std::string_view piece, reader.read());
+        if (piece.empty()) { return table.finish(); }
+        GYROLOG_CHECK(table.feed(piece));
+    }
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,141 @@
+#include "host/formats/curve_csv.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "host/formats/csv_table.hpp"
+
+namespace gyrolog {
+namespace {
+
+// Wide enough for any sensor and narrow enough that squares stay finite.
+constexpr double smallest = 1e-15;
+constexpr double largest = 1e15;
+
+Error malformed(std::string message) { return {ErrorCode::malformed, std::move(message)}; }
+
+struct CurveUnit {
+    std::string_view ending;
+    double rad_per_s;
+};
+
+constexpr std::array curve_units = {
+    CurveUnit{"_dps", rad_per_deg},
+    CurveUnit{"_deg_per_s", rad_per_deg},
+    CurveUnit{"_deg_per_h", rad_per_deg / 3600.0},
+    CurveUnit{"_rad_s", 1.0},
+};
+
+struct Deviation {
+    std::string name;
+    const CurveUnit* unit;
+};
+
+std::optional<Deviation> deviation_of(std::string_view header) {
+    for (const CurveUnit& unit : curve_units) {
+        if (header.size() > unit.ending.size() && header.ends_with(unit.ending)) {
+            return Deviation{std::string(header.substr(0, header.size() - unit.ending.size())), &unit};
+        }
+    }
+    return std::nullopt;
+}
+
+Status judge_header(std::vector<CsvTableColumn>& columns) {
+    constexpr const char* example = "such as tau_s,x_dps,y_dps (or _deg_per_h, _rad_s)";
+    bool tau = false;
+    std::vector<std::string> names;
+    for (CsvTableColumn& column : columns) {
+        const auto deviation = deviation_of(column.header);
+        if (column.header == "tau_s") {
+            tau = true;
+            column.mend_if_empty = "no averaging time";
+        } else if (!deviation) {
+            continue;
+        } else if (std::ranges::find(names, deviation->name) != names.end()) {
+            return malformed("line 1: curve '" + deviation->name + "' appears twice, in different units");
+        } else {
+            names.push_back(deviation->name);
+        }
+        column.used = true;
+        column.lowest = smallest;
+        column.highest = largest;
+    }
+    if (!tau) {
+        return malformed(fmt::format("line 1: no column tau_s; it must name the columns, {}", example));
+    }
+    if (names.empty()) {
+        return malformed(
+            fmt::format("line 1: no deviation; it must name the columns with their units, {}", example));
+    }
+    return {};
+}
+
+AllanCurve curve_of(const std::vector<double>& tau_s, const std::vector<double>& values, double rad_per_s) {
+    AllanCurve curve;
+    for (std::size_t i = 0; i < tau_s.size(); ++i) {
+        if (std::isnan(values[i])) { continue; }
+        AllanPoint point;
+        point.tau_s = tau_s[i];
+        point.deviation = values[i] * rad_per_s;
+        point.lo = point.deviation;
+        point.hi = point.deviation;
+        curve.points.push_back(point);
+    }
+    std::ranges::stable_sort(curve.points, {}, &AllanPoint::tau_s);
+    return curve;
+}
+
+Result<PrintedCurves> curves_of(std::vector<CsvTableColumn>& columns, std::string name) {
+    PrintedCurves curves;
+    curves.name = std::move(name);
+    const auto tau = std::ranges::find(columns, "tau_s", &CsvTableColumn::header);
+    std::string ignored;
+    for (CsvTableColumn& column : columns) {
+        if (!column.used) { ignored += (ignored.empty() ? "" : ", ") + column.header; }
+        const auto deviation = deviation_of(column.header);
+        if (!deviation) { continue; }
+        if (curves.curves.empty()) {
+            const bool radians = deviation->unit->rad_per_s == 1.0;
+            curves.unit = radians ? RateUnit{"rad/s", 1.0} : RateUnit{"dps", deg_per_rad};
+        }
+        AllanCurve curve = curve_of(tau->values, column.values, deviation->unit->rad_per_s);
+        if (curve.points.size() < curve_fit_points_min) {
+            return malformed(fmt::format("column '{}': {} points; a model needs {} at least", column.header,
+                                         curve.points.size(), curve_fit_points_min));
+        }
+        curves.curves.push_back({deviation->name, std::move(curve)});
+    }
+    if (!ignored.empty()) {
+        curves.warnings.push_back("ignored columns of unknown name or unit: " + ignored);
+    }
+    return curves;
+}
+
+CsvTable curve_table() { return {"tau_s,x_dps,y_dps,z_dps", judge_header}; }
+
+Result<PrintedCurves> read_file(const std::string& path) {
+    CsvTable table = curve_table();
+    GYROLOG_CHECK(read_csv_file(table, path));
+    return curves_of(table.columns(), path.substr(path.find_last_of('/') + 1));
+}
+
+}  // namespace
+
+Result<PrintedCurves> read_curve_csv(const std::string& path) {
+    Result<PrintedCurves> curves = read_file(path);
+    if (!curves.ok()) { return in_context("read '" + path + "'", std::move(curves).error()); }
+    return curves;
+}
+
+Result<PrintedCurves> parse_curve_csv(std::string_view text, std::string name) {
+    CsvTable table = curve_table();
+    GYROLOG_CHECK(table.feed(text));
+    GYROLOG_CHECK(table.finish());
+    return curves_of(table.columns(), std::move(name));
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,152 @@
+#include "host/formats/noise_text.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/formats/noise_unit.hpp"
+#include "host/formats/uncertain_number.hpp"
+
+namespace gyrolog {
+namespace {
+
+using State = FittedCoefficient::State;
+
+// Degrees per second for each unit of the column; 0: no angular rate.
+double degrees_of(const RateUnit& unit) {
+    if (unit.name == "lsb") { return 0.0; }
+    return unit.name == "rad/s" ? deg_per_rad : unit.per_column_unit;
+}
+
+using Cell = std::function<std::string(const FitOfColumn&)>;
+
+TextRow row_of(std::span<const FitOfColumn> columns, std::string label, std::string unit, const Cell& cell) {
+    TextRow row{std::move(label), std::move(unit), {}};
+    for (const FitOfColumn& column : columns) { row.cells.push_back(cell(column)); }
+    return row;
+}
+
+std::string coefficient_text(const FittedCoefficient& fitted, double scale) {
+    if (fitted.state == State::not_identifiable) { return fmt::format("< {:.2g}", fitted.upper * scale); }
+    return with_uncertainty(fitted.value * scale, fitted.sd * scale);
+}
+
+std::string slope_text(const std::optional<SlopeReading::Value>& value, double scale) {
+    if (!value) { return "-"; }
+    return fmt::format("{:.3g} at {:.3g} s", value->coefficient * scale, value->tau_s);
+}
+
+// A row where any column has a bound.
+void add_bound_row(std::vector<TextRow>& rows, std::span<const FitOfColumn> columns, NoiseTerm term,
+                   double scale) {
+    const bool any =
+        std::ranges::any_of(columns, [&](const FitOfColumn& c) { return (*c.fit)[term].bound > 0.0; });
+    if (!any) { return; }
+    rows.push_back(row_of(columns, "   ± at best", "", [=](const FitOfColumn& column) {
+        const FittedCoefficient& fitted = (*column.fit)[term];
+        return fitted.state == State::identified && fitted.bound > 0.0
+                   ? fmt::format("{:.2g}", fitted.bound * scale)
+                   : std::string("-");
+    }));
+}
+
+// The i-th of the terms that a column may or may not have.
+template <typename Terms, typename Text>
+void add_optional_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> columns, const char* label,
+                       const std::string& unit, Terms terms, Text text) {
+    std::size_t most = 0;
+    for (const FitOfColumn& column : columns) { most = std::max(most, terms(column).size()); }
+    for (std::size_t i = 0; i < most; ++i) {
+        rows.push_back(row_of(columns, label, unit, [&](const FitOfColumn& column) {
+            return i < terms(column).size() ? text(terms(column)[i]) : std::string("-");
+        }));
+    }
+}
+
+void add_shaped_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> columns, const RateUnit& unit) {
+    const double scale = unit.per_column_unit;
+    const auto processes = [](const FitOfColumn& c) -> const auto& { return c.fit->gauss_markov; };
+    const auto lines = [](const FitOfColumn& c) -> const auto& { return c.fit->sinusoids; };
+    add_optional_rows(rows, columns, "Gauss-Markov sigma", unit.name, processes,
+                      [&](const FittedGaussMarkov& g) {
+                          return with_uncertainty(g.value.sigma_rad_per_s * scale, g.sigma_sd * scale);
+                      });
+    add_optional_rows(rows, columns, "   correlation time", "s", processes, [](const FittedGaussMarkov& g) {
+        return with_uncertainty(g.value.correlation_s, g.correlation_sd_s);
+    });
+    add_optional_rows(rows, columns, "sinusoid amplitude", unit.name, lines, [&](const FittedSinusoid& s) {
+        return with_uncertainty(s.value.amplitude_rad_per_s * scale, s.amplitude_sd * scale);
+    });
+    add_optional_rows(rows, columns, "   frequency", "Hz", lines, [](const FittedSinusoid& s) {
+        return with_uncertainty(s.value.frequency_hz, s.frequency_sd_hz);
+    });
+}
+
+}  // namespace
+
+std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const RateUnit& unit) {
+    const double scale = unit.per_column_unit;
+    const double degrees = degrees_of(unit);
+    std::vector<TextRow> rows;
+    const auto add = [&](const char* label, const std::string& unit_name, NoiseTerm term, double by) {
+        rows.push_back(row_of(columns, label, unit_name, [=](const FitOfColumn& column) {
+            return coefficient_text((*column.fit)[term], by);
+        }));
+    };
+    add("N  angle random walk", noise_unit(NoiseTerm::N, unit), NoiseTerm::N, scale);
+    add_bound_row(rows, columns, NoiseTerm::N, scale);
+    if (degrees > 0.0) { add("", "deg/sqrt(h)", NoiseTerm::N, degrees * 60.0); }
+    add("B  bias instability", unit.name, NoiseTerm::B, scale);
+    add_bound_row(rows, columns, NoiseTerm::B, scale);
+    if (degrees > 0.0) { add("", "deg/h", NoiseTerm::B, degrees * 3600.0); }
+    add("K  rate random walk", noise_unit(NoiseTerm::K, unit), NoiseTerm::K, scale);
+    add_bound_row(rows, columns, NoiseTerm::K, scale);
+    add("Q  quantisation", noise_unit(NoiseTerm::Q, unit), NoiseTerm::Q, scale);
+    add("R  rate ramp", noise_unit(NoiseTerm::R, unit), NoiseTerm::R, scale);
+    add_shaped_rows(rows, columns, unit);
+    const auto add_slope = [&](const char* label, NoiseTerm term, auto member) {
+        rows.push_back(row_of(columns, label, noise_unit(term, unit), [=](const FitOfColumn& column) {
+            return slope_text(column.slopes->*member, scale);
+        }));
+    };
+    add_slope("by slope: N", NoiseTerm::N, &SlopeReading::N);
+    add_slope("          B", NoiseTerm::B, &SlopeReading::B);
+    add_slope("          K", NoiseTerm::K, &SlopeReading::K);
+    return rows;
+}
+
+std::vector<TextRow> si_rows(std::span<const FitOfColumn> columns, const RateUnit& unit) {
+    std::vector<TextRow> rows;
+    const double degrees = degrees_of(unit);
+    if (!(degrees > 0.0) || unit.name == "rad/s") { return rows; }
+    const double scale = degrees * rad_per_deg;
+    const auto add = [&](const char* label, const char* unit_name, NoiseTerm term) {
+        rows.push_back(row_of(columns, label, unit_name, [=](const FitOfColumn& column) {
+            const FittedCoefficient& fitted = (*column.fit)[term];
+            const bool known = fitted.state == State::identified;
+            return fmt::format("{}{:.4g}", known ? "" : "< ", (known ? fitted.value : fitted.upper) * scale);
+        }));
+    };
+    add("N", "rad/s/sqrt(Hz)", NoiseTerm::N);
+    add("B", "rad/s", NoiseTerm::B);
+    add("K", "rad/s*sqrt(Hz)", NoiseTerm::K);
+    return rows;
+}
+
+std::string term_text(const CurveTerm& term, const RateUnit& unit) {
+    const double size = term.size * unit.per_column_unit;
+    switch (term.kind) {
+        case CurveTerm::Kind::gauss_markov:
+            return fmt::format("Gauss-Markov {:.3g} {}, T {}", size, unit.name, duration_text(term.shape));
+        case CurveTerm::Kind::sinusoid:
+            return fmt::format("sinusoid {:.3g} {}, period {}", size, unit.name,
+                               duration_text(1.0 / term.shape));
+        default:
+            return fmt::format("{} {:.3g} {}", name_of(term.kind), size,
+                               noise_unit(static_cast<NoiseTerm>(term.kind), unit));
+    }
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,30 @@
+// Noise models for people: rows of a table with a column for each fit, and terms in a line.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/noise/analyze.hpp"
+#include "analysis/noise/curve_model.hpp"
+#include "analysis/noise/slope_reading.hpp"
+#include "host/formats/text_table.hpp"
+
+namespace gyrolog {
+
+struct FitOfColumn {
+    const NoiseFit* fit;
+    const SlopeReading* slopes;
+};
+
+// N, B, K, Q, R in the unit given, N also per root hour and B per hour; the least uncertainty possible where
+// it is known; Gauss-Markov noise and sinusoids where a fit has some; the readings of slopes.
+std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const RateUnit& unit);
+
+// N, B and K in rad and s, the units of simulators and filters; no row for a unit that is none of angle.
+std::vector<TextRow> si_rows(std::span<const FitOfColumn> columns, const RateUnit& unit);
+
+// "N 0.0178 dps/sqrt(Hz)", "Gauss-Markov 0.0026 dps, T 7.1 s", "sinusoid 0.0065 dps, period 5.7 h"
+std::string term_text(const CurveTerm& term, const RateUnit& unit);
+
+}  // namespace gyrolog

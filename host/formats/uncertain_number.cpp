@@ -1,0 +1,42 @@
+#include "host/formats/uncertain_number.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace gyrolog {
+namespace {
+
+int decade_of(double x) { return static_cast<int>(std::floor(std::log10(x))); }
+
+// To a multiple of 10^-decimals; never a negative zero.
+std::string rounded(double x, int decimals) {
+    const double step = std::pow(10.0, -decimals);
+    const double multiple = decimals < 0 ? std::round(x / step) * step : x;
+    const std::string text = fmt::format("{:.{}f}", multiple, std::max(decimals, 0));
+    const bool zero = text.find_first_of("123456789") == std::string::npos;
+    return zero && text.front() == '-' ? text.substr(1) : text;
+}
+
+}  // namespace
+
+std::string with_uncertainty(double value, double uncertainty) {
+    if (!(uncertainty > 0.0)) { return fmt::format("{:.6g}", value); }
+    const double larger = std::max(std::abs(value), uncertainty);
+    const int exponent = larger < 1e-3 || larger >= 1e6 ? decade_of(larger) : 0;
+    const double unit = std::pow(10.0, exponent);
+    constexpr int digits_after_first = 1;
+    const int decimals = std::min(digits_after_first - decade_of(uncertainty / unit), 9);
+    const std::string text = rounded(value / unit, decimals) + " ± " + rounded(uncertainty / unit, decimals);
+    return exponent == 0 ? text : fmt::format("({})e{:+03d}", text, exponent);
+}
+
+std::string duration_text(double seconds) {
+    if (seconds < 1.0) { return fmt::format("{:.3g} ms", seconds * 1e3); }
+    if (seconds < 120.0) { return fmt::format("{:.3g} s", seconds); }
+    if (seconds < 7200.0) { return fmt::format("{:.3g} min", seconds / 60.0); }
+    return fmt::format("{:.3g} h", seconds / 3600.0);
+}
+
+}  // namespace gyrolog

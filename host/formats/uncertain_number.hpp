@@ -1,0 +1,15 @@
+// Numbers as people read them.
+#pragma once
+
+#include <string>
+
+namespace gyrolog {
+
+// "0.01314 ± 0.00002", or "(1.579 ± 0.010)e-04" for very small and large values: the uncertainty to two
+// digits, the value to the same place. An uncertainty of 0 is not written.
+std::string with_uncertainty(double value, double uncertainty);
+
+// "12.6 ms", "79.4 s", "3.8 min", "2.78 h": three digits.
+std::string duration_text(double seconds);
+
+}  // namespace gyrolog
