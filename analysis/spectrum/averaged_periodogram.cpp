@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <complex>
 #include <memory>
@@ -25,6 +26,10 @@ constexpr std::size_t lowest_bin_of_short_pieces = 16;
 constexpr double enough_of_the_samples = 0.9;
 constexpr std::size_t shortening = 4;
 constexpr std::size_t shortest_added_piece = 64;
+// Fewer pieces do not tell how even the power is.
+constexpr std::size_t least_pieces_for_evenness = 8;
+// Nearer to 1 it may be chance.
+constexpr double certainly_uneven = 0.8;
 
 // The transform is fast for multiples of 4 without large prime factors.
 std::size_t fast_length_up_to(std::size_t samples) {
@@ -38,10 +43,19 @@ std::size_t fast_length_up_to(std::size_t samples) {
     return 4;
 }
 
+std::size_t octave_of(std::size_t bin) { return static_cast<std::size_t>(std::bit_width(bin)) - 1; }
+
+// Power of the pieces in one octave.
+struct OctavePower {
+    double sum = 0.0;
+    double squares = 0.0;
+};
+
 // Averages the periodograms of one length while samples stream by.
 class Welch {
 public:
-    explicit Welch(std::size_t length) : taper_(length), tapered_(length), sums_(length / 2 + 1) {
+    explicit Welch(std::size_t length)
+        : taper_(length), tapered_(length), sums_(length / 2 + 1), octaves_(octave_of(length / 2) + 1) {
         fft_.SetFlag(Eigen::FFT<double>::HalfSpectrum);
         for (std::size_t t = 0; t < length; ++t) {
             const double sine = std::sin(pi * static_cast<double>(t) / static_cast<double>(length));
@@ -72,20 +86,51 @@ private:
     void take_piece() {
         for (std::size_t t = 0; t < taper_.size(); ++t) { tapered_[t] = taper_[t] * waiting_[t]; }
         fft_.fwd(spectrum_, tapered_);
-        for (std::size_t k = 0; k < sums_.size(); ++k) { sums_[k] += std::norm(spectrum_[k]); }
+        for (std::size_t octave = 0; octave < octaves_.size(); ++octave) { take_octave(octave); }
         ++pieces_;
         overlaps_ += follows_piece_ ? 1 : 0;
         follows_piece_ = true;
         waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(taper_.size() / 2));
     }
 
+    void take_octave(std::size_t octave) {
+        double power = 0.0;
+        const std::size_t end = std::min(std::size_t{2} << octave, sums_.size());
+        for (std::size_t k = std::size_t{1} << octave; k < end; ++k) {
+            const double density = std::norm(spectrum_[k]);
+            sums_[k] += density;
+            power += density;
+        }
+        octaves_[octave].sum += power;
+        octaves_[octave].squares += power * power;
+    }
+
+    std::vector<double> evenness() const;
+
     std::vector<double> taper_, waiting_, tapered_, sums_;
+    std::vector<OctavePower> octaves_;
     std::vector<std::complex<double>> spectrum_;
     Eigen::FFT<double> fft_;
     std::size_t pieces_ = 0;
     std::size_t overlaps_ = 0;
     bool follows_piece_ = false;
 };
+
+// Pieces of even noise scatter too, by the number of bins in the octave.
+std::vector<double> Welch::evenness() const {
+    std::vector<double> shares(octaves_.size(), 1.0);
+    if (pieces_ < least_pieces_for_evenness) { return shares; }
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        if (octaves_[i].squares <= 0.0) { continue; }
+        const auto bins =
+            static_cast<double>(std::min(std::size_t{2} << i, sums_.size()) - (std::size_t{1} << i));
+        const double own_scatter = (1.0 + 2.0 * (bin_correlation[1] + bin_correlation[2])) / bins;
+        const double share = (1.0 + own_scatter) * octaves_[i].sum * octaves_[i].sum /
+                             (static_cast<double>(pieces_) * octaves_[i].squares);
+        if (share < certainly_uneven) { shares[i] = share; }
+    }
+    return shares;
+}
 
 AveragedPeriodogram Welch::result(double rate_hz, double scale, bool decimated, bool last,
                                   bool longest) const {
@@ -98,6 +143,7 @@ AveragedPeriodogram Welch::result(double rate_hz, double scale, bool decimated, 
     result.length = n;
     result.pieces = pieces_;
     result.overlaps = overlaps_;
+    result.evenness = evenness();
     result.valid_begin = lowest_bin;
     // Bin n / 2 is real, and the taper ties it to the one before it.
     result.valid_end = decimated ? bins_of(Decimator::usable) : n / 2 - 1;
@@ -157,7 +203,17 @@ public:
         for (std::size_t i = welches_.size(); i-- > 0;) {
             AveragedPeriodogram result =
                 welches_[i].welch.result(rate_hz, scale, decimated, next_ == nullptr, i == 0);
-            if (result.pieces > 0 && result.begin < result.end) { results.push_back(std::move(result)); }
+            if (result.pieces == 0 || result.begin >= result.end) { continue; }
+            // What few long pieces do not tell, the shorter ones before them do.
+            if (result.pieces < least_pieces_for_evenness && i + 1 < welches_.size() && !results.empty()) {
+                const AveragedPeriodogram& shorter = results.back();
+                for (std::size_t octave = 0; octave < result.evenness.size(); ++octave) {
+                    const double f_hz = result.f_hz(std::size_t{1} << octave);
+                    result.evenness[octave] =
+                        shorter.evenness_at(static_cast<std::size_t>(f_hz / shorter.width_hz()));
+                }
+            }
+            results.push_back(std::move(result));
         }
         if (next_ != nullptr) { next_->collect(rate_hz / Decimator::factor, scale, true, results); }
     }
@@ -220,6 +276,11 @@ double overlap_correlation(std::size_t apart) {
 }
 
 }  // namespace
+
+double AveragedPeriodogram::evenness_at(std::size_t bin) const {
+    if (bin == 0 || evenness.empty()) { return 1.0; }
+    return evenness[std::min(octave_of(bin), evenness.size() - 1)];
+}
 
 double AveragedPeriodogram::degrees_of_freedom(std::size_t bins) const {
     static const auto overlapped = [] {

@@ -28,11 +28,16 @@ struct AveragedPeriodogram {
     std::size_t valid_begin = 0, valid_end = 0;
     std::size_t begin = 0, end = 0;
     std::vector<double> density;  // of bins 0 ... valid_end - 1, unit of the column squared, per Hz
+    // By the octave of the frequency, bins 2^i ... 2^(i+1) - 1: the share of the record that its power there
+    // comes from; 1 for noise that is the same throughout, 1/10 where all is in a tenth of the time.
+    std::vector<double> evenness;
 
     double width_hz() const { return rate_hz / static_cast<double>(length); }
     double f_hz(std::size_t bin) const { return static_cast<double>(bin) * width_hz(); }
-    // Of the mean of so many neighbouring bins, under a spectrum that is flat across them: 2 mean^2 /
-    // variance, with the correlation that taper and overlap bring. Two for a single bin of a single piece.
+    double evenness_at(std::size_t bin) const;  // 1 for bin 0
+    // Of the mean of so many neighbouring bins of even noise, under a spectrum that is flat across them: 2
+    // mean^2 / variance, with the correlation that taper and overlap bring. Two for a single bin of a single
+    // piece.
     double degrees_of_freedom(std::size_t bins) const;
 };
 

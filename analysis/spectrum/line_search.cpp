@@ -70,7 +70,11 @@ private:
         return (total_[end] - total_[first]) / static_cast<double>(end - first);
     }
     Floor floor_beside(std::size_t first, std::size_t end) const;
-    double shape_of(const Floor& floor) const { return floor.bins * shape_per_bin_; }
+    double shape_of(const Floor& floor, double evenness) const {
+        return std::max(floor.bins * shape_per_bin_ * evenness, 1.0);
+    }
+    double log_probability(std::size_t width_index, double evenness, double reference_shape,
+                           double ratio) const;
     void mask_outliers();
     void sum_up();
 
@@ -177,10 +181,22 @@ Floor Field::floor_beside(std::size_t first, std::size_t end) const {
             4.0 / (1.0 / left.bins + 1.0 / right.bins)};
 }
 
+// Uneven noise is as if there were fewer pieces, and less than one: bins that move together.
+double Field::log_probability(std::size_t width_index, double evenness, double reference_shape,
+                              double ratio) const {
+    if (evenness == 1.0) { return log_tail_of_ratio(parts_[width_index], reference_shape, ratio); }
+    const double even_shape = periodogram_->degrees_of_freedom(widths[width_index]) / 2.0;
+    const double shape = std::max(even_shape * evenness, std::min(even_shape, 1.0));
+    const std::array<GammaPart, 1> part{{{1.0 / shape, shape}}};
+    return log_tail_of_ratio(part, reference_shape, ratio);
+}
+
 std::optional<Field::Find> Field::least_probable(double lo_hz, double hi_hz) const {
     constexpr double worth_a_look = 3.0;  // standard deviations
     std::optional<Find> best;
     std::array<double, widths.size()> limit{};
+    // No place is less probable than one of its width with a larger ratio to a better known floor.
+    std::array<double, widths.size()> best_ratio{}, best_shape{};
     for (std::size_t i = 0; i < widths.size(); ++i) {
         limit[i] = 1.0 + worth_a_look * std::sqrt(2.0 / periodogram_->degrees_of_freedom(widths[i]));
     }
@@ -190,9 +206,16 @@ std::optional<Field::Find> Field::least_probable(double lo_hz, double hi_hz) con
         const Floor floor = floor_beside(first, end);
         if (floor.density <= 0.0) { return; }
         const double ratio = mean(first, end) / floor.density;
+        const double evenness = periodogram_->evenness_at(first);
+        const double shape = shape_of(floor, evenness);
         if (ratio < limit[i]) { return; }
-        const double log_probability = log_tail_of_ratio(parts_[i], shape_of(floor), ratio);
-        if (!best || log_probability < best->log_probability) { best = Find{first, end, log_probability}; }
+        if (evenness == 1.0 && ratio <= best_ratio[i] && shape <= best_shape[i]) { return; }
+        const double probability = log_probability(i, evenness, shape, ratio);
+        if (evenness == 1.0 && ratio > best_ratio[i]) {
+            best_ratio[i] = ratio;
+            best_shape[i] = shape;
+        }
+        if (!best || probability < best->log_probability) { best = Find{first, end, probability}; }
     });
     return best;
 }
@@ -201,7 +224,12 @@ std::optional<Field::Find> Field::least_probable(double lo_hz, double hi_hz) con
 LineCandidate Field::candidate(const Find& find) const {
     const AveragedPeriodogram& p = *periodogram_;
     const Floor floor = floor_beside(find.first, find.end);
-    LineCandidate line{&p, find.first, find.end, floor.density, shape_of(floor), find.log_probability};
+    LineCandidate line{&p,
+                       find.first,
+                       find.end,
+                       floor.density,
+                       shape_of(floor, p.evenness_at(find.first)),
+                       find.log_probability};
     const std::size_t step = std::max<std::size_t>((find.end - find.first) / 4, 1);
     const std::size_t reach = reference_bins((find.first + find.end) / 2, find.end - find.first);
     const double limit = floor.density * (1.0 + 2.0 * std::sqrt(2.0 / p.degrees_of_freedom(step)));

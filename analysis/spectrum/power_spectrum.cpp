@@ -15,7 +15,11 @@ struct Band {
     std::size_t end = 0;
 
     std::size_t bins() const { return end - first; }
-    double dof() const { return periodogram->degrees_of_freedom(bins()); }
+    double dof() const {
+        const double even = periodogram->degrees_of_freedom(bins());
+        // All that an uneven record has may be one short stretch, but that is not nothing.
+        return std::max(even * periodogram->evenness_at(first), std::min(even, 2.0));
+    }
 };
 
 Band band_between(const AveragedPeriodogram& periodogram, double lo_hz, double hi_hz) {

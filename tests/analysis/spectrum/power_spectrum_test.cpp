@@ -191,6 +191,14 @@ TEST(PowerSpectrum, UsesShortSegmentsWhereTheyResolveEnough) {
     EXPECT_GT(last.dof, 0.8 * 2.0 * last.width_hz * 100'000.0 / rate_hz);
 }
 
+TEST(PowerSpectrum, KnowsLessOfNoiseThatComesInABurst) {
+    std::vector<double> x = test::white_noise(50'000, 11);
+    const double even = spectrum_of(x).points.back().dof;
+    for (std::size_t i = 20'000; i < 25'000; ++i) { x[i] *= 100.0; }
+    const double uneven = spectrum_of(x).points.back().dof;
+    EXPECT_NEAR(uneven / even, 0.1, 0.03);
+}
+
 TEST(PowerSpectrum, HoldsALineOnceWhereItGoesOverToDecimatedSamples) {
     std::vector<double> x = test::white_noise(long_record, 8);
     const double f_hz = 0.25 * rate_hz / Decimator::factor;

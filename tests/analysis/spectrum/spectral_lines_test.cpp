@@ -148,6 +148,17 @@ TEST(SpectralLines, OfLowFrequencyComeFromDecimatedSamples) {
     EXPECT_NEAR(lines[0].amplitude, 0.05, 4.0 * lines[0].amplitude_sd);
 }
 
+TEST(SpectralLines, AreNotSeenInNoiseThatComesInBursts) {
+    constexpr int records = 100;
+    int alarms = 0;
+    for (std::uint64_t seed = 0; seed < records; ++seed) {
+        std::vector<double> x = test::white_noise(10'000, 500 + seed);
+        for (std::size_t i = 4000; i < 4700; ++i) { x[i] *= 30.0; }
+        alarms += lines_of(x).empty() ? 0 : 1;
+    }
+    EXPECT_LE(alarms, 2);
+}
+
 TEST(SpectralLines, AreNotSeenInConstantOrVeryShortRecords) {
     EXPECT_TRUE(lines_of(std::vector<double>(5000, 3.0)).empty());
     EXPECT_TRUE(lines_of({}).empty());
