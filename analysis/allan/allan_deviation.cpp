@@ -20,7 +20,10 @@ std::vector<std::int64_t> powers_of_two(std::int64_t samples) {
 
 std::vector<std::int64_t> factors_of(const AllanOptions& options, std::int64_t longest) {
     std::vector<std::int64_t> factors = options.m;
-    if (factors.empty()) {
+    if (options.every_m) {
+        factors.resize(static_cast<std::size_t>(longest / 2));
+        std::iota(factors.begin(), factors.end(), 1);
+    } else if (factors.empty()) {
         factors = rule_of(options.kind).halving ? powers_of_two(longest) : averaging_factors(longest);
     }
     std::ranges::sort(factors);
@@ -81,7 +84,8 @@ AllanCurve allan_deviation(const Column& column, std::span<const Segment> segmen
     curve.points = deviations(signal, rule, factors_of(options, longest), scale, rate_hz, options.threads);
     if (curve.points.empty()) { return curve; }
 
-    const bool whole_curve = options.kind == DeviationKind::overlapping && options.m.empty();
+    const bool whole_curve =
+        options.kind == DeviationKind::overlapping && options.m.empty() && !options.every_m;
     const std::vector<AllanPoint> octaves =
         whole_curve ? octaves_of(curve.points)
                     : deviations(signal, rule_of(DeviationKind::overlapping), powers_of_two(longest), scale,

@@ -35,6 +35,8 @@ struct AllanOptions {
     double confidence = 0.683;      // of the two-sided interval, between 0 and 1
     std::vector<std::int64_t> m{};  // averaging factors; empty: averaging_factors() of the longest segment,
                                     // or the powers of two for standard_halving
+    bool every_m = false;           // instead of those, all from 1 to half the longest segment; the time
+                                    // taken grows with the square of the record's length
     unsigned threads = 1;           // the result is the same bits for any number
     StageObserver on_stage{};       // of "integrate", "deviation", "intervals"
 };

@@ -24,7 +24,10 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
     if (request.convention == name_of(PhaseConvention::matlab)) {
         options.convention = PhaseConvention::matlab;
     }
-    if (!request.factors.empty()) { GYROLOG_TRY(options.m, parse_whole_numbers(request.factors)); }
+    options.every_m = request.factors == "all";
+    if (!options.every_m && !request.factors.empty()) {
+        GYROLOG_TRY(options.m, parse_whole_numbers(request.factors));
+    }
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     options.on_stage = request.on_stage;
     return options;

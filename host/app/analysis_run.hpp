@@ -19,7 +19,7 @@ struct AnalysisRequest {
     std::string model_path;
     std::string deviation = "overlapping";
     std::string convention = "sp1065";
-    std::string factors;  // "1,10,100"; empty: the default list
+    std::string factors;  // "1,10,100", or "all"; empty: the default list
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
     double confidence = 0.683;
