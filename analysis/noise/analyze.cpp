@@ -1,7 +1,15 @@
 #include "analysis/noise/analyze.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <iomanip>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include "analysis/noise/converter_step.hpp"
+#include "analysis/noise/likelihood_fit.hpp"
 
 namespace gyrolog {
 namespace {
@@ -14,25 +22,68 @@ RateUnit unit_of(const Column& column) {
     return {"dps", deg_per_rad};
 }
 
-AxisReport analyze_axis(const Column& column, const Recording& recording, const AnalysisOptions& options) {
-    AxisReport axis;
-    axis.axis = column.name.substr(1);
-    axis.curve = allan_deviation(column, recording.segments, recording.rate_hz, options);
-    // What the user picked selects what is shown, not what the coefficients are made of.
-    AllanCurve whole = axis.curve;
-    if (!options.m.empty() || options.kind != DeviationKind::overlapping) {
-        AnalysisOptions best = options;
-        best.m.clear();
-        best.kind = DeviationKind::overlapping;
-        whole = allan_deviation(column, recording.segments, recording.rate_hz, best);
+// An axis on its way: what its column is analysed as, and the curve that the fit starts from.
+struct Work {
+    const Column* column = nullptr;
+    Column without_outliers;  // empty unless robust
+    AllanCurve whole;         // overlapping, at the usual averaging factors
+    AxisReport report;
+};
+
+void find_curves(Work& work, const Recording& recording, const AnalysisOptions& options) {
+    if (options.robust) {
+        work.without_outliers = *work.column;
+        work.report.outliers = replace_outliers(work.without_outliers, recording.segments);
+        work.column = &work.without_outliers;
     }
-    const auto periodograms = averaged_periodograms(column, recording.segments, recording.rate_hz);
-    axis.spectrum = power_spectrum(periodograms, {.confidence = options.confidence});
-    axis.lines = find_lines(periodograms, column, recording.segments, recording.rate_hz);
-    axis.fit = fit_noise(whole, options.confidence);
-    axis.slopes = read_slopes(whole);
-    axis.bias = static_bias(column, recording.rate_hz, axis.fit.sparse);
-    return axis;
+    AxisReport& axis = work.report;
+    axis.axis = work.column->name.substr(1);
+    axis.curve = allan_deviation(*work.column, recording.segments, recording.rate_hz, options);
+    work.whole = axis.curve;
+    if (!options.m.empty() || options.every_m || options.kind != DeviationKind::overlapping) {
+        AllanOptions usual = options;
+        usual.m.clear();
+        usual.every_m = false;
+        usual.kind = DeviationKind::overlapping;
+        work.whole = allan_deviation(*work.column, recording.segments, recording.rate_hz, usual);
+    }
+    axis.slopes = read_slopes(work.whole);
+}
+
+void find_spectrum(Work& work, const Recording& recording, const AnalysisOptions& options) {
+    const auto periodograms = averaged_periodograms(*work.column, recording.segments, recording.rate_hz);
+    work.report.spectrum = power_spectrum(periodograms, {.confidence = options.confidence});
+    work.report.lines = find_lines(periodograms, *work.column, recording.segments, recording.rate_hz);
+}
+
+void find_coefficients(Work& work, const Recording& recording, const AnalysisOptions& options) {
+    const Column& column = *work.column;
+    AxisReport& axis = work.report;
+    axis.fit = fit_noise(work.whole, options.confidence);
+    LikelihoodFitOptions fit;
+    fit.confidence = options.confidence;
+    fit.step = converter_step(column);
+    for (const SpectralLine& line : axis.lines) {
+        fit.lines.push_back({{line.amplitude, line.f_hz}, line.amplitude_sd, line.f_sd_hz});
+    }
+    if (auto likely = fit_likelihood(column, recording.segments, recording.rate_hz, axis.fit, fit)) {
+        axis.fit = *std::move(likely);
+    }
+    axis.bias = static_bias(column, recording.rate_hz, axis.fit);
+}
+
+// Axes are independent of each other: as many at a time as there are threads.
+template <typename Step>
+void for_each_axis(std::vector<Work>& axes, unsigned threads, const Step& step) {
+    std::atomic<std::size_t> next = 0;
+    const auto run = [&] {
+        for (std::size_t i = next++; i < axes.size(); i = next++) { step(axes[i]); }
+    };
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < std::min<std::size_t>(threads, axes.size()); ++i) {
+        others.emplace_back(run);
+    }
+    run();
 }
 
 // Averaging factors that were asked for and cannot be answered.
@@ -47,16 +98,71 @@ std::vector<std::string> refused_factors(const AnalysisOptions& options, const A
     return warnings;
 }
 
-// Coefficients of a curve that the model does not follow are no property of the sensor.
-void warn_of_misfit(const AxisReport& axis, std::vector<std::string>& warnings) {
-    constexpr double allowed_sd = 5.0;
-    if (axis.fit.worst_residual_sd > allowed_sd) {
-        warnings.push_back(
-            "axis " + axis.axis + ": the curve is up to " +
-            std::to_string(std::lround(axis.fit.worst_residual_sd)) +
-            " standard deviations away from the five noise terms (a tone, a filter or motion does that): "
-            "the uncertainties of its coefficients do not cover it");
+// A warning that several axes share is one line.
+class Warnings {
+public:
+    void add(const std::string& axis, const std::string& text) {
+        auto& axes = by_text_[text];
+        axes.push_back(axis);
+        if (axes.size() == 1) { order_.push_back(text); }
     }
+    void move_to(std::vector<std::string>& warnings) const {
+        for (const std::string& text : order_) {
+            const auto& axes = by_text_.at(text);
+            std::string line = axes.size() == 1 ? "axis" : "axes";
+            for (const std::string& axis : axes) { line += " " + axis; }
+            warnings.push_back(line + ": " + text);
+        }
+    }
+
+private:
+    std::map<std::string, std::vector<std::string>> by_text_;
+    std::vector<std::string> order_;
+};
+
+std::string rounded(double value) {
+    std::ostringstream text;
+    text << std::setprecision(2) << value;
+    return text.str();
+}
+
+// Coefficients of a spectrum that the model does not follow are no property of the sensor.
+void warn_of_misfit(const AxisReport& axis, Warnings& warnings) {
+    constexpr double allowed_error = 0.05;
+    constexpr double hopeless_error = 0.5;
+    const NoiseFit& fit = axis.fit;
+    if (fit.upper_frequency_hz > 0.0) {
+        warnings.add(axis.axis, "above " + rounded(fit.upper_frequency_hz) +
+                                    " Hz the spectrum does not follow the model (a filter or vibration does "
+                                    "that); the coefficients are those below");
+    }
+    if (fit.method == FitMethod::likelihood && fit.model_error > hopeless_error) {
+        warnings.add(axis.axis,
+                     "this is not the noise of a sensor at rest (motion, vibration?): the "
+                     "coefficients mean nothing");
+    } else if (fit.method == FitMethod::likelihood && fit.model_error > allowed_error) {
+        warnings.add(axis.axis,
+                     "the spectrum departs from the model (a filter, vibration or temperature does "
+                     "that); the uncertainties allow for it as well as they can");
+    }
+    if (axis.outliers.samples > 0) {
+        warnings.add(axis.axis, "outliers were replaced by the median of their neighbours");
+    }
+}
+
+// A clock that is off makes every averaging time wrong by as much.
+void warn_of_rate(const AnalysisReport& report, std::vector<std::string>& warnings) {
+    constexpr double allowed = 1e-3;
+    if (!report.nominal_rate_hz || !(*report.nominal_rate_hz > 0.0)) { return; }
+    const double error = report.rate_hz / *report.nominal_rate_hz - 1.0;
+    const double sd = report.rate_sd_hz ? *report.rate_sd_hz / report.rate_hz : 0.0;
+    if (std::abs(error) < std::max(allowed, 5.0 * sd)) { return; }
+    std::ostringstream text;
+    text << "the rate is " << std::setprecision(6) << report.rate_hz << " Hz, " << std::showpos
+         << std::setprecision(2) << error * 100.0 << std::noshowpos << std::setprecision(6)
+         << " % off the nominal " << *report.nominal_rate_hz
+         << " Hz; averaging times follow the measured rate";
+    warnings.push_back(text.str());
 }
 
 }  // namespace
@@ -81,12 +187,24 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
         report.warnings.emplace_back("fewer than two samples: nothing to analyse");
         return report;
     }
+    warn_of_rate(report, report.warnings);
+    std::vector<Work> axes;
     for (const Column& column : recording.columns) {
         if (!is_gyro(column)) { continue; }
-        if (report.axes.empty()) { report.unit = unit_of(column); }
-        report.axes.push_back(analyze_axis(column, recording, options));
-        warn_of_misfit(report.axes.back(), report.warnings);
+        if (axes.empty()) { report.unit = unit_of(column); }
+        axes.push_back({&column, {}, {}, {}});
     }
+    for (Work& axis : axes) { find_curves(axis, recording, options); }
+    options.on_stage("spectrum");
+    for_each_axis(axes, options.threads, [&](Work& axis) { find_spectrum(axis, recording, options); });
+    options.on_stage("fit");
+    for_each_axis(axes, options.threads, [&](Work& axis) { find_coefficients(axis, recording, options); });
+    Warnings warnings;
+    for (Work& axis : axes) {
+        warn_of_misfit(axis.report, warnings);
+        report.axes.push_back(std::move(axis.report));
+    }
+    warnings.move_to(report.warnings);
     if (report.axes.empty()) {
         report.warnings.emplace_back("no gyro column: nothing to analyse");
         return report;

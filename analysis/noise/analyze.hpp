@@ -9,6 +9,7 @@
 
 #include "analysis/allan/allan_deviation.hpp"
 #include "analysis/noise/noise_fit.hpp"
+#include "analysis/noise/outliers.hpp"
 #include "analysis/noise/slope_reading.hpp"
 #include "analysis/noise/static_bias.hpp"
 #include "analysis/recording/recording.hpp"
@@ -32,6 +33,7 @@ struct AxisReport {
     SlopeReading slopes;
     PowerSpectrum spectrum;
     std::vector<SpectralLine> lines;  // strongest first
+    OutlierCount outliers;            // with AnalysisOptions::robust
 };
 
 struct AnalysisReport {
@@ -53,8 +55,14 @@ struct AnalysisReport {
     std::vector<std::string> warnings;
 };
 
-using AnalysisOptions = AllanOptions;
+struct AnalysisOptions : AllanOptions {
+    bool robust = false;  // replace outliers first (outliers.hpp); a warning says how many
+};
 
+// What the deviation's kind, convention and factors select is the curve that is shown: coefficients come from
+// the samples by likelihood (likelihood_fit.hpp), slopes and starting values from the overlapping curve at
+// the usual factors.
+//
 // A recording without a gyro column, or with fewer than two samples, gives a report without axes and a
 // warning.
 AnalysisReport analyze(const Recording& recording, const AnalysisOptions& options = {});

@@ -375,6 +375,8 @@ public:
         fit.sparse.gauss_markov = fit.best.gauss_markov;
         fit.sparse.sinusoids = fit.best.sinusoids;
         correlate(fit);
+        fit.mean_dof = mean_dof(fit, length_s);
+        find_worst(fit);
     }
 
 private:
@@ -427,6 +429,35 @@ private:
         FittedCoefficient coefficient;
         coefficient.upper = std::sqrt(interval.hi);
         return coefficient;
+    }
+
+    // Of the sparse model's Allan variance at an averaging time of the whole record (JCGM 100:2008, G.4).
+    double mean_dof(const NoiseFit& fit, double length_s) const {
+        Eigen::VectorXd shares = Eigen::VectorXd::Zero(fitted_.model.components());
+        const NoiseCoefficients& sparse = fit.sparse.coefficients;
+        if (sparse.N_rad_per_sqrt_s > 0.0) { shares[0] = 1.0 / length_s; }
+        if (sparse.B_rad_per_s > 0.0) {
+            shares[1] = NoiseCoefficients{0.0, 0.0, 1.0, 0.0, 0.0}.allan_variance(length_s);
+        }
+        if (sparse.K_rad_per_s_sqrt_s > 0.0) { shares[2] = length_s / 3.0; }
+        for (std::size_t i = 0; i < fitted_.model.correlations_s.size(); ++i) {
+            shares[fitted_.model.gauss_markov_at(i)] =
+                GaussMarkov{1.0, fitted_.model.correlations_s[i]}.allan_variance(length_s);
+        }
+        const double variance = shares.dot(fitted_.maximum.squares);
+        const double scatter = shares.dot(covariance_ * shares);
+        return scatter > 0.0 ? 2.0 * variance * variance / scatter : 0.0;
+    }
+
+    void find_worst(NoiseFit& fit) const {
+        double worst = 0.0;
+        for (const ContrastMisfit& misfit : likelihood_.misfits(fitted_.maximum.squares)) {
+            const double sds = std::abs(misfit.ratio - 1.0) * std::sqrt(misfit.dof / 2.0);
+            if (sds <= worst) { continue; }
+            worst = sds;
+            fit.worst_frequency_hz = misfit.f_hz;
+            fit.worst_ratio = misfit.ratio;
+        }
     }
 
     void correlate(NoiseFit& fit) const {

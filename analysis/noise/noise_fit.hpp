@@ -79,10 +79,17 @@ struct NoiseFit {
     std::size_t points = 0;  // of the curve that were used
     double worst_residual_sd =
         0.0;  // the largest departure of a point from the fitted curve, in its standard deviations
+    // Degrees of freedom with which the Allan variance of the sparse model at the length of the whole record
+    // is known; 0: not known.
+    double mean_dof = 0.0;
     // Of a likelihood fit: the typical departure of the spectrum from the model beyond chance, as a share of
     // the model; and the frequency above which the record was left out, 0 for none.
     double model_error = 0.0;
     double upper_frequency_hz = 0.0;
+    // Where the record's spectrum departs most significantly from the model, and measured over modelled
+    // density there.
+    double worst_frequency_hz = 0.0;
+    double worst_ratio = 1.0;
 
     const FittedCoefficient& operator[](NoiseTerm term) const {
         return terms[static_cast<std::size_t>(term)];

@@ -1,21 +1,48 @@
 #include "analysis/noise/static_bias.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include <boost/math/distributions/students_t.hpp>
 
 #include "analysis/allan/prefix_sum.hpp"
 
 namespace gyrolog {
+namespace {
 
-StaticBias static_bias(const Column& column, double rate_hz, const NoiseModel& noise) {
+// One degree of freedom less and the factor would say more about the fit than about the bias.
+constexpr double least_dof = 2.0;
+
+double coverage_factor(double dof) {
+    constexpr double upper_tail = 0.02275;  // beyond 2 of a normal distribution
+    if (!(dof > 0.0)) { return 2.0; }
+    const boost::math::students_t t(std::clamp(dof, least_dof, 1e9));
+    return boost::math::quantile(boost::math::complement(t, upper_tail));
+}
+
+}  // namespace
+
+StaticBias static_bias(const Column& column, double rate_hz, const NoiseFit& fit) {
     StaticBias bias;
     const auto samples = static_cast<double>(column.size());
     if (column.size() < 2) { return bias; }
-    bias.value = raw_mean(column) * column.scale + column.offset;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < column.size(); ++i) { squares += std::pow(column.value(i) - bias.value, 2); }
-    const double variance = noise.allan_variance(samples / rate_hz);
+    const double mean = raw_mean(column);
+    bias.value = mean * column.scale + column.offset;
+    const double squares = std::visit(
+        [&](const auto& data) {
+            double sum = 0.0;
+            for (const auto x : data) {
+                const double d = static_cast<double>(x) - mean;
+                sum += d * d;
+            }
+            return sum;
+        },
+        column.data);
+    bias.sample_sd = std::abs(column.scale) * std::sqrt(squares / (samples - 1.0));
+    const double variance = fit.sparse.allan_variance(samples / rate_hz);
+    bias.coverage_factor = coverage_factor(fit.mean_dof);
     bias.expanded_uncertainty = bias.coverage_factor * std::sqrt(variance);
-    if (variance > 0.0) { bias.effective_samples = squares / (samples - 1.0) / variance; }
+    if (variance > 0.0) { bias.effective_samples = bias.sample_sd * bias.sample_sd / variance; }
     return bias;
 }
 

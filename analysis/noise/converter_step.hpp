@@ -1,0 +1,13 @@
+// The step of the converter that made a column's numbers.
+#pragma once
+
+#include "analysis/recording/recording.hpp"
+
+namespace gyrolog {
+
+// Of counts: their scale. Of real numbers: the step of the grid on which they all lie, to the rounding of a
+// printed number; 0 where there is none, and where the samples scatter by less than 0.4 of it: then the error
+// of rounding is neither white nor of variance step^2 / 12 (Widrow and Kollar, Quantization Noise, 2008).
+double converter_step(const Column& column);
+
+}  // namespace gyrolog
