@@ -74,18 +74,43 @@ private:
     std::array<std::array<double, power_laws>, power_laws> sums_{};
 };
 
-// For each law, by how much reflection shortens the sum over lags of overlapping differences.
-std::array<double, power_laws> shortening_by_reflection(const LagSums& lags, const DeviationRule& rule,
-                                                        std::int64_t terms, std::int64_t m) {
+LagSums overlapping_lags(std::span<const PowerLaw> laws, const DeviationRule& rule, std::int64_t m,
+                         std::int64_t terms) {
+    constexpr std::int64_t lag_by_lag = 64;
+    const auto count = static_cast<double>(terms);
+    const std::int64_t stride = rule.stride(m);
+    const std::int64_t last = std::min(terms - 1, (rule.order + 2) * m / stride);
+    LagSums lags(laws, rule, m);
+    lags.add(0.0, 1.0);
+    if (stride == 1 && m > lag_by_lag) {
+        lags.add_lags(last, count);
+        return lags;
+    }
+    for (std::int64_t j = 1; j <= last; ++j) {
+        lags.add(static_cast<double>(j * stride), 2.0 * (1.0 - static_cast<double>(j) / count));
+    }
+    return lags;
+}
+
+// For each law, by how much reflection shortens the sum over lags of overlapping differences. The published
+// table is that of long averages: at small m, by how much it would shorten it at 64 samples for the same T /
+// tau.
+std::array<double, power_laws> shortening_by_reflection(std::span<const PowerLaw> laws,
+                                                        const DeviationRule& rule, std::int64_t m,
+                                                        std::int64_t terms) {
+    constexpr std::int64_t long_enough = 64;
+    const std::int64_t scale = m < long_enough ? (long_enough + m - 1) / m : 1;
     std::array<double, power_laws> factors{};
     factors.fill(1.0);
-    if (!rule.reflected) { return factors; }
-    const auto count = static_cast<double>(terms);
-    for (std::size_t a = 0; a < power_laws; ++a) {
-        const double length = lags.sums()[a][a];
-        if (length <= 0.0) { continue; }
-        const double edf = total_edf(static_cast<PowerLaw>(a), terms, m, count / length);
-        factors[a] = count / std::max(1.0, edf) / length;
+    for (const PowerLaw law : laws) {
+        const bool angle = law == PowerLaw::white_angle || law == PowerLaw::flicker_angle;
+        const std::int64_t long_m = angle ? m : m * scale;
+        const std::int64_t long_terms = angle ? terms : (terms + 1) * scale - 1;
+        const std::int64_t inside = std::max<std::int64_t>(1, long_terms + 2 - 2 * long_m);
+        const LagSums lags = overlapping_lags(std::array{law}, rule, long_m, inside);
+        const double length = lags.sums()[index_of(law)][index_of(law)];
+        const double overlapping_edf = static_cast<double>(inside) / length;
+        factors[index_of(law)] = overlapping_edf / total_edf(law, long_terms, long_m, overlapping_edf);
     }
     return factors;
 }
@@ -94,21 +119,14 @@ std::array<double, power_laws> shortening_by_reflection(const LagSums& lags, con
 
 DegreesOfFreedom::DegreesOfFreedom(std::span<const PowerLaw> laws, const DeviationRule& rule, std::int64_t m,
                                    std::span<const std::int64_t> terms_of_runs) {
-    const std::int64_t stride = rule.stride(m);
     for (const std::int64_t terms : terms_of_runs) {
         if (terms <= 0) { continue; }
-        const auto count = static_cast<double>(terms);
-        const std::int64_t last = std::min(terms - 1, (rule.order + 2) * m / stride);
-        LagSums lags(laws, rule, m);
-        lags.add(0.0, 1.0);
-        if (stride == 1 && m > 64) {
-            lags.add_lags(last, count);
-        } else {
-            for (std::int64_t j = 1; j <= last; ++j) {
-                lags.add(static_cast<double>(j * stride), 2.0 * (1.0 - static_cast<double>(j) / count));
-            }
-        }
-        const auto factor = shortening_by_reflection(lags, rule, terms, m);
+        const std::int64_t inside = rule.reflected ? std::max<std::int64_t>(1, terms + 2 - 2 * m) : terms;
+        const LagSums lags = overlapping_lags(laws, rule, m, inside);
+        std::array<double, power_laws> factor{};
+        factor.fill(1.0);
+        if (rule.reflected) { factor = shortening_by_reflection(laws, rule, m, terms); }
+        const auto count = static_cast<double>(inside);
         terms_ += count;
         for (std::size_t a = 0; a < power_laws; ++a) {
             for (std::size_t b = 0; b < power_laws; ++b) {

@@ -1,5 +1,6 @@
 #include "analysis/allan/difference_covariance.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace gyrolog {
@@ -57,6 +58,21 @@ double generalised_covariance(PowerLaw law, int more_sums, double lag) {
     return 0.0;
 }
 
+// theta*_{i-m} - 2 theta*_i + theta*_{i+m}, written with points that exist.
+struct ReflectedTerm {
+    ReflectedTerm(double i, double m, double last) : at{i - m, i, i + m, 0.0} {
+        if (i < m) {
+            at = {m - i, i, i + m, 0.0};
+            weight = {-1.0, -2.0, 1.0, 2.0};
+        } else if (i + m > last) {
+            at = {i - m, i, 2.0 * last - i - m, last};
+            weight = {1.0, -2.0, -1.0, 2.0};
+        }
+    }
+    std::array<double, 4> at;
+    std::array<double, 4> weight{1.0, -2.0, 1.0, 0.0};
+};
+
 }  // namespace
 
 DifferenceCovariance::DifferenceCovariance(PowerLaw law, const DeviationRule& rule, std::int64_t m)
@@ -67,8 +83,25 @@ DifferenceCovariance::DifferenceCovariance(PowerLaw law, const DeviationRule& ru
       norm_(rule.norm(m)),
       variance_(at(0.0)) {}
 
+double DifferenceCovariance::generalised(double lag) const {
+    return generalised_covariance(law_, summed_ ? 1 : 0, lag);
+}
+
+double DifferenceCovariance::reflected(double i, double j, double points) const {
+    const ReflectedTerm a(i, m_, points - 1.0);
+    const ReflectedTerm b(j, m_, points - 1.0);
+    double sum = 0.0;
+    for (std::size_t p = 0; p < a.at.size(); ++p) {
+        for (std::size_t q = 0; q < b.at.size(); ++q) {
+            const double weight = a.weight[p] * b.weight[q];
+            if (weight != 0.0) { sum += weight * generalised(a.at[p] - b.at[q]); }
+        }
+    }
+    return sum;
+}
+
 double DifferenceCovariance::at(double lag) const {
-    const auto s = [&](double t) { return generalised_covariance(law_, summed_ ? 1 : 0, t); };
+    const auto s = [&](double t) { return generalised(t); };
     const auto pair = [&](double steps) { return s(lag - steps * m_) + s(lag + steps * m_); };
     if (order_ == 2) { return 6.0 * s(lag) - 4.0 * pair(1.0) + pair(2.0); }
     return 20.0 * s(lag) - 15.0 * pair(1.0) + 6.0 * pair(2.0) - pair(3.0);

@@ -34,10 +34,16 @@ public:
     // at(lag) / at(0).
     double correlation(double lag) const { return at(lag) / variance_; }
 
+    // Of the terms of total deviation about points i and j of a stretch of so many points, reflected about
+    // its ends; order 2 only.
+    double reflected(double i, double j, double points) const;
+
     // The expected square of the deviation, in that unit; bias by reflection left aside.
     double expected_variance() const { return variance_ / norm_; }
 
 private:
+    double generalised(double lag) const;
+
     PowerLaw law_;
     bool summed_;  // theta is summed once more
     int order_;

@@ -6,7 +6,6 @@
 
 #include "analysis/allan/confidence.hpp"
 #include "analysis/allan/deviation_rule.hpp"
-#include "analysis/allan/total_variance.hpp"
 #include "analysis/allan/variance_distribution.hpp"
 
 namespace gyrolog {
@@ -26,33 +25,15 @@ Scatter textbook_scatter(std::span<const std::int64_t> runs, double confidence) 
     return {interval.lo, interval.hi, averages - 1.0};
 }
 
-// Expected square over the true one.
-double bias_of(const VarianceShares& shares, const DeviationRule& rule, std::int64_t m,
-               std::span<const std::int64_t> runs) {
-    if (!rule.reflected) { return 1.0; }
-    double expected = 0.0;
-    double truth = 0.0;
-    for (const std::int64_t terms : runs) {
-        for (const PowerLaw law : all_power_laws) {
-            const double part = static_cast<double>(terms) * shares[index_of(law)];
-            truth += part;
-            expected += part * total_bias(law, terms, m);
-        }
-    }
-    return expected / truth;
-}
-
 Scatter scatter_of(const AllanPoint& point, const AllanCurve& curve, std::span<const Segment> segments,
                    const SharesOfPoint& shares_of) {
     const DeviationRule& rule = rule_of(curve.kind);
     const std::vector<std::int64_t> runs = terms_of_runs(rule, segments, curve.convention, point.m);
     if (rule.halving) { return textbook_scatter(runs, curve.confidence); }
-    const VarianceShares shares = shares_of(point);
-    const auto distribution = VarianceDistribution::of(shares, rule, point.m, runs);
-    const double bias = bias_of(shares, rule, point.m, runs);
+    const VarianceDistribution distribution(shares_of(point), rule, point.m, runs);
     const double tail = (1.0 - curve.confidence) / 2.0;
-    return {1.0 / std::sqrt(bias * distribution.quantile(1.0 - tail)),
-            1.0 / std::sqrt(bias * distribution.quantile(tail)), distribution.edf()};
+    return {1.0 / std::sqrt(distribution.quantile(1.0 - tail)), 1.0 / std::sqrt(distribution.quantile(tail)),
+            distribution.edf()};
 }
 
 void set(AllanPoint& point, const Scatter& scatter) {

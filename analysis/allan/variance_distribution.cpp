@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -10,6 +11,7 @@
 #include "analysis/allan/confidence.hpp"
 #include "analysis/allan/degrees_of_freedom.hpp"
 #include "analysis/allan/difference_covariance.hpp"
+#include "analysis/allan/total_variance.hpp"
 
 namespace gyrolog {
 namespace {
@@ -23,36 +25,60 @@ std::int64_t cells_of(std::int64_t terms, const DeviationRule& rule, std::int64_
     return std::min(terms, std::max(cells_a_factor, (terms * cells_a_factor + m - 1) / m));
 }
 
-bool is_angle(std::size_t law) { return law <= index_of(PowerLaw::flicker_angle); }
+constexpr std::array angle_laws = {PowerLaw::white_angle, PowerLaw::flicker_angle};
 
 double sum_of(const VarianceShares& shares) { return std::accumulate(shares.begin(), shares.end(), 0.0); }
 
-// Eigenvalues of one run, which sum to its number of terms times the shares in `shares`.
-void append_eigenvalues(const VarianceShares& shares, const DeviationRule& rule, std::int64_t m,
-                        std::int64_t terms, std::vector<double>& lambda) {
-    const std::int64_t cells = cells_of(terms, rule, m);
-    const double step =
-        rule.overlapping ? static_cast<double>(terms) / static_cast<double>(cells) : static_cast<double>(m);
-    std::vector<double> at_lag(static_cast<std::size_t>(cells));
-    for (const PowerLaw law : all_power_laws) {
-        if (shares[index_of(law)] <= 0.0) { continue; }
-        const DifferenceCovariance covariance(law, rule, m);
-        for (std::int64_t j = 0; j < cells; ++j) {
-            at_lag[static_cast<std::size_t>(j)] +=
-                shares[index_of(law)] * covariance.correlation(static_cast<double>(j) * step);
+// Expected square over the true one.
+double bias_of(PowerLaw law, const DeviationRule& rule, std::int64_t terms, std::int64_t m) {
+    return rule.reflected ? total_bias(law, terms, m) : 1.0;
+}
+
+// Covariance of the cells of one run, each as wide as `step` terms, relative to the true variance.
+class CellCovariance {
+public:
+    CellCovariance(const VarianceShares& shares, const DeviationRule& rule, std::int64_t m,
+                   std::int64_t terms, std::int64_t cells)
+        : matrix_(Eigen::MatrixXd::Zero(cells, cells)),
+          points_(static_cast<double>(terms + 2)),
+          step_(rule.overlapping ? static_cast<double>(terms) / static_cast<double>(cells)
+                                 : static_cast<double>(m)) {
+        for (const PowerLaw law : all_power_laws) {
+            const double share = shares[index_of(law)];
+            if (share <= 0.0) { continue; }
+            const DifferenceCovariance covariance(law, rule, m);
+            if (rule.reflected) {
+                add_reflected(covariance, share / covariance.at(0.0));
+            } else {
+                add_stationary(covariance, share);
+            }
         }
     }
-    Eigen::MatrixXd matrix(cells, cells);
-    for (Eigen::Index i = 0; i < cells; ++i) {
-        for (Eigen::Index j = 0; j <= i; ++j) { matrix(i, j) = at_lag[static_cast<std::size_t>(i - j)]; }
+
+    // Only the lower half is filled.
+    const Eigen::MatrixXd& matrix() const { return matrix_; }
+
+private:
+    void add_stationary(const DifferenceCovariance& covariance, double share) {
+        for (Eigen::Index lag = 0; lag < matrix_.rows(); ++lag) {
+            const double value = share * covariance.correlation(static_cast<double>(lag) * step_);
+            for (Eigen::Index i = lag; i < matrix_.rows(); ++i) { matrix_(i, i - lag) += value; }
+        }
     }
-    matrix *= static_cast<double>(terms) / static_cast<double>(cells);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
-    const double negligible = 1e-6 * static_cast<double>(terms);
-    for (const double value : solver.eigenvalues()) {
-        if (value > negligible) { lambda.push_back(value); }
+
+    void add_reflected(const DifferenceCovariance& covariance, double factor) {
+        const auto place = [&](Eigen::Index i) { return 0.5 + (static_cast<double>(i) + 0.5) * step_; };
+        for (Eigen::Index i = 0; i < matrix_.rows(); ++i) {
+            for (Eigen::Index j = 0; j <= i; ++j) {
+                matrix_(i, j) += factor * covariance.reflected(place(i), place(j), points_);
+            }
+        }
     }
-}
+
+    Eigen::MatrixXd matrix_;
+    double points_;
+    double step_;
+};
 
 // The sum's cumulant generating function at t: K(t) = -1/2 sum log(1 - 2 lambda t), and its derivatives.
 struct Cumulants {
@@ -104,54 +130,75 @@ double saddlepoint_quantile(const std::vector<double>& lambda, double z) {
 
 }  // namespace
 
-VarianceDistribution::VarianceDistribution(std::vector<double> lambda, double rest)
-    : lambda_(std::move(lambda)), rest_(rest) {
-    const double mean = std::accumulate(lambda_.begin(), lambda_.end(), rest_);
-    for (double& value : lambda_) { value /= mean; }
-    rest_ /= mean;
-    const double squares = std::inner_product(lambda_.begin(), lambda_.end(), lambda_.begin(), 0.0);
-    edf_ = 1.0 / squares;
-    // One term alone is a chi-square exactly.
-    if (lambda_.size() == 1 && rest_ == 0.0) { lambda_.clear(); }
-}
-
-VarianceDistribution VarianceDistribution::of(const VarianceShares& shares, const DeviationRule& rule,
-                                              std::int64_t m, std::span<const std::int64_t> terms_of_runs) {
+VarianceDistribution::VarianceDistribution(const VarianceShares& shares, const DeviationRule& rule,
+                                           std::int64_t m, std::span<const std::int64_t> terms_of_runs) {
     std::int64_t cells = 0;
     bool every_term = true;
     for (const std::int64_t terms : terms_of_runs) {
         cells += cells_of(terms, rule, m);
         every_term = every_term && cells_of(terms, rule, m) == terms;
     }
-    const double total = sum_of(shares);
-    const double angle = shares[index_of(PowerLaw::white_angle)] + shares[index_of(PowerLaw::flicker_angle)];
-    if (rule.reflected || cells > cells_at_most || (!every_term && angle > 0.5 * total)) {
-        std::vector<PowerLaw> laws;
-        for (const PowerLaw law : all_power_laws) {
-            if (shares[index_of(law)] > 0.0) { laws.push_back(law); }
-        }
-        return VarianceDistribution(DegreesOfFreedom(laws, rule, m, terms_of_runs).of(shares));
+    double angle = 0.0;
+    for (const PowerLaw law : angle_laws) { angle += shares[index_of(law)]; }
+    if (cells > cells_at_most || (!every_term && angle > 0.5 * sum_of(shares))) {
+        set_chi_square(shares, rule, m, terms_of_runs);
+    } else {
+        set_eigenvalues(shares, rule, m, terms_of_runs);
     }
-    // Angle noise changes from term to term: within a cell it averages out to its share, which hardly
-    // scatters.
-    VarianceShares counted = shares;
-    if (!every_term) {
-        for (std::size_t law = 0; law < power_laws; ++law) {
-            if (is_angle(law)) { counted[law] = 0.0; }
+}
+
+void VarianceDistribution::set_chi_square(const VarianceShares& shares, const DeviationRule& rule,
+                                          std::int64_t m, std::span<const std::int64_t> terms_of_runs) {
+    std::vector<PowerLaw> laws;
+    double truth = 0.0;
+    double expected = 0.0;
+    for (const PowerLaw law : all_power_laws) {
+        if (shares[index_of(law)] <= 0.0) { continue; }
+        laws.push_back(law);
+        for (const std::int64_t terms : terms_of_runs) {
+            const double part = shares[index_of(law)] * static_cast<double>(terms);
+            truth += part;
+            expected += part * bias_of(law, rule, terms, m);
         }
     }
-    std::vector<double> lambda;
-    double rest = 0.0;
+    edf_ = DegreesOfFreedom(laws, rule, m, terms_of_runs).of(shares);
+    mean_ = expected / truth;
+}
+
+void VarianceDistribution::set_eigenvalues(const VarianceShares& shares, const DeviationRule& rule,
+                                           std::int64_t m, std::span<const std::int64_t> terms_of_runs) {
+    double truth = 0.0;
+    for (const std::int64_t terms : terms_of_runs) { truth += static_cast<double>(terms) * sum_of(shares); }
     for (const std::int64_t terms : terms_of_runs) {
-        append_eigenvalues(counted, rule, m, terms, lambda);
-        rest += static_cast<double>(terms) * (total - sum_of(counted));
+        const std::int64_t cells = cells_of(terms, rule, m);
+        VarianceShares scattering = shares;
+        if (cells != terms) {
+            // Angle noise changes from term to term: a cell averages it out to its share, which hardly
+            // scatters.
+            for (const PowerLaw law : angle_laws) {
+                constant_ +=
+                    shares[index_of(law)] * static_cast<double>(terms) * bias_of(law, rule, terms, m) / truth;
+                scattering[index_of(law)] = 0.0;
+            }
+        }
+        const CellCovariance covariance(scattering, rule, m, terms, cells);
+        const double weight = static_cast<double>(terms) / static_cast<double>(cells) / truth;
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(weight * covariance.matrix(),
+                                                                    Eigen::EigenvaluesOnly);
+        constexpr double negligible = 1e-6;
+        for (const double value : solver.eigenvalues()) {
+            if (value > negligible) { lambda_.push_back(value); }
+        }
     }
-    return {std::move(lambda), rest};
+    mean_ = std::accumulate(lambda_.begin(), lambda_.end(), constant_);
+    edf_ = mean_ * mean_ / std::inner_product(lambda_.begin(), lambda_.end(), lambda_.begin(), 0.0);
+    // One term alone is a chi-square exactly.
+    if (lambda_.size() == 1 && constant_ == 0.0) { lambda_.clear(); }
 }
 
 double VarianceDistribution::quantile(double p) const {
-    if (lambda_.empty()) { return boost::math::quantile(boost::math::chi_squared(edf_), p) / edf_; }
-    return rest_ + saddlepoint_quantile(lambda_, normal_quantile(p));
+    if (lambda_.empty()) { return mean_ * boost::math::quantile(boost::math::chi_squared(edf_), p) / edf_; }
+    return constant_ + saddlepoint_quantile(lambda_, normal_quantile(p));
 }
 
 }  // namespace gyrolog

@@ -6,9 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/chi_squared.hpp>
+
 #include "analysis/allan/degrees_of_freedom.hpp"
 #include "analysis/allan/deviation_sums.hpp"
 #include "analysis/allan/power_law.hpp"
+#include "analysis/allan/total_variance.hpp"
+#include "analysis/allan/variance_distribution.hpp"
 
 namespace gyrolog {
 namespace {
@@ -117,6 +121,14 @@ TEST(EquivalentDegreesOfFreedom, AreThoseOfSimulatedNoise) {
     }
 }
 
+TEST(EquivalentDegreesOfFreedom, AreThePublishedOnesForTotalDeviation) {
+    // NIST SP 1065, section 5.4: 1.500 T / tau, 1.168 T / tau - 0.222, 0.927 T / tau - 0.358.
+    const auto total = [](PowerLaw law) { return degrees(law, 100, {999}, DeviationKind::total); };
+    EXPECT_NEAR(total(PowerLaw::white_rate), 15.0, 1e-9);
+    EXPECT_NEAR(total(PowerLaw::flicker_rate), 11.458, 1e-9);
+    EXPECT_NEAR(total(PowerLaw::rate_walk), 8.912, 1e-9);
+}
+
 TEST(EquivalentDegreesOfFreedom, DoNotDependOnHowTheLagsAreSummed) {
     // m = 64 is summed lag by lag, m = 65 in pieces; both close to the limit of large m.
     for (const PowerLaw law :
@@ -136,6 +148,77 @@ TEST(EquivalentDegreesOfFreedom, AddOverRunsThatAreFarApart) {
     const double one = degrees(PowerLaw::white_rate, 10, {500});
     const double two = degrees(PowerLaw::white_rate, 10, {500, 500});
     EXPECT_DOUBLE_EQ(two, 2.0 * one);
+}
+
+// Steps of a random walk are independent: their mean square is a chi-square exactly, while its quantiles are
+// taken from eigenvalues.
+TEST(VarianceDistribution, OfIndependentTermsIsChiSquare) {
+    VarianceShares walk{};
+    walk[index_of(PowerLaw::rate_walk)] = 2.0;
+    for (const std::int64_t terms : {1, 2, 5, 20, 100}) {
+        const VarianceDistribution distribution(walk, rule_of(DeviationKind::overlapping), 1,
+                                                std::array{terms});
+        const auto count = static_cast<double>(terms);
+        EXPECT_NEAR(distribution.edf(), count, 1e-9 * count);
+        const boost::math::chi_squared exact(count);
+        for (const double p : {0.0005, 0.025, 0.1585, 0.5, 0.8415, 0.975, 0.9995}) {
+            const double tail = std::min(p, 1.0 - p);
+            EXPECT_NEAR(cdf(exact, count * distribution.quantile(p)), p, std::max(0.012, 0.1 / count) * tail)
+                << terms << " terms";
+        }
+    }
+}
+
+// Twelve averages are about the most that are worked out by eigenvalues: there chi-square must say the same.
+TEST(VarianceDistribution, GoesOverIntoChiSquare) {
+    constexpr std::int64_t m = 8400;
+    for (const DeviationKind kind : {DeviationKind::overlapping, DeviationKind::modified,
+                                     DeviationKind::overlapping_hadamard, DeviationKind::total}) {
+        for (const PowerLaw law : {PowerLaw::white_rate, PowerLaw::flicker_rate, PowerLaw::rate_walk}) {
+            const DeviationRule& rule = rule_of(kind);
+            const std::int64_t terms = rule.terms(100001, m);
+            VarianceShares shares{};
+            shares[index_of(law)] = 1.0;
+            const VarianceDistribution distribution(shares, rule, m, std::array{terms});
+            const double edf = degrees(law, m, {terms}, kind);
+            const double bias = kind == DeviationKind::total ? total_bias(law, terms, m) : 1.0;
+            EXPECT_NEAR(distribution.edf() / edf, 1.0, 0.03) << name_of(kind) << ' ' << static_cast<int>(law);
+            for (const double p : {0.1585, 0.8415}) {
+                const double q = edf * distribution.quantile(p) / bias;
+                EXPECT_NEAR(cdf(boost::math::chi_squared(edf), q), p, 0.02) << name_of(kind);
+            }
+        }
+    }
+}
+
+// Expected total variance over the Allan variance, by simulation.
+TEST(TotalVariance, HasThePublishedBias) {
+    constexpr std::size_t samples = 256;
+    constexpr int runs = 2000;
+    for (const NoiseCase& noise : noise_cases) {
+        for (const std::int64_t m : {16, 64, 128}) {
+            double total = 0.0;
+            double allan = 0.0;
+            for (int run = 0; run < runs; ++run) {
+                std::vector<double> y = noise.make(2 * samples, 5000 + static_cast<std::uint64_t>(run));
+                y.erase(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(samples));
+                const Column column{"gx", "rad/s", y, 1.0, 0.0, "rad_s"};
+                const std::vector<Segment> whole = {{0, samples, 0}};
+                const IntegratedSignal signal(column, whole, PhaseConvention::sp1065);
+                const auto mean_square = [&](DeviationKind kind) {
+                    const DeviationRule& rule = rule_of(kind);
+                    return deviation_sums(signal, rule, std::array{m}, 1).front() /
+                           static_cast<double>(rule.terms(samples + 1, m));
+                };
+                total += mean_square(DeviationKind::total);
+                allan += mean_square(DeviationKind::overlapping);
+            }
+            const double bias = total_bias(noise.law, samples - 1, m);
+            // Both means are of `runs` estimates with one degree of freedom at least; they are correlated.
+            EXPECT_NEAR(total / allan / bias, 1.0, 4.0 * std::sqrt(2.0 / runs))
+                << "law " << static_cast<int>(noise.law) << " m " << m;
+        }
+    }
 }
 
 }  // namespace
