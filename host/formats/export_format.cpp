@@ -1,0 +1,49 @@
+#include "host/formats/export_format.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "host/base/file_output.hpp"
+#include "host/formats/filter_tuning_json.hpp"
+#include "host/formats/gyroparams_script.hpp"
+#include "host/formats/kalibr_yaml.hpp"
+#include "host/formats/recording_csv.hpp"
+#include "host/formats/recording_mat.hpp"
+
+namespace gyrolog {
+namespace {
+
+using Needs = ExportFormat::Needs;
+
+Status write_csv(const ExportSource& source, const std::string& path) {
+    return write_recording_csv(*source.recording, path);
+}
+
+template <std::string (*text_of)(const ExportSource&)>
+Status write_text_of(const ExportSource& source, const std::string& path) {
+    return write_file(path, as_bytes(text_of(source)));
+}
+
+constexpr std::array formats = {
+    ExportFormat{".csv", "the samples as text", Needs::samples, write_csv},
+    ExportFormat{".csv.gz", "", Needs::samples, write_csv},
+    ExportFormat{".csv.xz", "", Needs::samples, write_csv},
+    ExportFormat{".csv.zst", "", Needs::samples, write_csv},
+    ExportFormat{".mat", "samples and analysis for MATLAB, level 5", Needs::analysis, write_recording_mat},
+    ExportFormat{".yaml", "Kalibr's imu.yaml", Needs::noise, write_text_of<kalibr_yaml>},
+    ExportFormat{".m", "a MATLAB gyroparams object", Needs::noise, write_text_of<gyroparams_script>},
+    ExportFormat{".tuning.json", "process noise for Kalman filters", Needs::noise,
+                 write_text_of<filter_tuning_json>},
+};
+
+}  // namespace
+
+std::span<const ExportFormat> export_formats() { return formats; }
+
+const ExportFormat* export_format_of(std::string_view path) {
+    const auto found =
+        std::ranges::find_if(formats, [&](const ExportFormat& f) { return path.ends_with(f.ending); });
+    return found == formats.end() ? nullptr : &*found;
+}
+
+}  // namespace gyrolog

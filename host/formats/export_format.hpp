@@ -1,0 +1,31 @@
+// The formats that a recording or a model can be exported to, told by the file's ending. A format is one
+// file, and one line in export_format.cpp.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "host/base/result.hpp"
+#include "host/formats/export_source.hpp"
+
+namespace gyrolog {
+
+struct ExportFormat {
+    std::string_view ending;
+    std::string_view summary;
+    enum class Needs {
+        samples,   // the recording alone
+        analysis,  // the recording and its analysis
+        noise,     // noise coefficients, of an analysis or of a model
+    };
+    Needs needs;
+    Status (*write)(const ExportSource& source, const std::string& path);
+};
+
+std::span<const ExportFormat> export_formats();
+
+// Nothing for an ending that no format has.
+const ExportFormat* export_format_of(std::string_view path);
+
+}  // namespace gyrolog
