@@ -47,19 +47,31 @@ inline std::vector<std::int64_t> octaves(Eigen::Index samples) {
     return m;
 }
 
-inline Coverage coverage(const NoiseRecords& noise, DeviationKind kind, double confidence) {
+// A record's samples that lie in `segments` of the grid; `first` of a segment counts those only.
+inline std::vector<double> samples_in(const std::vector<Segment>& segments, const NoiseRecords& noise,
+                                      Eigen::Index record) {
+    std::vector<double> y;
+    for (const Segment& segment : segments) {
+        const auto part = noise.records.col(record).segment(static_cast<Eigen::Index>(segment.first_index),
+                                                            static_cast<Eigen::Index>(segment.count));
+        y.insert(y.end(), part.begin(), part.end());
+    }
+    return y;
+}
+
+inline Coverage coverage(const NoiseRecords& noise, DeviationKind kind, double confidence,
+                         std::vector<Segment> segments) {
     const Eigen::Index samples = noise.records.rows();
     AllanOptions options;
     options.kind = kind;
     options.confidence = confidence;
     options.m = octaves(samples);
+    if (segments.empty()) { segments = {{0, static_cast<std::size_t>(samples), 0}}; }
     Coverage result{confidence, {}};
     std::vector<double> truth;
     for (Eigen::Index record = 0; record < noise.records.cols(); ++record) {
-        const auto column = noise.records.col(record);
-        const Column y{"gx", "rad/s", std::vector<double>(column.begin(), column.end()), 1.0, 0.0, "rad_s"};
-        const AllanCurve curve =
-            allan_deviation(y, {{{0, static_cast<std::size_t>(samples), 0}}}, 1.0, options);
+        const Column y{"gx", "rad/s", samples_in(segments, noise, record), 1.0, 0.0, "rad_s"};
+        const AllanCurve curve = allan_deviation(y, segments, 1.0, options);
         for (std::size_t i = 0; i < curve.points.size(); ++i) {
             const AllanPoint& point = curve.points[i];
             if (truth.size() == i) {
@@ -73,11 +85,11 @@ inline Coverage coverage(const NoiseRecords& noise, DeviationKind kind, double c
     return result;
 }
 
-// Prints a row of a table and expects every octave within so many points.
+// Prints a row of a table and expects every octave within so many points. Without segments: no holes.
 inline void expect_coverage(const std::string& name, const NoiseRecords& noise, DeviationKind kind,
-                            double tolerance_points) {
+                            double tolerance_points, const std::vector<Segment>& segments = {}) {
     for (const double confidence : {0.683, 0.95}) {
-        const Coverage result = coverage(noise, kind, confidence);
+        const Coverage result = coverage(noise, kind, confidence, segments);
         std::cout << std::fixed << std::setprecision(1) << "| " << name << " | " << 100.0 * confidence
                   << " %";
         for (const double percent : result.percent) {

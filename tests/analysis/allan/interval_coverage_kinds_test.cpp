@@ -1,4 +1,5 @@
-// The intervals of every kind of deviation but the overlapping one, which has a test of its own.
+// The intervals of every kind of deviation but the overlapping one, which has a test of its own, and those of
+// records with holes.
 
 #include "tests/analysis/allan/interval_coverage.hpp"
 
@@ -27,6 +28,19 @@ TEST(IntervalCoverageOfKinds, IsAsStatedForFlickerNoise) {
 
 TEST(IntervalCoverageOfKinds, IsAsStatedForARandomWalk) {
     expect_coverage_of_kinds("random walk", test::walk_records(samples, records, 23));
+}
+
+// The stretches on both sides of a hole count as independent, which flicker and a walk make them not.
+TEST(IntervalCoverageOfKinds, IsAsStatedForARecordWithHoles) {
+    const std::vector<Segment> segments = {{0, 300, 0}, {300, 40, 310}, {340, 150, 360}};
+    const std::vector<std::pair<std::string, test::NoiseRecords>> noises = {
+        {"white", test::white_records(samples, records, 31)},
+        {"flicker", test::flicker_records(samples, records, 32)},
+        {"random walk", test::walk_records(samples, records, 33)}};
+    for (const auto& [name, noise] : noises) {
+        test::expect_coverage("overlapping, holes, " + name, noise, DeviationKind::overlapping,
+                              tolerance_points, segments);
+    }
 }
 
 }  // namespace
