@@ -51,7 +51,8 @@ SpectrumPoint point_of(const Band& band, double confidence) {
     double sum = 0.0;
     for (std::size_t k = band.first; k < band.end; ++k) { sum += periodogram.density[k]; }
     SpectrumPoint point;
-    point.f_hz = 0.5 * (periodogram.f_hz(band.first) + periodogram.f_hz(band.end - 1));
+    const double half = 0.5 * periodogram.width_hz();
+    point.f_hz = std::sqrt((periodogram.f_hz(band.first) - half) * (periodogram.f_hz(band.end - 1) + half));
     point.density = sum / static_cast<double>(band.bins());
     point.dof = band.dof();
     point.width_hz = static_cast<double>(band.bins()) * periodogram.width_hz();
@@ -76,9 +77,16 @@ PowerSpectrum power_spectrum(std::span<const AveragedPeriodogram> periodograms,
         bottom_hz = std::min(bottom_hz, periodogram.f_hz(periodogram.begin));
     }
     const double step = std::pow(10.0, -1.0 / options.points_per_decade);
-    for (double hi_hz = top_hz; hi_hz > bottom_hz; hi_hz *= step) {
-        const Band band = best_band(periodograms, hi_hz * step, hi_hz);
-        if (band.periodogram != nullptr) { spectrum.points.push_back(point_of(band, options.confidence)); }
+    double hi_hz = top_hz;
+    for (double lo_hz = hi_hz * step; hi_hz > bottom_hz; lo_hz *= step) {
+        const Band band = best_band(periodograms, lo_hz, hi_hz);
+        const bool is_last = lo_hz <= bottom_hz;
+        if (band.periodogram != nullptr && (is_last || band.dof() >= options.least_dof)) {
+            spectrum.points.push_back(point_of(band, options.confidence));
+        } else if (!is_last) {
+            continue;
+        }
+        hi_hz = lo_hz;
     }
     std::ranges::reverse(spectrum.points);
     return spectrum;

@@ -13,7 +13,7 @@
 namespace gyrolog {
 
 struct SpectrumPoint {
-    double f_hz = 0.0;  // middle of the band it averages
+    double f_hz = 0.0;  // of the band it averages, the geometric middle
     double density = 0.0;
     double lo = 0.0;  // confidence interval by chi-square
     double hi = 0.0;
@@ -28,12 +28,13 @@ struct PowerSpectrum {
 
 struct SpectrumOptions {
     double confidence = 0.683;
-    int points_per_decade = 20;
+    int points_per_decade = 40;
+    double least_dof = 6.0;  // bands are made wider until they have as many; the lowest may have fewer
 };
 
 // From two periods in the longest segment up to half the rate. Empty for fewer than 16 samples in the longest
-// segment. The lowest three or four points of a spectrum that rises towards 0 as steeply as 1/f^2 come out
-// high, the lowest by 40 %: the taper smears each over four bins.
+// segment. The lowest point of a spectrum that rises towards 0 as steeply as 1/f^2 comes out high, by some 40
+// %: the taper smears each bin over four.
 PowerSpectrum power_spectrum(const Column& column, std::span<const Segment> segments, double rate_hz,
                              const SpectrumOptions& options = {});
 PowerSpectrum power_spectrum(std::span<const AveragedPeriodogram> periodograms,
