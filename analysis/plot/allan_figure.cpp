@@ -1,12 +1,13 @@
 #include "analysis/plot/allan_figure.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/plot/number_text.hpp"
+#include "analysis/plot/spectrum_panel.hpp"
+#include "analysis/plot/trace_look.hpp"
 
 namespace gyrolog {
 namespace {
@@ -24,10 +25,6 @@ constexpr double mark_beyond_tau = 10.0;
 constexpr double mark_beyond_deviation = 100.0;
 
 const std::vector<double> slope_dash_px{2.0, 5.0};
-const std::vector<double> model_dash_px{14.0, 7.0};
-
-constexpr std::array<Marker, 6> markers{Marker::circle,  Marker::square,        Marker::triangle,
-                                        Marker::diamond, Marker::triangle_down, Marker::hexagon};
 
 bool is_usable(double value) { return std::isfinite(value) && value > 0.0; }
 
@@ -57,8 +54,7 @@ struct Extent {
 struct Drafting {
     const AllanTrace& trace;
     const DeviationUnit& unit;
-    Colour colour;
-    Marker marker;
+    TraceLook look;
 
     double on_paper(double value) const { return value * unit.per_unit_of_data; }
 
@@ -87,6 +83,7 @@ Curve Drafting::measured() const {
     for (const AllanPoint& p : trace.curve.points) {
         curve.x.push_back(p.tau_s);
         curve.y.push_back(on_paper(p.deviation));
+        if (look.is_one_of_many) { continue; }
         curve.lo.push_back(on_paper(p.lo));
         curve.hi.push_back(on_paper(p.hi));
         has_band = has_band || (is_usable(p.lo) && p.hi > p.lo);
@@ -95,8 +92,8 @@ Curve Drafting::measured() const {
         curve.lo.clear();
         curve.hi.clear();
     }
-    curve.stroke = {colour, 2.5, {}};
-    curve.marker = marker;
+    curve.stroke = {look.colour, look.width_px, {}};
+    curve.marker = look.marker;
     curve.marker_size_px = 10.0;
     curve.markers_apart_px = 34.0;
     return curve;
@@ -108,7 +105,7 @@ Curve Drafting::model() const {
         curve.x.push_back(p.tau_s);
         curve.y.push_back(on_paper(p.deviation));
     }
-    curve.stroke = {mixed(colour, colours::ink, 0.45), 2.0, model_dash_px};
+    curve.stroke = {look.model_colour(), 2.0, model_dash_px};
     curve.sets_range = false;
     return curve;
 }
@@ -120,11 +117,11 @@ void Drafting::add_slope(Panel& panel, const char* name, Point mark, double slop
         line.x.push_back(tau_s);
         line.y.push_back(mark.y * std::pow(tau_s / mark.x, slope));
     }
-    line.stroke = {colour, 1.5, slope_dash_px};
+    line.stroke = {look.colour, 1.5, slope_dash_px};
     line.sets_range = false;
     panel.curves.push_back(std::move(line));
     if (shown.is_near(mark)) {
-        panel.callouts.push_back({mark.x, mark.y, name, mixed(colour, colours::ink, 0.25), marker});
+        panel.callouts.push_back({mark.x, mark.y, name, mixed(look.colour, colours::ink, 0.25), look.marker});
     }
 }
 
@@ -183,6 +180,27 @@ std::string cell(const std::optional<PlottedCoefficient>& coefficient, double fa
     return number_with_uncertainty(coefficient->value * factor, uncertainty);
 }
 
+// Of several traces the smallest and the largest value.
+std::string cell(const TraceGroup& group, const Column& column) {
+    if (group.traces.size() == 1) { return cell(group.traces[0]->*column.coefficient, column.factor); }
+    std::vector<double> values;
+    for (const AllanTrace* trace : group.traces) {
+        if (const auto& coefficient = trace->*column.coefficient) {
+            values.push_back(coefficient->value * column.factor);
+        }
+    }
+    if (values.empty()) { return "–"; }
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    return rounded_number(*least) + " … " + rounded_number(*most);
+}
+
+std::vector<std::string> legend_row(const TraceGroup& group, const std::vector<Column>& columns) {
+    const std::size_t count = group.traces.size();
+    std::vector<std::string> row{count == 1 ? group.name : std::to_string(count) + " × " + group.name};
+    for (const Column& column : columns) { row.push_back(cell(group, column)); }
+    return row;
+}
+
 // Rows that explain what the curves have in common.
 void add_keys(Panel& panel, const AllanFigure& allan, bool has_band) {
     const auto key = [&](const std::string& text) -> Curve& {
@@ -192,8 +210,9 @@ void add_keys(Panel& panel, const AllanFigure& allan, bool has_band) {
         row.stroke = {colours::muted_ink, 1.5, {}};
         return row;
     };
+    const bool are_many = groups_of(allan.traces).size() < allan.traces.size();
     const auto has_model = [](const AllanTrace& trace) { return !trace.model.empty(); };
-    if (std::any_of(allan.traces.begin(), allan.traces.end(), has_model)) {
+    if (!are_many && std::any_of(allan.traces.begin(), allan.traces.end(), has_model)) {
         Curve& row = key("model");
         row.stroke = {colours::ink, 2.0, model_dash_px};
     }
@@ -202,8 +221,16 @@ void add_keys(Panel& panel, const AllanFigure& allan, bool has_band) {
         row.lo = row.hi = {0.0};
         row.stroke.width_px = 0.0;
     }
+    const auto has_line = [](const AllanTrace& trace) {
+        return !trace.lines.empty() && !trace.spectrum.points.empty();
+    };
+    if (!are_many && std::any_of(allan.traces.begin(), allan.traces.end(), has_line)) {
+        Curve& row = key("line in the spectrum");
+        row.stroke.width_px = 0.0;
+        row.marker = Marker::triangle_down;
+    }
     const auto has_slope = [](const AllanTrace& trace) { return trace.N || trace.B || trace.K; };
-    if (allan.slope_lines && std::any_of(allan.traces.begin(), allan.traces.end(), has_slope)) {
+    if (!are_many && allan.slope_lines && std::any_of(allan.traces.begin(), allan.traces.end(), has_slope)) {
         Curve& row = key("slopes −½, 0, +½ of N, B, K");
         row.stroke = {colours::ink, 1.5, slope_dash_px};
     }
@@ -218,12 +245,7 @@ void add_guides(Panel& panel) {
     if (is_marked("K")) { panel.guides.push_back({tau_of_K_s, "3 s"}); }
 }
 
-}  // namespace
-
-DeviationUnit DeviationUnit::rad_per_s_as_deg_per_s() { return {"°/s", deg_per_rad, s_per_h}; }
-DeviationUnit DeviationUnit::rad_per_s() { return {"rad/s", 1.0, deg_per_rad * s_per_h}; }
-
-Figure figure_of(const AllanFigure& allan) {
+Panel allan_panel(const AllanFigure& allan) {
     Panel panel;
     panel.x = {"averaging time τ (s)", ScaleKind::logarithmic, {}};
     panel.y = {"Allan deviation σ(τ) (" + allan.unit.name + ")", ScaleKind::logarithmic, {}};
@@ -234,43 +256,57 @@ Figure figure_of(const AllanFigure& allan) {
         panel.legend_header.emplace_back();
         for (const Column& column : columns) { panel.legend_header.push_back(column.header); }
     }
+    const std::vector<TraceLook> looks = looks_of(allan.traces);
+    const std::vector<TraceGroup> groups = groups_of(allan.traces);
     std::vector<Drafting> draftings;
-    for (const AllanTrace& trace : allan.traces) {
-        const std::size_t i = draftings.size();
-        draftings.push_back(
-            {trace, allan.unit, colours::cycle[i % colours::cycle.size()], markers[i % markers.size()]});
+    Extent shown;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        draftings.push_back({allan.traces[i], allan.unit, looks[i]});
+        for (const AllanPoint& p : allan.traces[i].curve.points) {
+            shown.add({p.tau_s, p.deviation * allan.unit.per_unit_of_data});
+        }
     }
     bool has_band = false;
-    if (allan.slope_lines) {
-        Extent shown;
-        for (const AllanTrace& trace : allan.traces) {
-            for (const AllanPoint& p : trace.curve.points) {
-                shown.add({p.tau_s, p.deviation * allan.unit.per_unit_of_data});
-            }
-        }
-        for (const Drafting& drafting : draftings) { drafting.add_slopes(panel, shown); }
+    for (const Drafting& drafting : draftings) {
+        if (allan.slope_lines && !drafting.look.is_one_of_many) { drafting.add_slopes(panel, shown); }
     }
     for (const Drafting& drafting : draftings) {
         Curve measured = drafting.measured();
         has_band = has_band || !measured.lo.empty();
-        measured.legend.push_back(drafting.trace.name);
-        for (const Column& column : columns) {
-            measured.legend.push_back(cell(drafting.trace.*column.coefficient, column.factor));
+        for (const TraceGroup& group : groups) {
+            if (group.traces[0] == &drafting.trace) { measured.legend = legend_row(group, columns); }
         }
         panel.curves.push_back(std::move(measured));
-        if (!drafting.trace.model.empty()) { panel.curves.push_back(drafting.model()); }
+        if (!drafting.look.is_one_of_many && !drafting.trace.model.empty()) {
+            panel.curves.push_back(drafting.model());
+        }
     }
     add_keys(panel, allan, has_band);
     add_guides(panel);
 
+    return panel;
+}
+
+}  // namespace
+
+DeviationUnit DeviationUnit::rad_per_s_as_deg_per_s() { return {"°/s", deg_per_rad, s_per_h}; }
+DeviationUnit DeviationUnit::rad_per_s() { return {"rad/s", 1.0, deg_per_rad * s_per_h}; }
+
+Figure figure_of(const AllanFigure& allan) {
     Figure figure;
     figure.title = allan.title;
     figure.source = allan.source;
     figure.facts = allan.facts;
-    figure.panels.push_back(std::move(panel));
     figure.width_px = allan.width_px;
     figure.height_px = allan.height_px;
     figure.scale = allan.scale;
+    figure.panels.push_back(allan_panel(allan));
+    if (has_spectrum(allan)) {
+        figure.panels.push_back(spectrum_panel(allan));
+        figure.panels.back().height_share =
+            static_cast<double>(allan.spectrum_height_px) / static_cast<double>(allan.height_px);
+        figure.height_px += allan.spectrum_height_px;
+    }
     return figure;
 }
 

@@ -1,5 +1,9 @@
 // The Allan deviation figure: curves of one or several axes with their confidence bands, the lines by which
-// N, B and K are read (IEEE Std 952-1997, C.1), a model beside them, and a table of the coefficients.
+// N, B and K are read (IEEE Std 952-1997, C.1), a model beside them, and a table of the coefficients. Below
+// it, where there are spectra, the same noise by frequency.
+//
+// More than six traces, an array's, are drawn as thin lines in one colour for each group, and the table says
+// the smallest and the largest coefficient in each.
 #pragma once
 
 #include <optional>
@@ -8,6 +12,8 @@
 
 #include "analysis/allan/allan_curve.hpp"
 #include "analysis/plot/figure.hpp"
+#include "analysis/spectrum/power_spectrum.hpp"
+#include "analysis/spectrum/spectral_lines.hpp"
 
 namespace gyrolog {
 
@@ -33,11 +39,20 @@ struct ModelPoint {
     double deviation = 0.0;  // unit of the curve
 };
 
+struct ModelDensity {
+    double f_hz = 0.0;
+    double density = 0.0;  // two-sided, unit of the curve squared, per Hz
+};
+
 struct AllanTrace {
     std::string name;  // "x"
     AllanCurve curve;
     std::optional<PlottedCoefficient> N, B, K;
     std::vector<ModelPoint> model;  // by rising tau
+    PowerSpectrum spectrum;
+    std::vector<ModelDensity> model_spectrum;  // by rising frequency
+    std::vector<SpectralLine> lines;           // strongest first
+    std::string group;                         // "x" for every x axis of an array; empty: its name
 };
 
 struct AllanFigure {
@@ -49,6 +64,7 @@ struct AllanFigure {
     bool slope_lines = true;
     int width_px = 1600;
     int height_px = 1100;
+    int spectrum_height_px = 640;  // added where a trace has a spectrum
     double scale = 1.0;
 };
 

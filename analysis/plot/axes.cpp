@@ -50,7 +50,8 @@ double AxesDrawing::label_width_px(const Axis& axis) const {
 Margins AxesDrawing::margins(const Box& area) const {
     const double beyond_labels_px = (title_gap_px + title_text_px * line_share + edge_px) * scale_;
     const double up_to_labels_px = (tick_px + label_gap_px) * scale_;
-    const double above_px = panel_.guides.empty() ? 0.6 * label_text_px : guide_text_px + label_gap_px;
+    const bool has_words_above = !panel_.guides.empty() || !panel_.caption.empty();
+    const double above_px = has_words_above ? guide_text_px + label_gap_px : 0.6 * label_text_px;
     Margins margins{120.0 * scale_, 120.0 * scale_, above_px * scale_,
                     up_to_labels_px + label_text_px * scale_ + beyond_labels_px};
     for (int round = 0; round < 2; ++round) {
@@ -150,6 +151,12 @@ void AxesDrawing::draw_titles(Canvas& canvas, const Axes& axes) const {
     canvas.text(typeface_, fitted(axes.y.title, plot.height()),
                 {plot.left - away_px - label_width_px(axes.y), plot.centre().y},
                 {size_px, colours::ink, Across::centre, Along::baseline, true});
+    if (!panel_.caption.empty()) {
+        const double caption_px = guide_text_px * scale_;
+        canvas.text(typeface_, typeface_.shortened(panel_.caption, caption_px, plot.width(), Ellipsis::end),
+                    {plot.left, plot.top - label_gap_px * scale_},
+                    {caption_px, colours::muted_ink, Across::left, Along::baseline});
+    }
     if (axes.right) {
         canvas.text(typeface_, fitted(axes.right->title, plot.height()),
                     {plot.right + away_px + label_width_px(*axes.right), plot.centre().y},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "analysis/plot/canvas.hpp"
 #include "analysis/plot/panel.hpp"
@@ -24,12 +25,30 @@ std::string size_text(double width_px, double height_px) {
     return std::to_string(std::lround(width_px)) + " x " + std::to_string(std::lround(height_px));
 }
 
+std::size_t columns_of(const Figure& figure) { return static_cast<std::size_t>(std::max(figure.columns, 1)); }
+
+std::vector<double> row_shares(const Figure& figure) {
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+        if (i % columns_of(figure) == 0) { shares.push_back(0.0); }
+        shares.back() = std::max(shares.back(), figure.panels[i].height_share);
+    }
+    return shares;
+}
+
 std::string problem_with(const Figure& figure) {
     if (!(figure.scale >= 0.1 && figure.scale <= 20.0)) {
         return "draw a figure of scale " + std::to_string(figure.scale) + ": scales go from 0.1 to 20";
     }
-    const double least_width_px = 480.0 * figure.scale;
-    const double least_height_px = (130.0 + 230.0 * static_cast<double>(figure.panels.size())) * figure.scale;
+    const std::vector<double> shares = row_shares(figure);
+    for (const double share : shares) {
+        if (!(share > 0.0)) { return "draw a row of panels of no height"; }
+    }
+    const double rows = shares.empty() ? 0.0
+                                       : std::accumulate(shares.begin(), shares.end(), 0.0) /
+                                             *std::min_element(shares.begin(), shares.end());
+    const double least_width_px = 480.0 * static_cast<double>(columns_of(figure)) * figure.scale;
+    const double least_height_px = (130.0 + 230.0 * rows) * figure.scale;
     const bool fits = figure.width_px >= least_width_px && figure.height_px >= least_height_px &&
                       figure.width_px <= largest_px && figure.height_px <= largest_px;
     for (const Panel& panel : figure.panels) {
@@ -44,6 +63,25 @@ std::string problem_with(const Figure& figure) {
     return "draw a figure of " + size_text(figure.width_px, figure.height_px) +
            " pixels: with letters of this scale " + size_text(least_width_px, least_height_px) + " to " +
            size_text(largest_px, largest_px) + " is possible";
+}
+
+std::vector<Box> panel_areas(const Figure& figure, double top) {
+    const double edge = edge_px * figure.scale;
+    const double gap_px = between_panels_px * figure.scale;
+    const std::vector<double> shares = row_shares(figure);
+    const auto rows = static_cast<double>(shares.size());
+    const auto columns = static_cast<double>(columns_of(figure));
+    const double share_px = (figure.height_px - edge - top - gap_px * (rows - 1.0)) /
+                            std::accumulate(shares.begin(), shares.end(), 0.0);
+    const double width_px = (figure.width_px - 2.0 * edge - gap_px * (columns - 1.0)) / columns;
+    std::vector<Box> areas;
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+        const std::size_t row = i / columns_of(figure);
+        if (i > 0 && i % columns_of(figure) == 0) { top += share_px * shares[row - 1] + gap_px; }
+        const double left = edge + static_cast<double>(i % columns_of(figure)) * (width_px + gap_px);
+        areas.push_back({left, top, left + width_px, top + share_px * shares[row]});
+    }
+    return areas;
 }
 
 // Source and facts in as few lines as hold them. The source gets what the facts leave of the first line.
@@ -104,21 +142,14 @@ Rendering render(const Figure& figure) {
     if (!bold) { return rendering; }
 
     Canvas canvas(figure.width_px, figure.height_px);
-    const double edge = edge_px * figure.scale;
     const double top = draw_heading(canvas, figure, *regular, *bold) + after_heading_px * figure.scale;
-    const double gap_px = between_panels_px * figure.scale;
-    const auto count = static_cast<double>(std::max<std::size_t>(figure.panels.size(), 1));
-    const double height_px = (figure.height_px - edge - top - gap_px * (count - 1.0)) / count;
-
+    const std::vector<Box> areas = panel_areas(figure, top);
     std::vector<PanelDrawing> drawings;
-    std::vector<Box> areas;
     Margins widest;
     drawings.reserve(figure.panels.size());
-    for (const Panel& panel : figure.panels) {
-        const double panel_top = top + static_cast<double>(areas.size()) * (height_px + gap_px);
-        areas.push_back({edge, panel_top, figure.width_px - edge, panel_top + height_px});
-        drawings.emplace_back(panel, *regular, figure.scale);
-        const Margins margins = drawings.back().margins(areas.back());
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        drawings.emplace_back(figure.panels[i], *regular, figure.scale);
+        const Margins margins = drawings.back().margins(areas[i]);
         widest.left_px = std::max(widest.left_px, margins.left_px);
         widest.right_px = std::max(widest.right_px, margins.right_px);
         widest.top_px = std::max(widest.top_px, margins.top_px);

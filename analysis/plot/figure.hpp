@@ -1,6 +1,9 @@
 // A figure of one or more panels of curves, drawn without a display. Plain numbers in, a PNG out; nobody who
 // includes this sees OpenCV or FreeType.
 //
+// Panels of a row are equally wide, those of a column have the same left and right edges, and a row is as
+// high as the largest share in it.
+//
 // Values a scale cannot show (NaN, infinite, zero or less on a logarithmic scale) are left out and break
 // their curve. A panel with nothing to show says "no data".
 #pragma once
@@ -66,6 +69,11 @@ struct SecondUnit {
     double factor = 1.0;  // right-hand value = left-hand value * factor; positive
 };
 
+enum class LegendPlace {
+    in_plot,  // where it covers no data, or else below
+    beside,   // to the right, where there is room for a plot as well; else as in_plot
+};
+
 struct Panel {
     AxisSpec x;
     AxisSpec y;
@@ -74,13 +82,18 @@ struct Panel {
     std::vector<Callout> callouts;
     std::vector<Guide> guides;
     std::vector<std::string> legend_header;  // over the legend's columns; may be empty
+    std::vector<std::string> notes;          // lines of text below the legend
+    LegendPlace legend_place = LegendPlace::in_plot;
+    std::string caption;        // above the plot
+    double height_share = 1.0;  // of the figure's height, against the other rows' panels
 };
 
 struct Figure {
     std::string title;
     std::string source;  // where the data came from; shortened in its middle when the line is too long
     std::vector<std::string> facts;  // follow the source, broken into lines between facts
-    std::vector<Panel> panels;       // from top to bottom
+    std::vector<Panel> panels;       // row by row from the top
+    int columns = 1;
     int width_px = 1600;
     int height_px = 1100;
     double scale = 1.0;  // of letters and strokes; 2 with twice the pixels gives the same picture, finer

@@ -18,7 +18,7 @@ constexpr double name_width_max_px = 320.0;
 }  // namespace
 
 Legend::Legend(const Panel& panel, const Typeface& typeface, double scale)
-    : typeface_(typeface), scale_(scale), header_(panel.legend_header) {
+    : typeface_(typeface), scale_(scale), header_(panel.legend_header), notes_(panel.notes) {
     const bool has_columns = header_.size() > 1;
     for (const Curve& curve : panel.curves) {
         if (curve.legend.empty()) { continue; }
@@ -32,14 +32,20 @@ Legend::Legend(const Panel& panel, const Typeface& typeface, double scale)
     }
     widen_columns(header_);
     for (const Row& row : rows_) { widen_columns(row.cells); }
-    size_.width_px = (2.0 * padding_px + sample_px + after_sample_px) * scale_;
+    if (!rows_.empty() || !header_.empty()) {
+        size_.width_px = (2.0 * padding_px + sample_px + after_sample_px) * scale_;
+    }
     for (std::size_t i = 0; i < column_px_.size(); ++i) {
         size_.width_px += column_px_[i] + (i == 0 ? 0.0 : between_columns_px * scale_);
     }
     arrange_keys();
     const double table_lines = static_cast<double>(rows_.size() + (header_.empty() ? 0 : 1));
     const double key_lines = keys_.empty() ? 0.0 : keys_.back().line + 1.0;
-    size_.height_px = ((table_lines + key_lines) * row_px + padding_px) * scale_;
+    const auto note_lines = static_cast<double>(notes_.size());
+    for (const std::string& note : notes_) {
+        size_.width_px = std::max(size_.width_px, width_px(note) + 2.0 * padding_px * scale_);
+    }
+    size_.height_px = ((table_lines + key_lines + note_lines) * row_px + padding_px) * scale_;
 }
 
 double Legend::width_px(const std::string& text) const {
@@ -114,6 +120,12 @@ void Legend::draw(Canvas& canvas, const Box& box) const {
         const Point here{box.left + key.left_px, at.y + key.line * row_px * scale_};
         draw_sample(canvas, here, *key.curve);
         draw_cells(canvas, here, {key.name}, colours::ink);
+    }
+    if (!keys_.empty()) { at.y += (keys_.back().line + 1) * row_px * scale_; }
+    for (const std::string& note : notes_) {
+        canvas.text(typeface_, note, {box.left + padding_px * scale_, at.y},
+                    {text_px * scale_, colours::ink, Across::left, Along::middle});
+        at.y += row_px * scale_;
     }
 }
 

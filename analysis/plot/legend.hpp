@@ -1,5 +1,6 @@
 // The key to a panel: a table with a sample of each curve's line, its name and its values. Where there are
-// columns of values, curves that have a name only follow below the table, side by side.
+// columns of values, curves that have a name only follow below the table, side by side. Last come the panel's
+// notes.
 #pragma once
 
 #include <string>
@@ -16,7 +17,7 @@ public:
     // Takes the panel's curves that have legend cells. Panel and typeface must outlive it.
     Legend(const Panel& panel, const Typeface& typeface, double scale);
 
-    bool empty() const { return rows_.empty() && keys_.empty(); }
+    bool empty() const { return rows_.empty() && keys_.empty() && notes_.empty(); }
     Size size() const { return size_; }
     void draw(Canvas& canvas, const Box& box) const;
 
@@ -44,6 +45,7 @@ private:
     std::vector<std::string> header_;
     std::vector<Row> rows_;
     std::vector<Key> keys_;
+    std::vector<std::string> notes_;
     std::vector<double> column_px_;
     Size size_;
 };

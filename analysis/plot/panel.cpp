@@ -116,6 +116,10 @@ std::vector<Polyline> PanelDrawing::bands_of(const Curve& curve, const Axes& axe
         const Point low = pixel_of(axes, curve.x[i], curve.lo[i]);
         const Point high = pixel_of(axes, curve.x[i], curve.hi[i]);
         if (std::isfinite(low.x) && std::isfinite(low.y) && std::isfinite(high.y)) {
+            if (curve.shape == CurveShape::steps && !upper.empty()) {
+                lower.push_back({low.x, lower.back().y});
+                upper.push_back({high.x, upper.back().y});
+            }
             lower.push_back(low);
             upper.push_back(high);
         } else {
@@ -214,6 +218,16 @@ PanelDrawing::Arrangement PanelDrawing::arrange_with_legend(const Box& area, con
     Arrangement arranged = arrange(area, margins);
     if (legend.empty() || !arranged.shows_data()) { return arranged; }
     const Size size = legend.size();
+    const double beside_px = size.width_px + legend_gap_px * scale_;
+    if (panel_.legend_place == LegendPlace::beside && size.height_px <= arranged.axes.plot.height() &&
+        arranged.axes.plot.width() - beside_px > least_plot_share * area.width()) {
+        Margins narrower = margins;
+        narrower.right_px += beside_px;
+        arranged = arrange(area, narrower);
+        const double top = arranged.axes.plot.top;
+        arranged.legend = Box{area.right - size.width_px, top, area.right, top + size.height_px};
+        return arranged;
+    }
     // Slope lines and models are aids: rather than push the legend out of the plot, let it cover some.
     for (const bool only_data : {false, true}) {
         arranged.legend = place_in_corner(size, arranged.axes.plot, clear_px * scale_,

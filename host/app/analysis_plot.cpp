@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "analysis/plot/allan_figure.hpp"
+#include "analysis/plot/histogram_figure.hpp"
 #include "host/app/quantity.hpp"
 #include "host/base/file_output.hpp"
 
@@ -29,6 +30,12 @@ AllanTrace trace_of(const AxisReport& axis) {
         const double variance = axis.fit.best.allan_variance(point.tau_s);
         if (variance > 0.0) { trace.model.push_back({point.tau_s, std::sqrt(variance)}); }
     }
+    trace.spectrum = axis.spectrum;
+    for (const SpectrumPoint& point : axis.spectrum.points) {
+        trace.model_spectrum.push_back({point.f_hz, axis.fit.best.psd(point.f_hz)});
+    }
+    trace.lines = axis.lines;
+    trace.group = axis.axis.substr(0, 1);
     return trace;
 }
 
@@ -38,22 +45,51 @@ std::string completeness(const AnalysisReport& report) {
     return fmt::format("{} missing in {} dropouts", report.samples_missing, report.dropouts);
 }
 
-AllanFigure figure_of(const AnalysisReport& report, const std::string& source) {
+std::vector<std::string> facts_of(const AnalysisReport& report) {
+    return {fmt::format("{:.6g} Hz", report.rate_hz), format_duration(report.duration_s),
+            format_count(report.samples) + " samples", completeness(report)};
+}
+
+AllanFigure figure_of(const AnalysisReport& report) {
     AllanFigure figure;
-    figure.source = source;
-    figure.facts = {fmt::format("{:.6g} Hz", report.rate_hz), format_duration(report.duration_s),
-                    format_count(report.samples) + " samples", completeness(report)};
+    figure.title = "Allan deviation and noise density";
+    figure.source = report.name;
+    figure.facts = facts_of(report);
     if (report.unit.name == "lsb") { figure.unit = DeviationUnit::as_given("lsb"); }
     for (const AxisReport& axis : report.axes) { figure.traces.push_back(trace_of(axis)); }
     return figure;
 }
 
+HistogramFigure histograms_of(const AnalysisReport& report, const Recording& recording) {
+    HistogramFigure figure;
+    figure.source = report.name;
+    figure.facts = facts_of(report);
+    const bool is_lsb = report.unit.name == "lsb";
+    figure.unit_name = is_lsb ? "lsb" : "°/s";
+    figure.per_unit_of_data = is_lsb ? 1.0 : deg_per_rad;
+    for (const AxisReport& axis : report.axes) {
+        const Column* column = recording.find("g" + axis.axis);
+        if (column == nullptr) { continue; }
+        figure.traces.push_back({axis.axis, amplitude_histogram(*column), axis.bias.expanded_uncertainty,
+                                 axis.bias.coverage_factor});
+    }
+    return figure;
+}
+
+Status write_png(const Rendering& rendering, const std::string& path) {
+    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
+    return write_file(path, rendering.png);
+}
+
 }  // namespace
 
 Status write_analysis_plot(const AnalysisReport& report, const std::string& path) {
-    const Rendering rendering = render(figure_of(report, report.name));
-    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
-    return write_file(path, rendering.png);
+    return write_png(render(figure_of(report)), path);
+}
+
+Status write_histogram_plot(const AnalysisReport& report, const Recording& recording,
+                            const std::string& path) {
+    return write_png(render(histograms_of(report, recording)), path);
 }
 
 }  // namespace gyrolog

@@ -1,4 +1,4 @@
-// The figure of an analysis.
+// The figures of an analysis.
 #pragma once
 
 #include <string>
@@ -8,7 +8,11 @@
 
 namespace gyrolog {
 
-// Draws the report's curves into a PNG file.
+// Draws the report's curves and spectra into a PNG file.
 Status write_analysis_plot(const AnalysisReport& report, const std::string& path);
+
+// Draws how the samples of the axes that the report is about lie around their bias.
+Status write_histogram_plot(const AnalysisReport& report, const Recording& recording,
+                            const std::string& path);
 
 }  // namespace gyrolog

@@ -43,6 +43,9 @@ Status write_results(Console& console, const AnalysisRequest& request, const Rec
         request.on_stage("plot");
         GYROLOG_CHECK(write_analysis_plot(report, request.plot_path));
     }
+    if (!request.histogram_path.empty()) {
+        GYROLOG_CHECK(write_histogram_plot(report, recording, request.histogram_path));
+    }
     if (!request.model_path.empty()) {
         if (report.unit.name == "lsb") {
             return Error{
@@ -53,8 +56,9 @@ Status write_results(Console& console, const AnalysisRequest& request, const Rec
         GYROLOG_CHECK(write_model(fitted_model(report, recording), request.model_path));
     }
     request.on_stage("report");
-    if (request.json_path != "-") { console.out << analysis_text(report) << std::flush; }
-    for (const std::string* path : {&request.json_path, &request.plot_path, &request.model_path}) {
+    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", analysis_text(report))); }
+    for (const std::string* path :
+         {&request.json_path, &request.plot_path, &request.histogram_path, &request.model_path}) {
         if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
     }
     return {};

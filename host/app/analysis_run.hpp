@@ -16,6 +16,7 @@ struct AnalysisRequest {
     std::string recording_path;
     std::string json_path;  // "-" is standard output; empty: not wanted
     std::string plot_path;
+    std::string histogram_path;
     std::string model_path;
     std::string deviation = "overlapping";
     std::string convention = "sp1065";

@@ -37,7 +37,10 @@ Action setup_analyze(CLI::App& app) {
             ->type_name("FILE.csv");
     app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")
         ->type_name("FILE");
-    app.add_option("--plot", request->plot_path, "Draw the Allan curves")
+    app.add_option("--plot", request->plot_path, "Draw the Allan curves and the spectra")
+        ->type_name("FILE.png")
+        ->check(png_file());
+    app.add_option("--histogram", request->histogram_path, "Draw how the samples lie about the bias")
         ->type_name("FILE.png")
         ->check(png_file());
     app.add_option("--model", request->model_path, "Write the noise model for simulations")

@@ -1,0 +1,14 @@
+// The noise of the traces by frequency, as root of the two-sided power spectral density: white noise N lies
+// at the height N, and what a data sheet calls noise density (one-sided) is sqrt(2) times as high.
+#pragma once
+
+#include "analysis/plot/allan_figure.hpp"
+
+namespace gyrolog {
+
+// In the same colours as the Allan curves, with the strongest lines marked; the legend is theirs.
+Panel spectrum_panel(const AllanFigure& allan);
+
+bool has_spectrum(const AllanFigure& allan);
+
+}  // namespace gyrolog
