@@ -12,6 +12,7 @@ namespace {
 constexpr double standard_gravity = 9.80665;  // m/s^2, 3rd CGPM 1901
 constexpr double rate_tolerance = 0.03;       // the sensor's clock is good to 1 %
 constexpr double longest_pause_s = 1e9;
+constexpr std::uint64_t most_rows_ahead = std::uint64_t{1} << 26U;  // a file's size may be a claim only
 
 bool same_setting(const glp_config& a, const glp_config& b) {
     return a.layout == b.layout && a.rate_mHz == b.rate_mHz && a.decimation == b.decimation &&
@@ -93,6 +94,11 @@ void RecordingBuilder::take_samples(const SamplePlace& place, const glp_samples&
 void RecordingBuilder::append(const SamplePlace& place, const glp_samples& samples) {
     const std::size_t stride = glp_sample_bytes(samples.layout);
     const std::size_t fields = stride / 2;
+    if (current_.rows == 0) {
+        const auto rows = std::min<std::uint64_t>(bytes_to_come_ / stride, most_rows_ahead);
+        for (auto& column : current_.fields) { column.reserve(rows); }
+    }
+    bytes_to_come_ -= std::min<std::uint64_t>(bytes_to_come_, samples.count * stride);
     for (std::size_t field = 0; field < fields; ++field) {
         append_field(current_.fields[field], samples.samples + 2 * field, samples.count, stride);
     }

@@ -23,6 +23,10 @@ namespace gyrolog {
 
 class RecordingBuilder {
 public:
+    // Room is made at once for as many samples as so many bytes can hold: columns that grow are copied again
+    // and again. What is not used of it takes address space only.
+    explicit RecordingBuilder(std::uint64_t stream_bytes = 0) : bytes_to_come_(stream_bytes) {}
+
     // `boot` is LinkAccounts::boot() at this frame.
     void take_config(std::uint32_t boot, const glp_config& config);
     void take_samples(const SamplePlace& place, const glp_samples& samples);
@@ -75,6 +79,7 @@ private:
 
     std::optional<glp_config> config_;  // as last told
     std::uint32_t config_boot_ = 0;
+    std::uint64_t bytes_to_come_ = 0;
     Stretch current_;
     Stretch longest_;
     std::uint64_t left_out_ = 0;

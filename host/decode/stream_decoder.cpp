@@ -24,7 +24,7 @@ bool StreamDecoder::take(const Transfer& transfer) {
     before_start_ = report();
     accounts_ = {};
     timeline_ = {};
-    builder_ = {};
+    builder_ = RecordingBuilder(options_.stream_bytes);
     hello_.reset();
     config_.reset();
     status_.reset();

@@ -26,11 +26,13 @@ namespace gyrolog {
 struct StreamDecoderOptions {
     bool keep_samples = false;           // without it, memory does not grow with the stream
     MessageHandler* observer = nullptr;  // gets every message but the duplicates; may be null
+    std::uint64_t stream_bytes = 0;      // expected, for making room; 0: not known
 };
 
 class StreamDecoder : private MessageHandler {
 public:
-    explicit StreamDecoder(StreamDecoderOptions options = {}) : options_(options) {}
+    explicit StreamDecoder(StreamDecoderOptions options = {})
+        : options_(options), builder_(options.stream_bytes) {}
 
     // Feeds what a transfer carries of the stream. The transfer by which the host first raises DTR begins the
     // accounts anew and is answered by true: what a board still had from an earlier listener is in the bytes,

@@ -7,13 +7,23 @@
 #include <string_view>
 
 namespace gyrolog {
+namespace {
+
+// 0 when it cannot be known.
+std::uint64_t size_of(const std::string& path) {
+    std::error_code unknown;
+    const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+    return unknown ? 0 : size;
+}
+
+}  // namespace
 
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
                                    const StageObserver& on_stage) {
     GYROLOG_TRY(CaptureReader reader, CaptureReader::open(path));
     LoadedCapture loaded;
-    loaded.decoder = std::make_unique<StreamDecoder>(
-        StreamDecoderOptions{.keep_samples = keep_samples, .observer = nullptr});
+    loaded.decoder = std::make_unique<StreamDecoder>(StreamDecoderOptions{
+        .keep_samples = keep_samples, .observer = nullptr, .stream_bytes = size_of(path)});
     bool any_data = false;
     while (true) {
         on_stage("read");
