@@ -1,0 +1,104 @@
+#include <chrono>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "host/app/command_line.hpp"
+#include "host/app/stage_clock.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using nlohmann::json;
+
+// A recording analysed twice, which takes a second each time.
+class AnalyzeCommand : public ::testing::Test {
+protected:
+    struct Answer {
+        json report;  // on standard output
+        std::string err;
+    };
+
+    static void SetUpTestSuite() {
+        const TemporaryFolder folder;
+        const std::string path = folder.path("run.pcapng");
+        std::ostringstream quiet;
+        ASSERT_EQ(
+            run_command_line({"capture", "--device", "sim:rate=100,seed=7", "--samples", "2000", "-o", path},
+                             {quiet, quiet}),
+            ExitCode::ok)
+            << quiet.str();
+        usual_ = analyze({path});
+        every_m_ = analyze({path, "--m", "all", "--timing"});
+    }
+
+    static Answer analyze(std::vector<std::string> arguments) {
+        std::ostringstream out;
+        std::ostringstream err;
+        arguments.insert(arguments.begin(), {"analyze", "--json", "-"});
+        EXPECT_EQ(run_command_line(std::move(arguments), {out, err}), ExitCode::ok) << err.str();
+        return {json::parse(out.str(), nullptr, false), err.str()};
+    }
+
+    static Answer usual_;
+    static Answer every_m_;
+};
+
+AnalyzeCommand::Answer AnalyzeCommand::usual_;
+AnalyzeCommand::Answer AnalyzeCommand::every_m_;
+
+TEST_F(AnalyzeCommand, AtEveryFactorGivesEveryPointAndTheSameOnesAsAtTheUsualFactors) {
+    const json& every = every_m_.report["axes"]["x"]["allan"];
+    const json& usual = usual_.report["axes"]["x"]["allan"];
+    ASSERT_EQ(every.size(), 1000U);
+    ASSERT_GT(usual.size(), 50U);
+    for (const json& point : usual) {
+        const auto m = point["m"].get<std::size_t>();
+        const json& same = every.at(m - 1);
+        EXPECT_EQ(same["m"], m);
+        EXPECT_EQ(same["value"], point["value"]);
+        // Where there are so many points, intervals are interpolated.
+        EXPECT_NEAR(same["edf"].get<double>() / point["edf"].get<double>(), 1.0, 0.02) << "m = " << m;
+    }
+}
+
+TEST_F(AnalyzeCommand, FactorsThatAreShownDoNotChangeTheCoefficients) {
+    const json& coefficients = usual_.report["axes"]["x"]["coefficients"];
+    ASSERT_TRUE(coefficients.contains("N"));
+    EXPECT_EQ(every_m_.report["axes"]["x"]["coefficients"], coefficients);
+}
+
+TEST_F(AnalyzeCommand, TimingNamesEveryStageOnStandardErrorOnRequest) {
+    for (const char* stage :
+         {"read", "decode", "integrate", "deviation", "intervals", "fit", "json", "together"}) {
+        EXPECT_NE(every_m_.err.find(std::string("\n") + stage), std::string::npos) << stage << every_m_.err;
+    }
+    EXPECT_EQ(usual_.err.find("together"), std::string::npos) << usual_.err;
+}
+
+TEST(StageClock, CountsAStageThatIsEnteredAgainAsOne) {
+    StageClock clock;
+    for (const char* stage : {"a", "b", "a", "b", "c"}) { clock.enter(stage); }
+    clock.stop();
+    ASSERT_EQ(clock.stages().size(), 3U);
+    EXPECT_EQ(clock.stages()[0].name, "a");
+    EXPECT_EQ(clock.stages()[2].name, "c");
+}
+
+TEST(StageClock, StagesTogetherAreTheTimeThatPassed) {
+    const auto begin = std::chrono::steady_clock::now();
+    StageClock clock;
+    for (int turn = 0; turn < 1000; ++turn) { clock.enter(turn % 2 == 0 ? "even" : "odd"); }
+    clock.stop();
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+    double sum_s = 0.0;
+    for (const StageClock::Stage& stage : clock.stages()) { sum_s += stage.wall_s; }
+    EXPECT_GT(sum_s, 0.0);
+    EXPECT_LE(sum_s, passed.count());
+}
+
+}  // namespace
+}  // namespace gyrolog
