@@ -180,6 +180,7 @@ public:
         }
         if (last) { return; }
         std::vector<std::size_t> decimated;
+        decimated.reserve(stretches.size());
         for (const std::size_t count : stretches) { decimated.push_back(Decimator::outputs(count)); }
         next_ = std::make_unique<Stage>(decimated);
     }
@@ -302,6 +303,7 @@ double AveragedPeriodogram::degrees_of_freedom(std::size_t bins) const {
 std::vector<AveragedPeriodogram> averaged_periodograms(const Column& column,
                                                        std::span<const Segment> segments, double rate_hz) {
     std::vector<std::size_t> stretches;
+    stretches.reserve(segments.size());
     for (const Segment& segment : segments) { stretches.push_back(segment.count); }
     std::vector<AveragedPeriodogram> results;
     if (stretches.empty() || *std::ranges::max_element(stretches) < shortest_piece) { return results; }

@@ -78,14 +78,14 @@ PowerSpectrum power_spectrum(std::span<const AveragedPeriodogram> periodograms,
     }
     const double step = std::pow(10.0, -1.0 / options.points_per_decade);
     double hi_hz = top_hz;
-    for (double lo_hz = hi_hz * step; hi_hz > bottom_hz; lo_hz *= step) {
+    double lo_hz = hi_hz;
+    while (lo_hz > bottom_hz) {
+        lo_hz *= step;
         const Band band = best_band(periodograms, lo_hz, hi_hz);
         const bool is_last = lo_hz <= bottom_hz;
-        if (band.periodogram != nullptr && (is_last || band.dof() >= options.least_dof)) {
-            spectrum.points.push_back(point_of(band, options.confidence));
-        } else if (!is_last) {
-            continue;
-        }
+        const bool is_enough = band.periodogram != nullptr && band.dof() >= options.least_dof;
+        if (!is_enough && !is_last) { continue; }
+        if (band.periodogram != nullptr) { spectrum.points.push_back(point_of(band, options.confidence)); }
         hi_hz = lo_hz;
     }
     std::ranges::reverse(spectrum.points);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -75,6 +76,7 @@ TEST(PowerSpectrum, IntervalsHoldTheTruthAsOftenAsTheySay) {
     }
     // Neighbouring points share what the taper spreads: half of them count as independent.
     const double share = static_cast<double>(inside) / points;
+    RecordProperty("share", std::to_string(share));
     EXPECT_NEAR(share, 0.683, 4.0 * std::sqrt(0.683 * 0.317 / (0.5 * points)));
 }
 

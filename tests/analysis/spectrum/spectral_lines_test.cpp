@@ -35,6 +35,7 @@ TEST_P(LinesInNoise, AreFoundNoMoreOftenThanStated) {
         alarms +=
             search_lines(averaged_periodograms(column, whole(x.size()), rate_hz), stated, 1).empty() ? 0 : 1;
     }
+    RecordProperty("alarms", alarms);
     const double sd = std::sqrt(records * stated * (1.0 - stated));
     EXPECT_LE(alarms, records * stated + 3.0 * sd);
     // The bound adds up probabilities of places that overlap, and is not to be far off for that.
@@ -59,6 +60,8 @@ TEST(SpectralLines, ScatterAsTheirStandardDeviationsSay) {
         f_squares += std::pow((lines[0].f_hz - f_hz) / lines[0].f_sd_hz, 2);
         amplitude_squares += std::pow((lines[0].amplitude - amplitude) / lines[0].amplitude_sd, 2);
     }
+    RecordProperty("f_mean_square", std::to_string(f_squares / records));
+    RecordProperty("amplitude_mean_square", std::to_string(amplitude_squares / records));
     // A mean square of 300 scatters by sqrt(2 / 300); the floor is known to some per cent, and the straight
     // line in every block costs a little.
     EXPECT_NEAR(f_squares / records, 1.05, 4.0 * std::sqrt(2.0 / records));
