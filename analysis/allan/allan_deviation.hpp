@@ -44,7 +44,7 @@ struct AllanOptions {
 // Factors for which the record has no complete term give no point. Samples that are all equal give deviations
 // of 0, with intervals of 0 length.
 //
-// `total` is given as the formula says, without removal of its bias (NIST SP 1065 section 5.2.11: low by
+// `total` is given as the formula says, without removal of its bias (total_variance.hpp: low by
 // 0.481 tau / T of the variance for flicker and 0.750 tau / T for walking rate); its interval has it removed.
 //
 // Intervals are those of intervals.hpp, for the power laws fitted to the record's own overlapping curve

@@ -12,8 +12,8 @@ struct Interval {
 // 1, equal tails: lo = s sqrt(edf / chi2_{(1+p)/2}), hi = s sqrt(edf / chi2_{(1-p)/2}).
 Interval chi_square_interval(double deviation, double edf, double confidence);
 
-// The textbook's, of the deviation of n averages: relative error 1 / sqrt(2 (n - 1)) (IEEE Std 952-1997 eq.
-// C.18), taken as one sigma of a normal variable; lo not below 0. Right for many averages of white noise
+// The textbook's, of the deviation of n averages: relative error 1 / sqrt(2 (n - 1)) (IEEE Std 952-1997
+// annex C), taken as one sigma of a normal variable; lo not below 0. Right for many averages of white noise
 // only.
 Interval textbook_interval(double deviation, double averages, double confidence);
 

@@ -21,8 +21,7 @@ namespace gyrolog {
 // Lags beyond (order + 2) m are left out: only flicker has any correlation there, below 1e-3. Differences of
 // different runs are taken as independent.
 //
-// Total deviation of a run of terms + 1 samples, NIST SP 1065 section 5.4.2: edf = b T / tau - c, for tau up
-// to T / 2; runs add up. Angle noise, for which it has no entry: as overlapping, which is no more.
+// Total deviation: total_variance.hpp; runs add up.
 class DegreesOfFreedom {
 public:
     // For mixtures of these laws only: the sums over lags are taken here, once.

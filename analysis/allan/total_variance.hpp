@@ -1,9 +1,9 @@
 // What reflection does to the total variance of one unbroken stretch, for m up to half of it.
 //
-// Noise of the rate: NIST SP 1065 section 5.4.3 (edf) and 5.2.11 (bias). White angle noise, which has no
-// entry there: every term beyond an end holds that end twice, so the same number of variance 4 comes m - 1
-// times at each end. It raises the mean, and those terms scatter together. Flicker angle noise is taken as
-// white.
+// Noise of the rate: edf = b T / tau - c and bias 1 - a tau / T as NIST SP 1065 has them (edf: table 7, there
+// in two decimals). White angle noise, which has no entry there: every term beyond an end holds that end
+// twice, so the same number of variance 4 comes m - 1 times at each end. It raises the mean, and those terms
+// scatter together. Flicker angle noise is taken as white.
 #pragma once
 
 #include <cstdint>

@@ -122,7 +122,7 @@ TEST(EquivalentDegreesOfFreedom, AreThoseOfSimulatedNoise) {
 }
 
 TEST(EquivalentDegreesOfFreedom, AreThePublishedOnesForTotalDeviation) {
-    // NIST SP 1065, section 5.4: 1.500 T / tau, 1.168 T / tau - 0.222, 0.927 T / tau - 0.358.
+    // NIST SP 1065, table 7: 1.500 T / tau, 1.168 T / tau - 0.222, 0.927 T / tau - 0.358.
     const auto total = [](PowerLaw law) { return degrees(law, 100, {999}, DeviationKind::total); };
     EXPECT_NEAR(total(PowerLaw::white_rate), 15.0, 1e-9);
     EXPECT_NEAR(total(PowerLaw::flicker_rate), 11.458, 1e-9);
@@ -187,6 +187,34 @@ TEST(VarianceDistribution, GoesOverIntoChiSquare) {
                 const double q = edf * distribution.quantile(p) / bias;
                 EXPECT_NEAR(cdf(boost::math::chi_squared(edf), q), p, 0.02) << name_of(kind);
             }
+        }
+    }
+}
+
+// Why eigenvalues at all: of a third and a quarter of a record, a chi-square with the right degrees of
+// freedom covers too much at 68.3 %.
+TEST(VarianceDistribution, IsNarrowerThanChiSquareNearTheEndOfTheRecord) {
+    constexpr std::int64_t samples = 120000;
+    const DeviationRule& rule = rule_of(DeviationKind::overlapping);
+    for (const PowerLaw law : {PowerLaw::white_rate, PowerLaw::flicker_rate, PowerLaw::rate_walk}) {
+        for (const std::int64_t m : {samples / 3, samples / 4}) {
+            VarianceShares shares{};
+            shares[index_of(law)] = 1.0;
+            const VarianceDistribution exact(shares, rule, m, std::array{rule.terms(samples + 1, m)});
+            const boost::math::chi_squared chi_square(exact.edf());
+            const auto probability_below = [&](double q) {
+                double low = 0.001;
+                double high = 0.999;
+                for (int i = 0; i < 40; ++i) {
+                    const double middle = (low + high) / 2.0;
+                    (exact.quantile(middle) < q ? low : high) = middle;
+                }
+                return low;
+            };
+            const double covered = probability_below(quantile(chi_square, 0.8415) / exact.edf()) -
+                                   probability_below(quantile(chi_square, 0.1585) / exact.edf());
+            EXPECT_GT(covered, 0.705) << static_cast<int>(law) << " m " << m;
+            EXPECT_LT(covered, 0.76) << static_cast<int>(law) << " m " << m;
         }
     }
 }
