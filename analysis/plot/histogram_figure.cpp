@@ -41,8 +41,11 @@ std::vector<std::string> notes_of(const HistogramTrace& trace, const HistogramFi
                     fixed_decimal(histogram.skewness, 3));
     if (histogram.step > 0.0) {
         const auto steps = std::lround(histogram.bin_width / histogram.step);
-        notes.push_back("bins of " + std::to_string(steps) + (steps == 1 ? " count of " : " counts of ") +
-                        rounded_number(on_paper(histogram.step), 4) + unit);
+        std::string note = "bins of " + std::to_string(steps) + (steps == 1 ? " count" : " counts");
+        if (on_paper(histogram.step) != 1.0) {
+            note += " of " + rounded_number(on_paper(histogram.step), 4) + unit;
+        }
+        notes.push_back(std::move(note));
     } else {
         notes.push_back("bins of " + rounded_number(on_paper(histogram.bin_width)) + unit);
     }

@@ -213,19 +213,33 @@ PanelDrawing::Arrangement PanelDrawing::arrange(const Box& area, const Margins& 
     return arranged;
 }
 
+bool PanelDrawing::stands_beside(const Box& area, const Margins& own, const Legend& legend) const {
+    if (panel_.legend_place != LegendPlace::beside || legend.empty()) { return false; }
+    const Size size = legend.size();
+    const double left_px = area.width() - own.left_px - own.right_px - size.width_px - legend_gap_px * scale_;
+    return left_px > least_plot_share * area.width() &&
+           size.height_px <= area.height() - own.top_px - own.bottom_px;
+}
+
+Margins PanelDrawing::margins(const Box& area) const {
+    Margins margins = axes_.margins(area);
+    const Legend legend = legend_for(area);
+    if (stands_beside(area, margins, legend)) {
+        margins.right_px += legend.size().width_px + legend_gap_px * scale_;
+    }
+    return margins;
+}
+
 PanelDrawing::Arrangement PanelDrawing::arrange_with_legend(const Box& area, const Margins& margins,
                                                             const Legend& legend) const {
     Arrangement arranged = arrange(area, margins);
     if (legend.empty() || !arranged.shows_data()) { return arranged; }
     const Size size = legend.size();
-    const double beside_px = size.width_px + legend_gap_px * scale_;
-    if (panel_.legend_place == LegendPlace::beside && size.height_px <= arranged.axes.plot.height() &&
-        arranged.axes.plot.width() - beside_px > least_plot_share * area.width()) {
-        Margins narrower = margins;
-        narrower.right_px += beside_px;
-        arranged = arrange(area, narrower);
+    const Margins own = axes_.margins(area);
+    if (stands_beside(area, own, legend)) {
+        const double left = area.right - margins.right_px + own.right_px + legend_gap_px * scale_;
         const double top = arranged.axes.plot.top;
-        arranged.legend = Box{area.right - size.width_px, top, area.right, top + size.height_px};
+        arranged.legend = Box{left, top, left + size.width_px, top + size.height_px};
         return arranged;
     }
     // Slope lines and models are aids: rather than push the legend out of the plot, let it cover some.

@@ -18,7 +18,8 @@ public:
     // Keeps references: the panel and the typeface must outlive it.
     PanelDrawing(const Panel& panel, const Typeface& typeface, double scale);
 
-    Margins margins(const Box& area) const { return axes_.margins(area); }
+    // What axes and a legend beside them need.
+    Margins margins(const Box& area) const;
 
     // Draws into the area with these margins around the plot. The legend goes where it covers no data, or
     // else below the plot; it is left out where it would take most of the panel.
@@ -54,6 +55,7 @@ private:
     std::vector<Word> place_words(const Axes& axes, const std::vector<Trace>& traces) const;
     Arrangement arrange(const Box& area, const Margins& margins) const;
     Arrangement arrange_with_legend(const Box& area, const Margins& margins, const Legend& legend) const;
+    bool stands_beside(const Box& area, const Margins& own, const Legend& legend) const;
     Legend legend_for(const Box& area) const;  // smaller where the area is narrow
     void draw_traces(Canvas& canvas, const std::vector<Trace>& traces) const;
     void draw_points(Canvas& canvas, const Axes& axes) const;

@@ -32,14 +32,22 @@ HistogramTrace trace_of(const std::string& name, double step = 0.5) {
     return trace;
 }
 
+// Half of the size, in letters of half the size: drawn four times as fast.
+HistogramFigure small_figure(std::vector<HistogramTrace> traces) {
+    HistogramFigure histograms;
+    histograms.traces = std::move(traces);
+    histograms.width_px = 800;
+    histograms.scale = 0.5;
+    return histograms;
+}
+
 TEST(HistogramFigure, SaysBiasDeviationAndHowGaussianTheSamplesAre) {
     HistogramFigure histograms;
     histograms.per_unit_of_data = 2.0;
     histograms.traces = {trace_of("x")};
     const Panel panel = figure_of(histograms).panels.at(0);
-    EXPECT_THAT(panel.notes,
-                ElementsAre("bias 20.000 ± 0.025 °/s (k = 2)", "standard deviation 4.000 °/s",
-                            "excess kurtosis 0.250, skewness −0.125", "bins of 2 counts of 1.000 °/s"));
+    EXPECT_THAT(panel.notes, ElementsAre("bias 20.000 ± 0.025 °/s (k = 2)", "standard deviation 4.000 °/s",
+                                         "excess kurtosis 0.250, skewness −0.125", "bins of 2 counts"));
     EXPECT_EQ(panel.x.title, "x − bias (°/s)");
     // From the first bin's edge, about the bias.
     EXPECT_DOUBLE_EQ(panel.curves.at(0).x.front(), 2.0 * (4.0 - 10.0));
@@ -48,13 +56,12 @@ TEST(HistogramFigure, SaysBiasDeviationAndHowGaussianTheSamplesAre) {
 }
 
 TEST(HistogramFigure, HasAPanelForEachAxisWithItsNotesBeside) {
-    HistogramFigure histograms;
-    histograms.traces = {trace_of("x"), trace_of("y", 0.0), trace_of("z")};
-    const Rendering rendering = render(histograms);
+    const Rendering rendering = render(small_figure({trace_of("x"), trace_of("y", 0.0), trace_of("z")}));
     ASSERT_TRUE(rendering.ok()) << rendering.problem;
     ASSERT_EQ(rendering.panels.size(), 3U);
     for (const PanelPlace& panel : rendering.panels) {
         ASSERT_TRUE(panel.legend.has_value());
+        EXPECT_EQ(panel.plot.right, rendering.panels[0].plot.right);
         EXPECT_GT(panel.legend->left, panel.plot.right);
     }
 }
@@ -75,7 +82,7 @@ TEST(HistogramFigure, FillsTheStepsAndNotWhatIsBetweenThem) {
 }
 
 TEST(HistogramFigure, OfAnArrayHasThreeColumns) {
-    HistogramFigure histograms;
+    HistogramFigure histograms = small_figure({});
     for (int i = 0; i < 24; ++i) {
         histograms.traces.push_back(trace_of(std::string("x").append(std::to_string(i))));
     }
@@ -89,12 +96,10 @@ TEST(HistogramFigure, OfAnArrayHasThreeColumns) {
 }
 
 TEST(HistogramFigure, RendersConstantAndEmptyColumns) {
-    HistogramFigure histograms;
     HistogramTrace constant;
     constant.name = "x";
     constant.histogram = amplitude_histogram({"gx", "rad/s", std::vector<double>(100, 0.5)});
-    histograms.traces = {constant, HistogramTrace{}};
-    EXPECT_TRUE(render(histograms).ok());
+    EXPECT_TRUE(render(small_figure({constant, HistogramTrace{}})).ok());
 }
 
 }  // namespace

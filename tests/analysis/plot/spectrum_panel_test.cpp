@@ -33,6 +33,10 @@ AllanTrace white_trace(const std::string& name, double height = 1.0) {
 AllanFigure figure_with(std::vector<AllanTrace> traces) {
     AllanFigure figure;
     figure.traces = std::move(traces);
+    figure.width_px = 800;
+    figure.height_px = 550;
+    figure.spectrum_height_px = 320;
+    figure.scale = 0.5;
     return figure;
 }
 
