@@ -43,5 +43,38 @@ TEST(IntervalCoverageOfKinds, IsAsStatedForARecordWithHoles) {
     }
 }
 
+// White noise behind a running mean, as a sensor's filter is: no power law, until averages are much longer.
+test::NoiseRecords filtered_records(Eigen::Index length, std::uint64_t seed) {
+    const test::NoiseRecords white = test::white_records(samples + length, records, seed);
+    const double weight = 1.0 / static_cast<double>(length);
+    test::NoiseRecords filtered{Eigen::MatrixXd::Zero(samples, records), {}};
+    for (Eigen::Index j = 0; j < length; ++j) {
+        filtered.records += weight * white.records.middleRows(j, samples);
+    }
+    filtered.expected_square = [length, weight](const Eigen::VectorXd& weights) {
+        Eigen::VectorXd of_white = Eigen::VectorXd::Zero(weights.size() + length);
+        for (Eigen::Index j = 0; j < length; ++j) { of_white.segment(j, weights.size()) += weight * weights; }
+        return of_white.squaredNorm();
+    };
+    return filtered;
+}
+
+TEST(IntervalCoverageOfKinds, AfterAFilterIsOnTheSafeSideAtLongTimes) {
+    constexpr double stated = 68.3;
+    const test::Coverage result =
+        test::coverage(filtered_records(8, 41), DeviationKind::overlapping, stated / 100.0, {});
+    std::cout << std::fixed << std::setprecision(1) << "| overlapping, white behind a mean of 8 | 68.3 %";
+    for (std::size_t i = 0; i < result.percent.size(); ++i) {
+        std::cout << " | " << result.percent[i];
+        if ((std::size_t{1} << i) >= 32) {
+            EXPECT_GT(result.percent[i], stated - 3.0);
+            EXPECT_LT(result.percent[i], stated + 13.0);
+        } else {
+            EXPECT_GT(result.percent[i], stated - 15.0);
+        }
+    }
+    std::cout << " |" << std::endl;
+}
+
 }  // namespace
 }  // namespace gyrolog
