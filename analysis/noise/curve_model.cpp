@@ -182,7 +182,7 @@ public:
         double smooth_sd_db = 0.0;
     };
 
-    // The likelihood has one maximum in practice; a grid and a golden section find it without derivatives.
+    // A grid: the criterion needs the likelihood's height, and steps of a quarter octave give it to 0.1.
     Fit fit(const VectorXd& residuals) const {
         const VectorXd powers = (vectors_.transpose() * residuals).cwiseAbs2();
         constexpr int steps = 40;
@@ -259,10 +259,8 @@ std::vector<double> shapes_to_try(const Target& target, Kind kind) {
 // Its hump lies on the curve: elsewhere it is another name for N, K or R.
 bool within_curve(const Target& target, const CurveTerm& term) {
     if (!has_shape(term.kind)) { return true; }
-    const double hump_s =
-        term.kind == Kind::sinusoid ? sinusoid_peak / term.shape : gauss_markov_peak * term.shape;
     const auto [first, last] = std::minmax_element(target.tau_s.begin(), target.tau_s.end());
-    return hump_s >= *first && hump_s <= *last;
+    return term.hump_tau_s() >= *first && term.hump_tau_s() <= *last;
 }
 
 // The best fit with one more term; without terms where there is none.
@@ -512,6 +510,11 @@ double CurveTerm::allan_variance(double tau_s) const {
             return NoiseCoefficients{0.0, 0.0, 0.0, 0.0, size}.allan_variance(tau_s);
     }
     return 0.0;
+}
+
+double CurveTerm::hump_tau_s() const {
+    if (kind == Kind::gauss_markov) { return gauss_markov_peak * shape; }
+    return kind == Kind::sinusoid ? sinusoid_peak / shape : 0.0;
 }
 
 std::string_view name_of(CurveTerm::Kind kind) {

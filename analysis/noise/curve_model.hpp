@@ -34,6 +34,8 @@ struct CurveTerm {
     double shape = 0.0;  // correlation time in s, frequency in Hz; 0 for the others
 
     double allan_variance(double tau_s) const;
+    // Where the term's Allan deviation is highest; 0 for terms without a hump.
+    double hump_tau_s() const;
 };
 
 std::string_view name_of(CurveTerm::Kind kind);  // "Q", ..., "Gauss-Markov", "sinusoid"

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iomanip>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -38,6 +40,27 @@ std::vector<NamedCurveGap> gaps_between(const std::vector<PrintedCurveReport>& c
     return gaps;
 }
 
+// The last octaves of every curve are averages of few intervals: a hump there may be chance.
+constexpr double late_part = 5.0;
+
+void warn_of_late_terms(const PrintedCurveReport& curve, std::vector<std::string>& warnings) {
+    const double late_s = curve.curve.points.back().tau_s / late_part;
+    std::string terms;
+    for (const CurveTerm& term : curve.fit.terms) {
+        if (term.hump_tau_s() > late_s) {
+            terms += (terms.empty() ? "" : ", ") + std::string(name_of(term.kind));
+        }
+    }
+    if (terms.empty()) { return; }
+    std::ostringstream text;
+    text << curve.name << ": " << terms << " rests on averaging times above " << std::setprecision(3)
+         << late_s
+         << " s, where a record has few independent averages: it describes this curve, and another record of "
+            "the "
+            "sensor may not show it";
+    warnings.push_back(text.str());
+}
+
 }  // namespace
 
 CurveReport analyze_curves(PrintedCurves curves, const CurveFitOptions& options) {
@@ -53,6 +76,7 @@ CurveReport analyze_curves(PrintedCurves curves, const CurveFitOptions& options)
         one.curve.confidence = options.confidence;
         one.fit = fit_curve_model(one.curve, options);
         one.slopes = read_slopes(one.curve);
+        warn_of_late_terms(one, report.warnings);
         report.curves.push_back(std::move(one));
     }
     report.gaps = gaps_between(report.curves);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "host/app/option_check.hpp"
 #include "host/app/quantity.hpp"
 
 namespace gyrolog {
@@ -33,10 +34,8 @@ void CaptureOptions::declare(CLI::App& app) {
     app.add_option("--duration", duration, "Stop after this time: 90s, 15m, 6h, 1d")->type_name("T");
     app.add_option("--samples", samples, "Stop after this many samples")
         ->type_name("N")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--rate", rate_hz, "Output rate of the sensor")
-        ->type_name("HZ")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
+    app.add_option("--rate", rate_hz, "Output rate of the sensor")->type_name("HZ")->check(positive_number());
     app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")
         ->type_name("DPS");
     app.add_option("--dlpf", dlpf, "The sensor's low-pass filter: bandwidth, or off")->type_name("HZ|off");

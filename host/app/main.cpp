@@ -34,7 +34,8 @@ int main(int argc, char** argv) {
         const gyrolog::ExitCode code =
             gyrolog::run_command_line(std::vector<std::string>(argv + 1, argv + argc), console);
         std::cout.flush();
-        return std::cout.good() ? static_cast<int>(code) : static_cast<int>(gyrolog::ExitCode::failed);
+        const bool lost = code == gyrolog::ExitCode::ok && !std::cout.good();
+        return static_cast<int>(lost ? gyrolog::ExitCode::failed : code);
     } catch (const std::exception& error) {
         std::cerr << "gyrolog: " << error.what() << '\n';
         return static_cast<int>(gyrolog::ExitCode::failed);

@@ -1,5 +1,7 @@
 #include "host/app/result_output.hpp"
 
+#include <cerrno>
+
 #include <nlohmann/json.hpp>
 
 #include "host/base/file_output.hpp"
@@ -12,9 +14,12 @@ Status write_json(Console& console, const std::string& path, const nlohmann::ord
 
 Status write_text(Console& console, const std::string& path, const std::string& text) {
     if (path != "-") { return write_file(path, as_bytes(text)); }
+    errno = 0;
     console.out << text << std::flush;
-    if (!console.out.good()) { return Error{ErrorCode::storage_failed, "write to standard output failed"}; }
-    return {};
+    if (console.out.good()) { return {}; }
+    // A stream keeps no reason, but the write that failed has just left one.
+    if (errno == ENOSPC) { return Error{ErrorCode::disk_full, "write to standard output: disk full"}; }
+    return Error{ErrorCode::storage_failed, "write to standard output failed"};
 }
 
 }  // namespace gyrolog

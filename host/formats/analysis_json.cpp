@@ -33,6 +33,33 @@ Json point_json(const AllanPoint& point, const RateUnit& unit) {
             {"unit", unit.name}};
 }
 
+// How well the samples' spectrum follows the model.
+Json fit_json(const NoiseFit& fit) {
+    Json json = {{"model_error", fit.model_error}};
+    if (fit.upper_frequency_hz > 0.0) { json["upper_frequency_hz"] = fit.upper_frequency_hz; }
+    if (fit.worst_frequency_hz > 0.0) {
+        json["worst_frequency_hz"] = fit.worst_frequency_hz;
+        json["worst_ratio"] = fit.worst_ratio;
+    }
+    return json;
+}
+
+Json lines_json(const std::vector<SpectralLine>& lines, const RateUnit& unit) {
+    Json list = Json::array();
+    for (const SpectralLine& line : lines) {
+        Json one = {{"frequency_hz", line.f_hz},
+                    {"frequency_sd_hz", line.f_sd_hz},
+                    {"amplitude", line.amplitude * unit.per_column_unit},
+                    {"amplitude_sd", line.amplitude_sd * unit.per_column_unit},
+                    {"unit", unit.name},
+                    {"false_alarm", line.false_alarm},
+                    {"steady", line.steady}};
+        if (!line.steady) { one["width_hz"] = line.width_hz; }
+        list.push_back(std::move(one));
+    }
+    return list;
+}
+
 Json axis_json(const AxisReport& axis, const RateUnit& unit) {
     Json json;
     json["bias"] = {{"value", axis.bias.value * unit.per_column_unit},
@@ -42,6 +69,13 @@ Json axis_json(const AxisReport& axis, const RateUnit& unit) {
     json["allan"] = Json::array();
     for (const AllanPoint& point : axis.curve.points) { json["allan"].push_back(point_json(point, unit)); }
     put_noise_fit(json, axis.fit, unit);
+    if (axis.fit.method == FitMethod::likelihood) { json["fit"] = fit_json(axis.fit); }
+    json["lines"] = lines_json(axis.lines, unit);
+    if (axis.outliers.samples > 0) {
+        json["outliers"] = {{"samples", axis.outliers.samples},
+                            {"threshold", axis.outliers.threshold * unit.per_column_unit},
+                            {"unit", unit.name}};
+    }
     json["slope_read"] = slopes_json(axis.slopes, unit);
     return json;
 }

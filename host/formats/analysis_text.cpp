@@ -12,9 +12,29 @@
 namespace gyrolog {
 namespace {
 
+// The three strongest lines, where an axis has some; JSON has them all.
+std::vector<TextRow> line_rows(const AnalysisReport& report) {
+    constexpr std::size_t shown = 3;
+    std::size_t most = 0;
+    for (const AxisReport& axis : report.axes) { most = std::max(most, axis.lines.size()); }
+    std::vector<TextRow> rows;
+    for (std::size_t i = 0; i < std::min(most, shown); ++i) {
+        TextRow row{i == 0 ? "spectral lines" : "", report.unit.name, {}};
+        for (const AxisReport& axis : report.axes) {
+            row.cells.push_back(i < axis.lines.size()
+                                    ? fmt::format("{:.3g} at {:.5g} Hz",
+                                                  axis.lines[i].amplitude * report.unit.per_column_unit,
+                                                  axis.lines[i].f_hz)
+                                    : "-");
+        }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
 std::vector<TextRow> rows_of(const AnalysisReport& report, std::span<const FitOfColumn> fits) {
     const double scale = report.unit.per_column_unit;
-    TextRow bias{"bias (k = 2)", report.unit.name, {}};
+    TextRow bias{"bias", report.unit.name, {}};
     TextRow lowest{"lowest deviation", report.unit.name, {}};
     for (const AxisReport& axis : report.axes) {
         bias.cells.push_back(
@@ -28,6 +48,7 @@ std::vector<TextRow> rows_of(const AnalysisReport& report, std::span<const FitOf
     std::vector<TextRow> rows = {std::move(bias)};
     for (TextRow& row : noise_rows(fits, report.unit)) { rows.push_back(std::move(row)); }
     rows.push_back(std::move(lowest));
+    for (TextRow& row : line_rows(report)) { rows.push_back(std::move(row)); }
     return rows;
 }
 
@@ -65,7 +86,8 @@ std::string analysis_text(const AnalysisReport& report) {
     }
     text += '\n' + text_table(heads, rows_of(report, fits));
     text += fmt::format(
-        "\n  ± one standard deviation (bias: expanded, k = 2); \"<\": not identifiable in this record, upper "
+        "\n  ± one standard deviation (bias: expanded, 95.45 %); \"<\": not identifiable in this record, "
+        "upper "
         "limit\n"
         "  at {:.3g} %; \"± at best\": Cramer-Rao bound, below which no unbiased method gets\n",
         report.confidence * 100.0);

@@ -37,10 +37,10 @@ std::string ladder_text(const PrintedCurveReport& curve, const RateUnit& unit) {
     if (curve.fit.rejected.empty()) { return text; }
     std::string rejected;
     for (const RejectedTerm& term : curve.fit.rejected) {
-        rejected += fmt::format("{}{} ({:+.1f})", rejected.empty() ? "" : ", ", name_of(term.term.kind),
+        rejected += fmt::format("{}{} {:+.1f}", rejected.empty() ? "" : ", ", name_of(term.term.kind),
                                 term.criterion_gain);
     }
-    return text + fmt::format("  not called for (fall of BIC, more than 6 needed): {}\n", rejected);
+    return text + fmt::format("  not called for (fall of BIC, of 6 needed):\n    {}\n", rejected);
 }
 
 std::string verdict_text(const CurveGapTerm& term, const RateUnit& unit) {

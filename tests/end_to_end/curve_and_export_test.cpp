@@ -1,0 +1,133 @@
+// Curves from print and exports through the whole program: files, exit codes, messages.
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+std::string write_curve(const TemporaryFolder& folder) {
+    const std::string path = folder.path("curve.csv");
+    std::ofstream text(path);
+    text << "tau_s,x_dps,z_deg_per_h\n";
+    for (double tau_s = 0.01; tau_s < 2000.0; tau_s *= 1.5) {
+        const double variance = 1e-4 / tau_s + 1e-8 * tau_s / 3.0;
+        text << tau_s << ',' << std::sqrt(variance) << ',' << 3600.0 * 2.0 * std::sqrt(variance) << '\n';
+    }
+    return path;
+}
+
+std::string write_recording(const TemporaryFolder& folder) {
+    const std::string path = folder.path("run.csv");
+    std::ofstream text(path);
+    text << "t_s,gx_dps,gy_dps\n";
+    unsigned state = 1;
+    for (int i = 0; i < 3000; ++i) {
+        state = state * 1664525U + 1013904223U;
+        text << i / 100.0 << ',' << (state >> 16) % 1000 << ',' << (state >> 20) % 1000 << '\n';
+    }
+    return path;
+}
+
+TEST(Curve, GivesReportPlotAndAModelThatTheVirtualBoardPlays) {
+    const TemporaryFolder folder;
+    const std::string model = folder.path("model.json");
+    const ProgramResult result =
+        run_gyrolog({"analyze", "--curve", write_curve(folder), "--json", folder.path("a.json"), "--plot",
+                     folder.path("a.png"), "--model", model, "--rate", "100"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("N B K"));
+    EXPECT_THAT(result.err, HasSubstr("no curve of axis y"));
+    EXPECT_GT(std::filesystem::file_size(folder.path("a.png")), 10000U);
+    const json report = json::parse(read_whole_file(folder.path("a.json")));
+    EXPECT_NEAR(report["axes"]["x"]["coefficients"]["N"]["value"].get<double>(), 0.01, 1e-4);
+    EXPECT_NEAR(report["axes"]["z"]["coefficients"]["K"]["value"].get<double>(), 2e-4, 2e-6);
+    const ProgramResult played = run_gyrolog({"capture", "--device", "sim:rate=100,model=" + model,
+                                              "--samples", "1000", "-o", folder.path("played.pcapng")});
+    EXPECT_EQ(played.exit_code, 0) << played.err;
+}
+
+TEST(Curve, AndRecordingExcludeEachOther) {
+    const TemporaryFolder folder;
+    const std::string curve = write_curve(folder);
+    const ProgramResult both = run_gyrolog({"analyze", write_recording(folder), "--curve", curve});
+    EXPECT_EQ(both.exit_code, 2);
+    EXPECT_EQ(both.err, "gyrolog analyze: give a RECORDING or --curve, not both\n");
+    const ProgramResult neither = run_gyrolog({"analyze"});
+    EXPECT_EQ(neither.exit_code, 2);
+    EXPECT_EQ(neither.err, "gyrolog analyze: give a RECORDING, or --curve with an Allan curve\n");
+    EXPECT_EQ(run_gyrolog({"analyze", "--curve", curve, "--m", "1,2"}).exit_code, 2);
+    EXPECT_EQ(run_gyrolog({"analyze", "--curve", folder.path("none.csv")}).exit_code, 1);
+}
+
+TEST(Export, WritesEveryFormatByTheFilesEnding) {
+    const TemporaryFolder folder;
+    const std::string recording = write_recording(folder);
+    for (const char* name : {"a.csv.gz", "a.mat", "a.yaml", "a.m", "a.tuning.json"}) {
+        const ProgramResult result = run_gyrolog({"export", recording, "-o", folder.path(name)});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_GT(std::filesystem::file_size(folder.path(name)), 100U) << name;
+    }
+    const ProgramResult unknown = run_gyrolog({"export", recording, "-o", folder.path("a.docx")});
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_THAT(unknown.err, HasSubstr(".yaml"));
+}
+
+TEST(Export, OfAModelGivesItsNoiseAndNoSamples) {
+    const TemporaryFolder folder;
+    const std::string model = folder.path("model.json");
+    ASSERT_EQ(
+        run_gyrolog({"analyze", "--curve", write_curve(folder), "--model", model, "--rate", "100"}).exit_code,
+        0);
+    ASSERT_EQ(run_gyrolog({"export", model, "-o", folder.path("imu.yaml")}).exit_code, 0);
+    EXPECT_THAT(read_whole_file(folder.path("imu.yaml")), HasSubstr("\ngyroscope_noise_density: 0.00034"));
+    const ProgramResult samples = run_gyrolog({"export", model, "-o", folder.path("imu.csv")});
+    EXPECT_EQ(samples.exit_code, 2);
+    EXPECT_THAT(samples.err, HasSubstr("a model has no samples"));
+}
+
+TEST(Analyze, RefusesAFigureThatIsNoPng) {
+    const TemporaryFolder folder;
+    const std::string plot = folder.path("a.jpg");
+    const ProgramResult result = run_gyrolog({"analyze", write_recording(folder), "--plot", plot});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("figures are PNG only"));
+    EXPECT_FALSE(std::filesystem::exists(plot));
+}
+
+TEST(Analyze, AFullDiskIsTheSameForTextAndJson) {
+    if (!std::filesystem::exists("/dev/full")) { GTEST_SKIP() << "no /dev/full"; }
+    const TemporaryFolder folder;
+    const std::string recording = write_recording(folder);
+    const std::string program =
+        std::string(std::getenv("GYROLOG_BUILD_DIR")) + "/gyrolog analyze " + recording;
+    const int text = std::system((program + " >/dev/full 2>/dev/null").c_str());
+    const int json_out = std::system((program + " --json - >/dev/full 2>/dev/null").c_str());
+    EXPECT_EQ(WEXITSTATUS(text), 6);
+    EXPECT_EQ(WEXITSTATUS(json_out), 6);
+}
+
+TEST(CaptureOptions, CountsAndRatesOfNothingAreRefusedInPlainWords) {
+    for (const char* option : {"--samples", "--rate"}) {
+        const ProgramResult result =
+            run_gyrolog({"capture", "-o", "x.pcapng", "--device", "sim:", option, "0"});
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_THAT(result.err, HasSubstr("0 must be more than 0")) << result.err;
+    }
+}
+
+}  // namespace
+}  // namespace gyrolog
