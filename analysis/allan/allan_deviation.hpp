@@ -16,7 +16,8 @@
 // give the square, with tau = m / rate. The first two are IEEE Std 952-1997 annex C for gyros. A term is used
 // only where all its samples exist, on the record's true time grid (every m-th: of that grid). Total
 // deviation reflects each unbroken stretch of 2m samples or more about its own ends, and averages over the
-// terms of all of them. Sums over sensor counts are exact up to the squares. Unit: the column's.
+// terms of all of them. Sums over sensor counts are exact up to the squares, those of `overlapping` to the
+// end. Unit: the column's.
 #pragma once
 
 #include <cstdint>
