@@ -108,9 +108,11 @@ Complex mean_at(std::span<const Block> blocks, double offset_hz) {
 }
 
 // The offset with the largest mean: a grid of a quarter of the record's own resolution, then golden section.
+// Across a hole of weeks the phase is lost anyway: the grid then stays coarser.
 double best_offset(std::span<const Block> blocks, double reach_hz) {
     const double span_s = std::max(blocks.back().t_s - blocks.front().t_s, 1e-300);
-    const double step_hz = std::min(0.25 / span_s, reach_hz / 4.0);
+    constexpr double most_steps = 20'000.0;
+    const double step_hz = std::clamp(0.25 / span_s, reach_hz / most_steps, reach_hz / 4.0);
     const auto steps = static_cast<int>(std::ceil(reach_hz / step_hz));
     std::vector<Complex> turned, turn;
     for (const Block& block : blocks) {

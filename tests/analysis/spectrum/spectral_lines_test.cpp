@@ -131,6 +131,16 @@ TEST(SpectralLines, AreFittedAtTheTrueTimesOfARecordWithHoles) {
     EXPECT_NEAR(lines[0].amplitude, 0.5, 4.0 * lines[0].amplitude_sd);
 }
 
+TEST(SpectralLines, AreFoundOnBothSidesOfAHoleOfMonths) {
+    std::vector<double> x = test::white_noise(20'000, 20);
+    test::add_sine(x, 0.5, 0.123456);
+    const std::vector<Segment> segments{{0, 10'000, 0}, {10'000, 10'000, 1'000'000'000}};
+    const std::vector<SpectralLine> lines = find_lines(column_of(std::move(x)), segments, rate_hz);
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_NEAR(lines[0].f_hz, 12.3456, 0.01);
+    EXPECT_NEAR(lines[0].amplitude, 0.5, 0.1);
+}
+
 TEST(SpectralLines, StandOnARandomWalk) {
     std::mt19937_64 random(18);
     std::vector<double> x = test::coloured_noise(Colour::walk, 30'000, random);
