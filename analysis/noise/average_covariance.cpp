@@ -44,7 +44,10 @@ AverageCovariance average_covariance(NoiseTerm term) {
 AverageCovariance gauss_markov_covariance(double correlation_s) {
     return {[=](std::int64_t lag, double span_s) {
                 const double x = span_s / correlation_s;
-                if (lag == 0) { return x < 1e-4 ? 1.0 - x / 3.0 : 2.0 * (x - 1.0 + std::exp(-x)) / (x * x); }
+                if (lag == 0) {  // The closed form loses its digits where x is small.
+                    return x < 1e-2 ? 1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0)))
+                                    : 2.0 * (x - 1.0 + std::exp(-x)) / (x * x);
+                }
                 // ((1 - exp(-x)) / x)^2 exp(-(lag - 1) x)
                 const double within = -std::expm1(-x) / x;
                 return within * within * std::exp(-static_cast<double>(lag - 1) * x);

@@ -67,15 +67,19 @@ private:
 
 std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
-// Joins the samples of the averages that fall into one block of the next level.
+// Joins the samples of the averages that fall into one block of the next level. Where some are missing, the
+// average of the others is moved to the block's middle along the record's slope.
 class BlockAverages {
 public:
-    explicit BlockAverages(std::int64_t samples_of_block) : samples_of_block_(samples_of_block) {}
+    BlockAverages(std::int64_t samples_of_block, double slope_per_sample)
+        : samples_of_block_(samples_of_block), slope_per_sample_(slope_per_sample) {}
 
-    void add(std::int64_t block, double sum, std::int64_t samples) {
+    // `middle`: of these samples, on the grid.
+    void add(std::int64_t block, double sum, std::int64_t samples, double middle) {
         if (block != current_.index) { flush(block); }
         current_.value += sum;
         current_.samples += samples;
+        middle_ += middle * static_cast<double>(samples);
     }
 
     std::vector<TopAverage> take() {
@@ -86,22 +90,32 @@ public:
 private:
     void flush(std::int64_t next) {
         if (2 * current_.samples >= samples_of_block_) {
-            current_.value /= static_cast<double>(current_.samples);
+            const auto samples = static_cast<double>(current_.samples);
+            const double block_middle =
+                (static_cast<double>(current_.index) + 0.5) * static_cast<double>(samples_of_block_) - 0.5;
+            current_.value /= samples;
+            if (current_.samples < samples_of_block_) {
+                current_.value += slope_per_sample_ * (block_middle - middle_ / samples);
+            }
             averages_.push_back(current_);
         }
         current_ = {next, 0, 0.0};
+        middle_ = 0.0;
     }
 
     std::int64_t samples_of_block_;
+    double slope_per_sample_;
+    double middle_ = 0.0;
     TopAverage current_;
     std::vector<TopAverage> averages_;
 };
 
 template <typename T>
 std::vector<TopAverage> reduce_samples(std::span<const T> data, std::span<const Segment> segments,
-                                       double centre, int length, ContrastLevel& level) {
+                                       double centre, double slope_per_sample, int length,
+                                       ContrastLevel& level) {
     ContrastPower power(length);
-    BlockAverages averages(length);
+    BlockAverages averages(length, slope_per_sample);
     for (const Segment& segment : segments) {
         const T* const first = data.data() + segment.first;
         auto count = static_cast<std::int64_t>(segment.count);
@@ -111,7 +125,7 @@ std::vector<TopAverage> reduce_samples(std::span<const T> data, std::span<const 
             const std::int64_t here = std::min((block + 1) * length - index, count - i);
             double sum = 0.0;
             for (std::int64_t j = 0; j < here; ++j) { sum += static_cast<double>(first[i + j]) - centre; }
-            averages.add(block, sum, here);
+            averages.add(block, sum, here, static_cast<double>(index) + 0.5 * static_cast<double>(here - 1));
             if (here == length) {
                 const T* const at = first + i;
                 power.add_block([&](std::size_t j) { return static_cast<double>(at[j]) - centre; });
@@ -124,9 +138,9 @@ std::vector<TopAverage> reduce_samples(std::span<const T> data, std::span<const 
 }
 
 std::vector<TopAverage> reduce_averages(const std::vector<TopAverage>& children, std::int64_t span,
-                                        int length, ContrastLevel& level) {
+                                        double slope_per_sample, int length, ContrastLevel& level) {
     ContrastPower power(length);
-    BlockAverages averages(span * length);
+    BlockAverages averages(span * length, slope_per_sample);
     const auto enough = static_cast<std::int64_t>(std::ceil(complete_share * static_cast<double>(span)));
     for (std::size_t i = 0; i < children.size();) {
         const std::int64_t block = floor_div(children[i].index, length);
@@ -134,7 +148,8 @@ std::vector<TopAverage> reduce_averages(const std::vector<TopAverage>& children,
         bool complete = true;
         for (; end < children.size() && floor_div(children[end].index, length) == block; ++end) {
             const TopAverage& child = children[end];
-            averages.add(block, child.value * static_cast<double>(child.samples), child.samples);
+            const double middle = (static_cast<double>(child.index) + 0.5) * static_cast<double>(span) - 0.5;
+            averages.add(block, child.value * static_cast<double>(child.samples), child.samples, middle);
             complete = complete && child.samples >= enough;
         }
         if (complete && end - i == static_cast<std::size_t>(length)) {
@@ -144,6 +159,31 @@ std::vector<TopAverage> reduce_averages(const std::vector<TopAverage>& children,
     }
     level = power.finish(span);
     return averages.take();
+}
+
+// From the averages of the first and the last third of the rows, in raw numbers per grid step: nine tenths as
+// precise as least squares, and untroubled by what happens in between.
+double slope_of(const Column& column, std::span<const Segment> segments) {
+    const std::size_t third = column.size() / 3;
+    if (third == 0) { return 0.0; }
+    struct Part {
+        double sum = 0.0;
+        double index = 0.0;
+    } first, last;
+    std::visit(
+        [&](const auto& data) {
+            for (const Segment& segment : segments) {
+                for (std::size_t i = 0; i < segment.count; ++i) {
+                    const std::size_t row = segment.first + i;
+                    if (row >= third && row < data.size() - third) { continue; }
+                    Part& part = row < third ? first : last;
+                    part.sum += static_cast<double>(data[row]);
+                    part.index += static_cast<double>(segment.first_index) + static_cast<double>(i);
+                }
+            }
+        },
+        column.data);
+    return (last.sum - first.sum) / (last.index - first.index);
 }
 
 // The samples themselves as a top.
@@ -200,18 +240,20 @@ ContrastPyramid contrast_pyramid(const Column& column, std::span<const Segment> 
         return pyramid;
     }
     const double centre = raw_mean(column);
+    double slope_per_sample = slope_of(column, segments);
     for (const int block : lengths) {
         ContrastLevel level;
         if (pyramid.levels.empty()) {
             pyramid.top = std::visit(
                 [&](const auto& data) {
-                    return reduce_samples(std::span(data), segments, centre, block, level);
+                    return reduce_samples(std::span(data), segments, centre, slope_per_sample, block, level);
                 },
                 column.data);
             for (double& power : level.power) { power *= column.scale * column.scale; }
             for (TopAverage& average : pyramid.top) { average.value *= column.scale; }
+            slope_per_sample *= column.scale;
         } else {
-            pyramid.top = reduce_averages(pyramid.top, pyramid.top_span, block, level);
+            pyramid.top = reduce_averages(pyramid.top, pyramid.top_span, slope_per_sample, block, level);
         }
         pyramid.levels.push_back(std::move(level));
         pyramid.top_span *= block;

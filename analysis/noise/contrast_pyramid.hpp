@@ -44,7 +44,7 @@ struct ContrastPyramid {
     std::vector<TopAverage> top;
 };
 
-inline constexpr std::size_t most_top_averages = 256;
+inline constexpr std::size_t most_top_averages = 128;
 
 // A record of up to `most_top` samples has no levels: its samples are the top.
 ContrastPyramid contrast_pyramid(const Column& column, std::span<const Segment> segments, double rate_hz,

@@ -18,10 +18,13 @@ using Index = Eigen::Index;
 constexpr double identified_ratio = 6.6;
 // An optional term must gain more, since the others lose precision by it.
 constexpr double optional_ratio = 10.8;
-// Terms with less are left out of the sparse model: one standard deviation.
-constexpr double kept_ratio = 1.0;
+// Terms with less are left out of the sparse model: two standard deviations.
+constexpr double kept_ratio = 4.0;
 // A Gauss-Markov term has two parameters, and its correlation time was searched for.
 constexpr double gauss_markov_gain = 8.0;
+// White noise behind a low pass has the spectrum of Gauss-Markov noise. A gyro's own filter is wider than 5
+// Hz (32 ms), and its drift slower than this.
+constexpr double fastest_drift_s = 0.1;
 constexpr double clear_error = 0.05;  // a departure beyond which the model is amended
 
 // What the likelihood is made of, in the order of its components: N, B, K, then the optional ones.
@@ -176,7 +179,8 @@ Fitted search_gauss_markov(const ContrastPyramid& pyramid, const Fitted& base) {
         static_cast<double>(pyramid.top_span) * static_cast<double>(pyramid.top.size()) / pyramid.rate_hz;
     Fitted best = base;
     const double step = std::sqrt(10.0);
-    for (double t_s = 1.0 / pyramid.rate_hz; t_s < length_s / 8.0; t_s *= step) {
+    const double shortest_s = std::max(3.0 / pyramid.rate_hz, fastest_drift_s);
+    for (double t_s = shortest_s; t_s < length_s / 8.0; t_s *= step) {
         Fitted next = with_gauss_markov(pyramid, base, t_s);
         if (next.value() > best.value()) { best = std::move(next); }
     }
@@ -184,11 +188,27 @@ Fitted search_gauss_markov(const ContrastPyramid& pyramid, const Fitted& base) {
     for (double ratio = std::sqrt(step); ratio > 1.02; ratio = std::sqrt(ratio)) {
         const double centre_s = best.model.correlations_s.back();
         for (const double t_s : {centre_s / ratio, centre_s * ratio}) {
+            if (t_s < shortest_s) { continue; }
             Fitted next = with_gauss_markov(pyramid, base, t_s);
             if (next.value() > best.value()) { best = std::move(next); }
         }
     }
-    return best;
+    // What is best at the very end of the search is something faster.
+    return best.model.correlations_s.back() > 1.5 * shortest_s ? best : base;
+}
+
+// Whether the squares of some contrasts or averages are further from the model than chance, 99 times in a
+// hundred, puts them.
+bool departs(const std::vector<ContrastMisfit>& misfits) {
+    constexpr double enough_dof = 8.0;
+    double sum = 0.0;
+    double count = 0.0;
+    for (const ContrastMisfit& misfit : misfits) {
+        if (misfit.dof < enough_dof) { continue; }
+        sum += square(misfit.ratio - 1.0) * misfit.dof / 2.0 - 1.0;
+        count += 1.0;
+    }
+    return sum > 2.5 * std::sqrt(2.0 * count);
 }
 
 bool white_noise_stays(const ContrastPyramid& pyramid, const Fitted& fitted) {
@@ -199,12 +219,14 @@ bool white_noise_stays(const ContrastPyramid& pyramid, const Fitted& fitted) {
 // Amends a model that the record departs from: Gauss-Markov noise if it mends that and leaves the white noise
 // in place (a filter on white noise looks like it, too), else a narrower band.
 Fitted amended(const ContrastPyramid& pyramid, Fitted fitted) {
-    for (int terms = 0; terms < 2 && fitted.model.error > 0.0; ++terms) {
+    for (int terms = 0; terms < 2; ++terms) {
+        const auto misfits = likelihood_of(pyramid, fitted.model).misfits(fitted.maximum.squares);
+        if (!departs(misfits)) { break; }
         const Fitted tried = search_gauss_markov(pyramid, fitted);
         const bool any = tried.model.correlations_s.size() > fitted.model.correlations_s.size();
         if (!any || tried.value() - fitted.value() < gauss_markov_gain) { break; }
         Fitted next = fit(pyramid, tried.model, tried.maximum.squares);
-        if (!(next.model.error < 0.7 * fitted.model.error) || !white_noise_stays(pyramid, next)) { break; }
+        if (next.model.error > 0.7 * fitted.model.error || !white_noise_stays(pyramid, next)) { break; }
         fitted = std::move(next);
     }
     return fitted.model.error > clear_error ? without_upper_end(pyramid, fitted) : fitted;

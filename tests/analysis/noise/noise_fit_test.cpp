@@ -34,7 +34,8 @@ TEST(NoiseFit, OfAnExactCurveIsItsModel) {
     EXPECT_NEAR(fit.best.coefficients.Q_rad, all.Q_rad, 1e-6 * all.Q_rad);
     EXPECT_NEAR(fit.best.coefficients.N_rad_per_sqrt_s, all.N_rad_per_sqrt_s, 1e-8 * all.N_rad_per_sqrt_s);
     EXPECT_NEAR(fit.best.coefficients.B_rad_per_s, all.B_rad_per_s, 1e-6 * all.B_rad_per_s);
-    EXPECT_NEAR(fit.best.coefficients.K_rad_per_s_sqrt_s, all.K_rad_per_s_sqrt_s, 1e-4 * all.K_rad_per_s_sqrt_s);
+    EXPECT_NEAR(fit.best.coefficients.K_rad_per_s_sqrt_s, all.K_rad_per_s_sqrt_s,
+                1e-4 * all.K_rad_per_s_sqrt_s);
     EXPECT_NEAR(fit.best.coefficients.R_rad_per_s2, all.R_rad_per_s2, 1e-2 * all.R_rad_per_s2);
     EXPECT_LT(fit.worst_residual_sd, 1e-4);
 }
