@@ -11,7 +11,6 @@
 namespace gyrolog {
 namespace {
 
-using testing::DoubleNear;
 using testing::ElementsAre;
 
 constexpr double N = 0.005 / deg_per_rad;  // 0.3 °/√h
