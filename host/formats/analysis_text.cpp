@@ -12,16 +12,19 @@
 namespace gyrolog {
 namespace {
 
-// The three strongest lines, where an axis has some; JSON has them all.
+// The three strongest lines, where an axis has some and the fit does not name them already; JSON has them
+// all.
 std::vector<TextRow> line_rows(const AnalysisReport& report) {
     constexpr std::size_t shown = 3;
     std::size_t most = 0;
-    for (const AxisReport& axis : report.axes) { most = std::max(most, axis.lines.size()); }
+    for (const AxisReport& axis : report.axes) {
+        if (axis.fit.sinusoids.empty()) { most = std::max(most, axis.lines.size()); }
+    }
     std::vector<TextRow> rows;
     for (std::size_t i = 0; i < std::min(most, shown); ++i) {
         TextRow row{i == 0 ? "spectral lines" : "", report.unit.name, {}};
         for (const AxisReport& axis : report.axes) {
-            row.cells.push_back(i < axis.lines.size()
+            row.cells.push_back(axis.fit.sinusoids.empty() && i < axis.lines.size()
                                     ? fmt::format("{:.3g} at {:.5g} Hz",
                                                   axis.lines[i].amplitude * report.unit.per_column_unit,
                                                   axis.lines[i].f_hz)
