@@ -1,0 +1,265 @@
+#include "analysis/noise/noise_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace gyrolog {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double price_of_a_term = 4.0;  // in the sparse model
+// A Gauss-Markov term has two parameters, and its correlation time was searched for.
+constexpr double gauss_markov_gain = 8.0;
+// White noise behind a low pass has the spectrum of Gauss-Markov noise. A gyro's own filter is wider than 5
+// Hz (32 ms), and its drift slower than this.
+constexpr double fastest_drift_s = 0.1;
+constexpr double clear_error = 0.05;  // a departure beyond which the model is amended
+
+double square(double x) { return x * x; }
+
+// Squares to begin with, from the curve's fit; white noise from the fastest contrasts, so that it is never 0.
+Eigen::VectorXd first_guess(const ContrastPyramid& pyramid, const SpectrumModel& model,
+                            const NoiseFit& start) {
+    const NoiseCoefficients& curve = start.best.coefficients;
+    double white = 0.0;
+    if (!pyramid.levels.empty()) {
+        white = pyramid.levels.front().power.back() / pyramid.rate_hz;
+    } else {
+        for (const TopAverage& sample : pyramid.top) { white += square(sample.value) / pyramid.rate_hz; }
+        white /= static_cast<double>(pyramid.top.size());
+    }
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(model.components());
+    squares[0] = std::max(square(curve.N_rad_per_sqrt_s), 0.01 * white);
+    squares[1] = square(curve.B_rad_per_s);
+    squares[2] = square(curve.K_rad_per_s_sqrt_s);
+    if (model.angle_noise) { squares[model.angle_noise_at()] = square(curve.Q_rad); }
+    for (std::size_t i = 0; i < model.lines.size(); ++i) {
+        squares[model.gauss_markov_at(model.correlations_s.size() + i)] =
+            square(model.lines[i].value.amplitude_rad_per_s);
+    }
+    return squares;
+}
+
+// The relative departure of the spectrum from the model that makes the contrasts' misfits as large as chance
+// and it together lead one to expect (Paule and Mandel, J. Res. NBS 87 (1982) 377-385).
+// Only contrasts known to some percent can tell; without enough of them: nothing.
+std::optional<double> departure(const std::vector<ContrastMisfit>& misfits, double upper_hz) {
+    std::vector<ContrastMisfit> counted;
+    std::ranges::copy_if(misfits, std::back_inserter(counted), [&](const ContrastMisfit& misfit) {
+        return misfit.f_hz <= upper_hz && misfit.dof >= 500.0;
+    });
+    if (counted.size() < 6) { return std::nullopt; }
+    const auto excess = [&](double error) {
+        double sum = 0.0;
+        for (const ContrastMisfit& misfit : counted) {
+            sum += square(misfit.ratio - 1.0) / (2.0 / misfit.dof + error * error);
+        }
+        return sum / static_cast<double>(counted.size()) - 1.0;
+    };
+    // Chance alone is within this, ninety-nine times in a hundred.
+    if (excess(0.0) < 2.5 * std::sqrt(2.0 / static_cast<double>(counted.size()))) { return 0.0; }
+    double low = 0.0;
+    double high = 10.0;
+    for (int pass = 0; pass < 40; ++pass) {
+        const double middle = 0.5 * (low + high);
+        (excess(middle) > 0.0 ? low : high) = middle;
+    }
+    return high;
+}
+
+// Fits a model, and again with the departure that the first fit shows, until it stands still.
+Fitted fit(const ContrastPyramid& pyramid, SpectrumModel model, Eigen::VectorXd start) {
+    Fitted fitted{std::move(model), {}};
+    for (int pass = 0; pass < 6; ++pass) {
+        const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
+        fitted.maximum = maximise(likelihood, start);
+        if (!std::isfinite(fitted.maximum.value)) { break; }
+        const double error =
+            departure(likelihood.misfits(fitted.maximum.squares), fitted.model.upper_hz).value_or(0.0);
+        const double before = std::exchange(fitted.model.error, error);
+        if (std::abs(error - before) <= 0.05 * error) {
+            fitted.model.error = before;
+            break;
+        }
+        start = fitted.maximum.squares;
+    }
+    return fitted;
+}
+
+// Leaves out the upper end of the band, octave by octave, until what is left agrees with the model.
+Fitted without_upper_end(const ContrastPyramid& pyramid, const Fitted& whole) {
+    Fitted best = whole;
+    const double lowest_hz =
+        32.0 * pyramid.rate_hz /
+        (static_cast<double>(pyramid.top_span) * static_cast<double>(pyramid.top.size()));
+    for (double upper_hz = pyramid.rate_hz / 4.0; upper_hz > lowest_hz; upper_hz /= 2.0) {
+        SpectrumModel model = whole.model;
+        model.upper_hz = upper_hz;
+        Fitted next = fit(pyramid, model, best.maximum.squares);
+        const auto misfits = likelihood_of(pyramid, next.model).misfits(next.maximum.squares);
+        if (!std::isfinite(next.value()) || !departure(misfits, upper_hz)) { break; }
+        if (next.model.error < 0.7 * best.model.error) { best = std::move(next); }
+        if (best.model.error < clear_error) { break; }
+    }
+    return best;
+}
+
+Eigen::VectorXd with_component(const Eigen::VectorXd& squares, Index at, double value) {
+    Eigen::VectorXd more(squares.size() + 1);
+    more << squares.head(at), value, squares.tail(squares.size() - at);
+    return more;
+}
+
+Fitted with_gauss_markov(const ContrastPyramid& pyramid, const Fitted& base, double correlation_s) {
+    Fitted next = base;
+    const Index at = base.model.gauss_markov_at(base.model.correlations_s.size());
+    next.model.correlations_s.push_back(correlation_s);
+    const NoiseLikelihood likelihood = likelihood_of(pyramid, next.model);
+    const double rate = 1.0 / correlation_s;
+    const double level = base.maximum.squares[0] * rate;
+    next.maximum = maximise(likelihood, with_component(base.maximum.squares, at, 0.3 * level));
+    return next;
+}
+
+// The best Gauss-Markov term beside what is there, correlation times searched over the whole record.
+Fitted search_gauss_markov(const ContrastPyramid& pyramid, const Fitted& base) {
+    const double length_s =
+        static_cast<double>(pyramid.top_span) * static_cast<double>(pyramid.top.size()) / pyramid.rate_hz;
+    Fitted best = base;
+    const double step = std::sqrt(10.0);
+    const double shortest_s = std::max(3.0 / pyramid.rate_hz, fastest_drift_s);
+    for (double t_s = shortest_s; t_s < length_s / 8.0; t_s *= step) {
+        Fitted next = with_gauss_markov(pyramid, base, t_s);
+        if (next.value() > best.value()) { best = std::move(next); }
+    }
+    if (best.model.correlations_s.size() == base.model.correlations_s.size()) { return base; }
+    for (double ratio = std::sqrt(step); ratio > 1.02; ratio = std::sqrt(ratio)) {
+        const double centre_s = best.model.correlations_s.back();
+        for (const double t_s : {centre_s / ratio, centre_s * ratio}) {
+            if (t_s < shortest_s) { continue; }
+            Fitted next = with_gauss_markov(pyramid, base, t_s);
+            if (next.value() > best.value()) { best = std::move(next); }
+        }
+    }
+    // What is best at the very end of the search is something faster.
+    return best.model.correlations_s.back() > 1.5 * shortest_s ? best : base;
+}
+
+// Whether the squares of some contrasts or averages are further from the model than chance, 99 times in a
+// hundred, puts them.
+bool departs(const std::vector<ContrastMisfit>& misfits) {
+    constexpr double enough_dof = 8.0;
+    double sum = 0.0;
+    double count = 0.0;
+    for (const ContrastMisfit& misfit : misfits) {
+        if (misfit.dof < enough_dof) { continue; }
+        sum += square(misfit.ratio - 1.0) * misfit.dof / 2.0 - 1.0;
+        count += 1.0;
+    }
+    return sum > 2.5 * std::sqrt(2.0 * count);
+}
+
+bool white_noise_stays(const ContrastPyramid& pyramid, const Fitted& fitted) {
+    const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
+    return likelihood_ratio(likelihood, fitted.maximum, 0) > identified_ratio;
+}
+
+// Amends a model that the record departs from: Gauss-Markov noise if it mends that and leaves the white noise
+// in place (a filter on white noise looks like it, too), else a narrower band.
+Fitted amended(const ContrastPyramid& pyramid, Fitted fitted) {
+    for (int terms = 0; terms < 2; ++terms) {
+        const auto misfits = likelihood_of(pyramid, fitted.model).misfits(fitted.maximum.squares);
+        if (!departs(misfits)) { break; }
+        const Fitted tried = search_gauss_markov(pyramid, fitted);
+        const bool any = tried.model.correlations_s.size() > fitted.model.correlations_s.size();
+        if (!any || tried.value() - fitted.value() < gauss_markov_gain) { break; }
+        Fitted next = fit(pyramid, tried.model, tried.maximum.squares);
+        if (next.model.error > 0.7 * fitted.model.error || !white_noise_stays(pyramid, next)) { break; }
+        fitted = std::move(next);
+    }
+    return fitted.model.error > clear_error ? without_upper_end(pyramid, fitted) : fitted;
+}
+
+Fitted with_angle_noise(const ContrastPyramid& pyramid, const Fitted& base) {
+    const Fitted more = with_angle_noise_added(pyramid, base);
+    if (!std::isfinite(more.value())) { return base; }
+    const NoiseLikelihood likelihood = likelihood_of(pyramid, more.model);
+    const Index at = more.model.angle_noise_at();
+    return likelihood_ratio(likelihood, more.maximum, at) > optional_ratio ? more : base;
+}
+
+RampFit with_ramp(const ContrastPyramid& pyramid, const Fitted& base) {
+    Fitted with = base;
+    with.model.ramp = true;
+    const NoiseLikelihood likelihood = likelihood_of(pyramid, with.model);
+    with.maximum = maximise(likelihood, base.maximum.squares);
+    if (!std::isfinite(with.value())) { return {base, {}, 0.0}; }
+    // Likelihoods restricted in different ways do not compare: the ramp's term is taken back.
+    const RampEstimate ramp = likelihood.ramp(with.maximum.squares);
+    return {with, ramp, 2.0 * (with.value() - std::log(ramp.sd_per_s) - base.value())};
+}
+
+}  // namespace
+
+NoiseLikelihood likelihood_of(const ContrastPyramid& pyramid, const SpectrumModel& model) {
+    NoiseLikelihood likelihood(pyramid, model.ramp);
+    for (const NoiseTerm term : {NoiseTerm::N, NoiseTerm::B, NoiseTerm::K}) {
+        likelihood.add(average_covariance(term));
+    }
+    if (model.angle_noise) { likelihood.add(average_covariance(NoiseTerm::Q)); }
+    for (const double correlation_s : model.correlations_s) {
+        likelihood.add(gauss_markov_covariance(correlation_s));
+    }
+    for (const FittedSinusoid& line : model.lines) {
+        likelihood.add(sinusoid_covariance(line.value.frequency_hz, pyramid.rate_hz));
+    }
+    likelihood.limit_frequency(model.upper_hz);
+    likelihood.tolerate(model.error);
+    return likelihood;
+}
+
+Fitted with_angle_noise_added(const ContrastPyramid& pyramid, const Fitted& base) {
+    SpectrumModel model = base.model;
+    model.angle_noise = true;
+    const double start = 1e-3 * base.maximum.squares[0] / square(pyramid.rate_hz);
+    return fit(pyramid, model, with_component(base.maximum.squares, model.angle_noise_at(), start));
+}
+
+bool is_significant(const RampFit& ramp) {
+    return std::min(ramp.ratio, square(ramp.ramp.slope_per_s / ramp.ramp.sd_per_s)) > optional_ratio;
+}
+
+LikelihoodMaximum with_needed_terms(const ContrastPyramid& pyramid, const Fitted& fitted) {
+    const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
+    LikelihoodMaximum best;
+    double most = -std::numeric_limits<double>::infinity();
+    for (const std::vector<Index>& left_out :
+         {std::vector<Index>{1, 2}, std::vector<Index>{2}, std::vector<Index>{1}, std::vector<Index>{}}) {
+        Eigen::VectorXd start = fitted.maximum.squares;
+        for (const Index component : left_out) { start[component] = 0.0; }
+        LikelihoodMaximum tried = maximise(likelihood, start, left_out);
+        const double kept = 2.0 * tried.value + price_of_a_term * static_cast<double>(left_out.size());
+        if (kept > most) {
+            most = kept;
+            best = std::move(tried);
+        }
+    }
+    return best;
+}
+
+SearchResult search_terms(const ContrastPyramid& pyramid, const NoiseFit& start,
+                          const std::vector<FittedSinusoid>& lines) {
+    SpectrumModel model;
+    model.lines = lines;
+    SearchResult result{fit(pyramid, model, first_guess(pyramid, model, start)), {}};
+    if (!std::isfinite(result.fitted.value())) { return result; }
+    result.fitted = amended(pyramid, with_angle_noise(pyramid, result.fitted));
+    result.ramp = with_ramp(pyramid, result.fitted);
+    if (is_significant(result.ramp)) { result.fitted = result.ramp.fitted; }
+    return result;
+}
+
+}  // namespace gyrolog
