@@ -14,6 +14,26 @@ void add_relative_sd(const NoiseFit& fit, NoiseTerm term, std::map<std::string, 
     }
 }
 
+// Noise beyond the five coefficients is an effect of the model. A line's phase is not reported: it is that of
+// no particular recording.
+void add_effects(const NoiseFit& fit, const std::string& axis, std::vector<EffectModel>& effects) {
+    for (const FittedGaussMarkov& noise : fit.gauss_markov) {
+        effects.push_back(
+            {"gauss_markov",
+             {axis},
+             {{"sigma_dps", noise.value.sigma_rad_per_s * deg_per_rad}, {"tau_s", noise.value.correlation_s}},
+             {}});
+    }
+    for (const FittedSinusoid& line : fit.sinusoids) {
+        effects.push_back({"tone",
+                           {axis},
+                           {{"f_hz", line.value.frequency_hz},
+                            {"amplitude_dps", line.value.amplitude_rad_per_s * deg_per_rad},
+                            {"phase_rad", 0.0}},
+                           {}});
+    }
+}
+
 }  // namespace
 
 SensorModel fitted_model(const AnalysisReport& report, const Recording& recording) {
@@ -26,11 +46,14 @@ SensorModel fitted_model(const AnalysisReport& report, const Recording& recordin
         fitted.noise = found->fit.identified().coefficients;
         fitted.bias_rad_s = found->bias.value;
         for (const NoiseTerm term : all_noise_terms) { add_relative_sd(found->fit, term, fitted.sd_rel); }
+        add_effects(found->fit, axis_names[axis], model.effects);
         const Column* column = recording.find(std::string("g") + axis_names[axis]);
         if (column != nullptr && column->is_counts()) {
             model.lsb_rad_s = column->scale;
             model.full_scale_rad_s = codes_of_a_side * column->scale;
             model.saturation_rad_s = (codes_of_a_side - 1.0) * column->scale;
+        } else if (found->fit.best.converter.step_rad_per_s > 0.0) {
+            model.lsb_rad_s = found->fit.best.converter.step_rad_per_s;
         }
     }
     if (report.rate_sd_hz && report.rate_hz > 0.0) {

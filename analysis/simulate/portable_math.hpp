@@ -14,4 +14,7 @@ double portable_exp(double x);
 // Source: M. J. Wichura, Algorithm AS 241 (PPND16), Applied Statistics 37 (1988) 477-484.
 double upper_normal_quantile(double p);
 
+// sin(2 pi turns), turns below 2^50. Error below 1e-15.
+double portable_sine_of_turns(double turns);
+
 }  // namespace gyrolog

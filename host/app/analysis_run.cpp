@@ -29,6 +29,7 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
         GYROLOG_TRY(options.m, parse_whole_numbers(request.factors));
     }
     options.threads = std::max(1U, std::thread::hardware_concurrency());
+    options.robust = request.robust;
     options.on_stage = request.on_stage;
     return options;
 }

@@ -24,6 +24,7 @@ struct AnalysisRequest {
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
     double confidence = 0.683;
+    bool robust = false;
     StageObserver on_stage{};  // of those of reading and analysing, then "json", "plot", "model", "report"
 };
 

@@ -57,13 +57,18 @@ Action setup_analyze(CLI::App& app) {
         ->check(CLI::IsMember({"sp1065", "matlab"}))
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_option("--m", request->factors, "Averaging factors: 1,10,100; or all, which takes long on long recordings")->type_name("LIST");
+    app.add_option("--m", request->factors,
+                   "Averaging factors: 1,10,100; or all, which takes long on long recordings")
+        ->type_name("LIST");
     app.add_option("--rate", request->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
         ->check(number_from_to(1e-4, 1e7, "Hz"));
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());
+    app.add_flag("--robust", request->robust,
+                 "First replace single samples that lie more than 6 robust standard deviations off their "
+                 "neighbours");
     app.add_option("--confidence", request->confidence, "Probability of the intervals")
         ->check(number_from_to(0.01, 0.9999))
         ->type_name("P")

@@ -9,6 +9,7 @@ std::span<const EffectDefinition> known_effects() {
         {"gauss_markov", {"sigma_dps", "tau_s"}, make_gauss_markov_effect},
         {"bias_step", {"step_dps", "at_s"}, make_bias_step_effect},
         {"rate_ramp", {"ramp_dps_per_s"}, make_rate_ramp_effect},
+        {"tone", {"f_hz", "amplitude_dps", "phase_rad"}, make_tone_effect},
     };
     return effects;
 }

@@ -33,5 +33,8 @@ std::unique_ptr<Stage> make_gauss_markov_effect(const StageContext& context, con
 std::unique_ptr<Stage> make_bias_step_effect(const StageContext& context, const EffectModel& effect);
 // rate_ramp: `ramp_dps_per_s`, from zero at the first sample.
 std::unique_ptr<Stage> make_rate_ramp_effect(const StageContext& context, const EffectModel& effect);
+// tone: `amplitude_dps` sin(2 pi `f_hz` t + `phase_rad`), t from the first sample; above half the rate it
+// appears folded, as in a recording.
+std::unique_ptr<Stage> make_tone_effect(const StageContext& context, const EffectModel& effect);
 
 }  // namespace gyrolog

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/simulate/effects/effects.hpp"
@@ -29,11 +30,15 @@ struct GaussMarkovNoise {
 }  // namespace
 
 std::unique_ptr<Stage> make_gauss_markov_effect(const StageContext& context, const EffectModel& effect) {
+    // Several of them on one axis are independent of each other.
+    const auto& all = context.model.effects;
+    const auto part = static_cast<unsigned>(
+        std::ranges::find_if(all, [&](const EffectModel& other) { return &other == &effect; }) - all.begin());
     return PerAxis<GaussMarkovNoise>::make([&](std::size_t axis) -> std::optional<GaussMarkovNoise> {
         if (!acts_on(effect, axis)) { return std::nullopt; }
         const double correlation = portable_exp(-1.0 / (context.rate_hz * effect.params.at("tau_s")));
-        return GaussMarkovNoise{context.stream({'G', 'M'}, axis), effect.params.at("sigma_dps") * rad_per_deg,
-                                correlation};
+        return GaussMarkovNoise{context.stream({'G', 'M'}, axis, part),
+                                effect.params.at("sigma_dps") * rad_per_deg, correlation};
     });
 }
 

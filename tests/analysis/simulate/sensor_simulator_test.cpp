@@ -189,5 +189,35 @@ TEST(Effects, GaussMarkovNoiseHasItsVarianceFromTheStartAndItsCorrelationTime) {
     EXPECT_NEAR(at_tau / variance, std::exp(-1.0), 4.0 * std::sqrt(1.0 / (50.0 * seeds)));
 }
 
+TEST(Effects, SeveralGaussMarkovNoisesOfOneAxisAreIndependent) {
+    SensorModel model = quiet_model();
+    const EffectModel one = effect_of("gauss_markov", {{"sigma_dps", 1.0}, {"tau_s", 0.02}});
+    model.effects = {one, one};
+    double variance = 0.0;
+    constexpr unsigned seeds = 200;
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+        SensorSimulator simulator(model, 100.0, seed);
+        for (const double x : simulator.next_block().rate_rad_s[0]) { variance += x * x; }
+    }
+    variance /= seeds * static_cast<double>(block_samples) * rad_per_deg * rad_per_deg;
+    // The same noise twice would have a variance of 4.
+    EXPECT_NEAR(variance, 2.0, 0.1);
+}
+
+TEST(Effects, AToneIsASinusoidAndFoldsAboveHalfTheRate) {
+    SensorModel model = quiet_model();
+    model.effects = {effect_of("tone", {{"f_hz", 60.0}, {"amplitude_dps", 2.0}, {"phase_rad", 0.3}})};
+    SensorSimulator simulator(model, 100.0, 1);
+    simulator.next_block();
+    const SampleBlock& block = simulator.next_block();
+    for (std::size_t i = 0; i < block_samples; i += 37) {
+        const double t_s = static_cast<double>(block_samples + i) / 100.0;
+        EXPECT_NEAR(block.rate_rad_s[0][i], 2.0 * rad_per_deg * std::sin(2.0 * pi * 60.0 * t_s + 0.3), 1e-12);
+        EXPECT_NEAR(block.rate_rad_s[0][i], 2.0 * rad_per_deg * std::sin(-2.0 * pi * 40.0 * t_s + 0.3),
+                    1e-12);
+        EXPECT_EQ(block.rate_rad_s[1][i], 0.0);
+    }
+}
+
 }  // namespace
 }  // namespace gyrolog
