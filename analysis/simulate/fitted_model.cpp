@@ -1,6 +1,8 @@
 #include "analysis/simulate/fitted_model.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace gyrolog {
 namespace {
@@ -12,6 +14,27 @@ void add_relative_sd(const NoiseFit& fit, NoiseTerm term, std::map<std::string, 
     if (coefficient.state == FittedCoefficient::State::identified && coefficient.value > 0.0) {
         sd_rel[std::string(name_of(term))] = coefficient.sd / coefficient.value;
     }
+}
+
+// Steps and range of the converter. Numbers on a grid come from 16 bits like counts; of numbers that are on
+// none, only the largest is known, and the range is the smallest usual one that holds it.
+void set_converter(const Column& column, double step_rad_s, SensorModel& model) {
+    constexpr std::array usual_dps = {250.0, 500.0, 1000.0, 2000.0};
+    if (step_rad_s > 0.0) {
+        model.lsb_rad_s = step_rad_s;
+        model.full_scale_rad_s = codes_of_a_side * step_rad_s;
+        model.saturation_rad_s = (codes_of_a_side - 1.0) * step_rad_s;
+        return;
+    }
+    double largest = 0.0;
+    for (std::size_t i = 0; i < column.size(); ++i) {
+        largest = std::max(largest, std::abs(column.value(i)));
+    }
+    const auto* const range_dps = std::ranges::find_if(usual_dps, [&](double dps) {
+        return dps * rad_per_deg >= std::max(largest, model.full_scale_rad_s);
+    });
+    model.full_scale_rad_s = range_dps == usual_dps.end() ? largest : *range_dps * rad_per_deg;
+    model.saturation_rad_s = model.full_scale_rad_s;
 }
 
 // Noise beyond the five coefficients is an effect of the model. A line's phase is not reported: it is that of
@@ -48,12 +71,10 @@ SensorModel fitted_model(const AnalysisReport& report, const Recording& recordin
         for (const NoiseTerm term : all_noise_terms) { add_relative_sd(found->fit, term, fitted.sd_rel); }
         add_effects(found->fit, axis_names[axis], model.effects);
         const Column* column = recording.find(std::string("g") + axis_names[axis]);
-        if (column != nullptr && column->is_counts()) {
-            model.lsb_rad_s = column->scale;
-            model.full_scale_rad_s = codes_of_a_side * column->scale;
-            model.saturation_rad_s = (codes_of_a_side - 1.0) * column->scale;
-        } else if (found->fit.best.converter.step_rad_per_s > 0.0) {
-            model.lsb_rad_s = found->fit.best.converter.step_rad_per_s;
+        if (column != nullptr && model.lsb_rad_s == 0.0) {
+            set_converter(*column,
+                          column->is_counts() ? column->scale : found->fit.best.converter.step_rad_per_s,
+                          model);
         }
     }
     if (report.rate_sd_hz && report.rate_hz > 0.0) {

@@ -1,11 +1,14 @@
 #include "analysis/noise/analyze.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/analysis/noise/over_seeds.hpp"
 #include "tests/analysis/noise/sensor_noise.hpp"
 
 namespace gyrolog {
@@ -56,6 +59,24 @@ TEST(StaticBias, CoversTheBiasOfTheNextRecordAtCoverageTwo) {
     }
     // 95 % of 60 is 57 with a standard deviation of 1.7; the uncertainty is itself an estimate.
     EXPECT_GE(covered, 51);
+}
+
+// Two hours with N, B and K, of which K is at the edge of what such a record shows.
+TEST(StaticBias, CoversTheNextRecordsBiasWithARandomWalkAsWell) {
+    constexpr std::size_t records = 100;
+    constexpr std::size_t samples = 72'000;
+    const auto covered = test::over_seeds(records, [](std::uint64_t seed) {
+        const auto both = test::sensor_noise({0.0, 0.01, 0.002, 1e-4, 0.0}, 2 * samples, 10.0, seed);
+        double next = 0.0;
+        for (std::size_t i = samples; i < both.size(); ++i) { next += both[i] / samples; }
+        const StaticBias bias =
+            analyze(recording_of({{both.begin(), both.begin() + samples}}, 10.0)).axes.at(0).bias;
+        return std::abs(bias.value - next) < std::sqrt(2.0) * bias.expanded_uncertainty;
+    });
+    const auto count = std::ranges::count(covered, true);
+    std::printf("covered %td of %zu\n", count, records);
+    // Far below 95 %: where a record does not show its random walk, its uncertainty cannot contain it.
+    EXPECT_GE(static_cast<double>(count), 0.70 * records);
 }
 
 TEST(StaticBias, WithFlickerHasFarFewerEffectiveSamplesThanSamples) {

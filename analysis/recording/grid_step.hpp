@@ -1,0 +1,13 @@
+// The grid on which a converter's numbers lie, after they were scaled and printed.
+#pragma once
+
+#include <span>
+
+namespace gyrolog {
+
+// The step that all values are whole multiples of apart, to the rounding of printed decimals (a twentieth of
+// the step). 0: there is none, or there are fewer than four different values, or values hardly repeat. NaN is
+// passed over.
+double grid_step(std::span<const double> values);
+
+}  // namespace gyrolog

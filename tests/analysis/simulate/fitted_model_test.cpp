@@ -1,0 +1,62 @@
+#include "analysis/simulate/fitted_model.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "analysis/simulate/sensor_simulator.hpp"
+
+namespace gyrolog {
+namespace {
+
+Recording white_recording(std::size_t samples, double sd_rad_s, double bias_rad_s) {
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal(bias_rad_s, sd_rad_s);
+    std::vector<double> x(samples);
+    for (double& value : x) { value = normal(random); }
+    Recording recording;
+    recording.rate_hz = 100.0;
+    recording.segments = {{0, samples, 0}};
+    recording.columns.push_back({"gx", "rad/s", x, 1.0, 0.0, "rad_s"});
+    return recording;
+}
+
+TEST(FittedModel, OfRealNumbersCanBeSimulatedInTheSmallestRangeThatHoldsThem) {
+    const Recording recording = white_recording(20'000, 0.01, 300.0 * rad_per_deg);
+    const SensorModel model = fitted_model(analyze(recording), recording);
+    EXPECT_EQ(simulation_refusal(model), std::nullopt);
+    EXPECT_NEAR(model.full_scale_rad_s, 500.0 * rad_per_deg, 1e-9);
+    EXPECT_EQ(model.lsb_rad_s, 0.0);
+    EXPECT_NEAR(model.axes[0].noise.N_rad_per_sqrt_s, 0.001, 5e-5);
+}
+
+TEST(FittedModel, HasTheStepOfTheConverterOnceAndNotInTheNoise) {
+    constexpr double step_rad_s = 0.015;
+    Recording recording = white_recording(100'000, 0.01, 0.1);
+    for (double& x : std::get<std::vector<double>>(recording.columns[0].data)) {
+        x = std::round(x / step_rad_s) * step_rad_s;
+    }
+    const SensorModel model = fitted_model(analyze(recording), recording);
+    EXPECT_NEAR(model.lsb_rad_s, step_rad_s, 1e-9);
+    EXPECT_NEAR(model.full_scale_rad_s, 32768.0 * step_rad_s, 1e-6);
+    // Of samples 0.01 scattered; the step alone would add 9 %.
+    EXPECT_NEAR(model.axes[0].noise.N_rad_per_sqrt_s, 0.001, 1e-5);
+}
+
+TEST(FittedModel, PlaysBackALineThatTheRecordHas) {
+    Recording recording = white_recording(50'000, 0.01, 0.0);
+    auto& x = std::get<std::vector<double>>(recording.columns[0].data);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        x[i] += 0.02 * std::sin(2.0 * pi * 12.5 * static_cast<double>(i) / 100.0);
+    }
+    const SensorModel model = fitted_model(analyze(recording), recording);
+    ASSERT_EQ(model.effects.size(), 1U);
+    EXPECT_EQ(model.effects[0].effect, "tone");
+    EXPECT_NEAR(model.effects[0].params.at("f_hz"), 12.5, 1e-3);
+    EXPECT_NEAR(model.effects[0].params.at("amplitude_dps"), 0.02 * deg_per_rad, 0.02);
+    EXPECT_EQ(simulation_refusal(model), std::nullopt);
+}
+
+}  // namespace
+}  // namespace gyrolog
