@@ -248,7 +248,7 @@ void add_guides(Panel& panel) {
 Panel allan_panel(const AllanFigure& allan) {
     Panel panel;
     panel.x = {"averaging time τ (s)", ScaleKind::logarithmic, {}};
-    panel.y = {"Allan deviation σ(τ) (" + allan.unit.name + ")", ScaleKind::logarithmic, {}};
+    panel.y = {allan.deviation + " σ(τ) (" + allan.unit.name + ")", ScaleKind::logarithmic, {}};
     if (allan.unit.deg_per_h > 0.0) { panel.right = SecondUnit{"σ(τ) (°/h)", allan.unit.deg_per_h}; }
 
     const std::vector<Column> columns = columns_of(allan);

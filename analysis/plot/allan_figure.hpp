@@ -57,8 +57,9 @@ struct AllanTrace {
 
 struct AllanFigure {
     std::string title = "Allan deviation";
-    std::string source;              // file or device
-    std::vector<std::string> facts;  // "1 kHz", "12 h", "43 200 000 samples", "no dropouts"
+    std::string deviation = "Allan deviation";  // what the curves are, on their axis
+    std::string source;                         // file or device
+    std::vector<std::string> facts;             // "1 kHz", "12 h", "43 200 000 samples", "no dropouts"
     DeviationUnit unit = DeviationUnit::rad_per_s_as_deg_per_s();
     std::vector<AllanTrace> traces;
     bool slope_lines = true;

@@ -18,7 +18,31 @@ std::optional<PlottedCoefficient> plotted(const NoiseFit& fit, NoiseTerm term) {
     return PlottedCoefficient{coefficient.value, coefficient.sd};
 }
 
-AllanTrace trace_of(const AxisReport& axis) {
+// What the curve is called, and whether the model's Allan variance is what it estimates.
+struct DrawnDeviation {
+    std::string name;
+    bool is_allan = true;
+};
+
+DrawnDeviation drawn_deviation(DeviationKind kind) {
+    switch (kind) {
+        case DeviationKind::modified:
+            return {"Modified Allan deviation", false};
+        case DeviationKind::hadamard:
+            return {"Hadamard deviation", false};
+        case DeviationKind::overlapping_hadamard:
+            return {"Overlapping Hadamard deviation", false};
+        case DeviationKind::total:
+            return {"Total deviation", true};
+        case DeviationKind::overlapping:
+        case DeviationKind::standard:
+        case DeviationKind::standard_halving:
+            break;
+    }
+    return {"Allan deviation", true};
+}
+
+AllanTrace trace_of(const AxisReport& axis, bool is_allan) {
     AllanTrace trace;
     trace.name = axis.axis;
     trace.curve = axis.curve;
@@ -27,7 +51,7 @@ AllanTrace trace_of(const AxisReport& axis) {
     if (trace.B && axis.slopes.B) { trace.B->tau_s = axis.slopes.B->tau_s; }
     trace.K = plotted(axis.fit, NoiseTerm::K);
     for (const AllanPoint& point : axis.curve.points) {
-        const double variance = axis.fit.best.allan_variance(point.tau_s);
+        const double variance = is_allan ? axis.fit.best.allan_variance(point.tau_s) : 0.0;
         if (variance > 0.0) { trace.model.push_back({point.tau_s, std::sqrt(variance)}); }
     }
     trace.spectrum = axis.spectrum;
@@ -52,11 +76,16 @@ std::vector<std::string> facts_of(const AnalysisReport& report) {
 
 AllanFigure figure_of(const AnalysisReport& report) {
     AllanFigure figure;
-    figure.title = "Allan deviation and noise density";
+    const DrawnDeviation deviation = drawn_deviation(report.kind);
+    figure.title = deviation.name + " and noise density";
+    figure.deviation = deviation.name;
+    figure.slope_lines = deviation.is_allan;
     figure.source = report.name;
     figure.facts = facts_of(report);
     if (report.unit.name == "lsb") { figure.unit = DeviationUnit::as_given("lsb"); }
-    for (const AxisReport& axis : report.axes) { figure.traces.push_back(trace_of(axis)); }
+    for (const AxisReport& axis : report.axes) {
+        figure.traces.push_back(trace_of(axis, deviation.is_allan));
+    }
     return figure;
 }
 
