@@ -108,6 +108,35 @@ TEST(Analyze, SaysWhichAveragingFactorsTheRecordCannotAnswer) {
     EXPECT_THAT(report.warnings, Contains(HasSubstr("m = 51 left out")));
 }
 
+TEST(Analyze, GivesTheSameNumbersForAnyNumberOfThreads) {
+    std::vector<std::vector<double>> axes;
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        axes.push_back(test::sensor_noise({0.0, 0.01, 0.002, 0.0, 0.0}, 5000, 10.0, seed));
+    }
+    const Recording recording = recording_of(axes, 10.0);
+    AnalysisOptions options;
+    const AnalysisReport one = analyze(recording, options);
+    options.threads = 3;
+    const AnalysisReport three = analyze(recording, options);
+    ASSERT_THAT(three.axes, SizeIs(3));
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(one.axes[i].axis, three.axes[i].axis);
+        EXPECT_EQ(one.axes[i].curve.points.back().deviation, three.axes[i].curve.points.back().deviation);
+        EXPECT_EQ(one.axes[i].fit[NoiseTerm::N].value, three.axes[i].fit[NoiseTerm::N].value);
+        EXPECT_EQ(one.axes[i].spectrum.points.back().density, three.axes[i].spectrum.points.back().density);
+        EXPECT_EQ(one.axes[i].bias.expanded_uncertainty, three.axes[i].bias.expanded_uncertainty);
+    }
+}
+
+TEST(Analyze, WarnsOfAClockThatIsOffItsNominalRate) {
+    Recording recording = recording_of({test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, 500, 99.3, 1)}, 99.3);
+    recording.nominal_rate_hz = 100.0;
+    recording.rate_sd_hz = 0.01;
+    EXPECT_THAT(analyze(recording).warnings, Contains(HasSubstr("-0.7 % off the nominal 100 Hz")));
+    recording.rate_hz = 99.95;
+    EXPECT_THAT(analyze(recording).warnings, testing::IsEmpty());
+}
+
 TEST(Analyze, OfNothingSaysSo) {
     EXPECT_THAT(analyze(Recording{}).warnings, Contains(HasSubstr("nothing to analyse")));
 }
