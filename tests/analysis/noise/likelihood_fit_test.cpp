@@ -9,6 +9,7 @@
 #include "analysis/noise/analyze.hpp"
 #include "tests/analysis/noise/over_seeds.hpp"
 #include "tests/analysis/noise/sensor_noise.hpp"
+#include "tests/analysis/noise/test_recording.hpp"
 
 namespace gyrolog {
 namespace {
@@ -16,12 +17,7 @@ namespace {
 using State = FittedCoefficient::State;
 
 Recording recording_of(std::vector<double> samples, double rate_hz) {
-    Recording recording;
-    recording.name = "test";
-    recording.rate_hz = rate_hz;
-    recording.segments = {{0, samples.size(), 0}};
-    recording.columns.push_back({"gx", "rad/s", std::move(samples), 1.0, 0.0, "rad_s"});
-    return recording;
+    return test::recording_of({std::move(samples)}, rate_hz);
 }
 
 NoiseFit fit_of(const Recording& recording) { return analyze(recording).axes.at(0).fit; }
