@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <iomanip>
 #include <map>
 #include <sstream>
@@ -41,10 +42,8 @@ void find_curves(Work& work, const Recording& recording, const AnalysisOptions& 
     axis.curve = allan_deviation(*work.column, recording.segments, recording.rate_hz, options);
     work.whole = axis.curve;
     if (!options.m.empty() || options.every_m || options.kind != DeviationKind::overlapping) {
-        AllanOptions usual = options;
-        usual.m.clear();
-        usual.every_m = false;
-        usual.kind = DeviationKind::overlapping;
+        AllanOptions usual{.confidence = options.confidence, .m = {}, .threads = options.threads};
+        usual.convention = options.convention;
         work.whole = allan_deviation(*work.column, recording.segments, recording.rate_hz, usual);
     }
     axis.slopes = read_slopes(work.whole);
@@ -69,6 +68,8 @@ void find_coefficients(Work& work, const Recording& recording, const AnalysisOpt
     if (auto likely = fit_likelihood(column, recording.segments, recording.rate_hz, axis.fit, fit)) {
         axis.fit = *std::move(likely);
     }
+    // Of a few samples only their own scatter is known.
+    if (axis.fit.method == FitMethod::curve) { axis.fit.mean_dof = static_cast<double>(column.size()) - 1.0; }
     axis.bias = static_bias(column, recording.rate_hz, axis.fit);
 }
 
@@ -110,8 +111,8 @@ public:
         for (const std::string& text : order_) {
             const auto& axes = by_text_.at(text);
             std::string line = axes.size() == 1 ? "axis" : "axes";
-            for (const std::string& axis : axes) { line += " " + axis; }
-            warnings.push_back(line + ": " + text);
+            for (const std::string& axis : axes) { line.append(" ").append(axis); }
+            warnings.push_back(line.append(": ").append(text));
         }
     }
 
@@ -146,8 +147,50 @@ void warn_of_misfit(const AxisReport& axis, Warnings& warnings) {
                      "that); the uncertainties allow for it as well as they can");
     }
     if (axis.outliers.samples > 0) {
-        warnings.add(axis.axis, "outliers were replaced by the median of their neighbours");
+        warnings.add(axis.axis, std::to_string(axis.outliers.samples) +
+                                    " outliers were replaced by the median of their neighbours");
     }
+    constexpr double heavy_tails = 1.0;
+    if (axis.bias.excess_kurtosis > heavy_tails) {
+        warnings.add(axis.axis, "the samples have heavy tails or outliers (excess kurtosis " +
+                                    rounded(axis.bias.excess_kurtosis) + "): see what --robust changes");
+    }
+    if (!axis.curve.points.empty() && axis.bias.sample_sd == 0.0) {
+        warnings.add(axis.axis,
+                     "all samples are equal: the axis is stuck, or its noise is below the resolution");
+    }
+}
+
+// More samples at the largest or the smallest value than beside it: noise that ends at a wall.
+bool is_clipped(const Column& column) {
+    constexpr std::size_t enough = 20;
+    return std::visit(
+        [](const auto& data) {
+            const auto wall = [&](auto further) {
+                auto end = data.front();
+                auto next = end;
+                std::size_t at_end = 0;
+                std::size_t at_next = 0;
+                for (const auto x : data) {
+                    if (x == end) {
+                        ++at_end;
+                    } else if (further(x, end)) {
+                        next = end;
+                        at_next = at_end;
+                        end = x;
+                        at_end = 1;
+                    } else if (at_next > 0 && x == next) {
+                        ++at_next;
+                    } else if (at_next == 0 || further(x, next)) {
+                        next = x;
+                        at_next = 1;
+                    }
+                }
+                return at_next > 0 && at_end >= enough && at_end > 2 * at_next;
+            };
+            return wall(std::greater<>()) || wall(std::less<>());
+        },
+        column.data);
 }
 
 // A clock that is off makes every averaging time wrong by as much.
@@ -202,6 +245,11 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
     Warnings warnings;
     for (Work& axis : axes) {
         warn_of_misfit(axis.report, warnings);
+        if (is_clipped(*axis.column)) {
+            warnings.add(axis.report.axis,
+                         "the samples are clipped: more lie at their limit than next to it, and "
+                         "the noise is larger than these coefficients say");
+        }
         report.axes.push_back(std::move(axis.report));
     }
     warnings.move_to(report.warnings);

@@ -26,15 +26,17 @@ Eigen::VectorXd cramer_rao(const Fitted& fitted, double rate_hz, double length_s
     const Index count = model.components() - static_cast<Index>(model.lines.size());
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
     constexpr double step = 1.01;
-    for (double f_hz = 0.5 / length_s; f_hz < rate_hz / 2.0; f_hz *= step) {
+    const int steps = static_cast<int>(std::log(rate_hz * length_s) / std::log(step));
+    for (int i = 0; i < steps; ++i) {
+        const double f_hz = 0.5 / length_s * std::pow(step, i);
         const double sampled_hz = rate_hz / pi * std::sin(pi * f_hz / rate_hz);
         Eigen::VectorXd spectra(count);
         spectra[0] = 1.0;
         spectra[1] = 1.0 / (2.0 * pi * sampled_hz);
         spectra[2] = 1.0 / square(2.0 * pi * sampled_hz);
         if (model.angle_noise) { spectra[3] = square(2.0 * pi * sampled_hz); }
-        for (std::size_t i = 0; i < model.correlations_s.size(); ++i) {
-            spectra[model.gauss_markov_at(i)] = GaussMarkov{1.0, model.correlations_s[i]}.psd(sampled_hz);
+        for (std::size_t k = 0; k < model.correlations_s.size(); ++k) {
+            spectra[model.gauss_markov_at(k)] = GaussMarkov{1.0, model.correlations_s[k]}.psd(sampled_hz);
         }
         const Eigen::VectorXd relative = spectra / spectra.dot(fitted.maximum.squares.head(count));
         information += length_s * f_hz * (step - 1.0) * relative * relative.transpose();
@@ -260,7 +262,7 @@ std::optional<NoiseFit> fit_likelihood(const Column& column, std::span<const Seg
                                        double rate_hz, const NoiseFit& start,
                                        const LikelihoodFitOptions& options) {
     const ContrastPyramid pyramid = contrast_pyramid(column, segments, rate_hz);
-    if (pyramid.top.size() < 16 || !varies(pyramid)) { return std::nullopt; }
+    if (pyramid.top.size() < 32 || !varies(pyramid)) { return std::nullopt; }
     const SearchResult found = search_terms(pyramid, start, options.lines);
     const Fitted& fitted = found.fitted;
     if (!std::isfinite(fitted.value())) { return std::nullopt; }

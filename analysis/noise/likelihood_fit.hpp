@@ -30,7 +30,7 @@ struct LikelihoodFitOptions {
     double step = 0.0;
 };
 
-// `start`: a fit to the record's Allan curve. Nothing for fewer than 16 samples, or samples that do not vary:
+// `start`: a fit to the record's Allan curve. Nothing for fewer than 32 samples, or samples that do not vary:
 // then the curve is all there is.
 std::optional<NoiseFit> fit_likelihood(const Column& column, std::span<const Segment> segments,
                                        double rate_hz, const NoiseFit& start,

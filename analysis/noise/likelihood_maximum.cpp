@@ -68,10 +68,9 @@ LikelihoodMaximum maximise(const NoiseLikelihood& likelihood, const Eigen::Vecto
         }
         if (moving.empty()) { break; }
         const Eigen::VectorXd step = scoring_step(at, moving);
-        double share = 1.0;
         LikelihoodMaximum next;
-        for (int halving = 0; halving < 30; ++halving, share *= 0.5) {
-            next.squares = (best.squares + share * step).cwiseMax(0.0);
+        for (int halving = 0; halving < 30; ++halving) {
+            next.squares = (best.squares + std::exp2(-halving) * step).cwiseMax(0.0);
             next.value = likelihood.value(next.squares);
             if (next.value >= best.value) { break; }
         }

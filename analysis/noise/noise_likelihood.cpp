@@ -89,6 +89,7 @@ Eigen::VectorXd NoiseLikelihood::level_expectation(const AverageCovariance& nois
     for (const ContrastLevel& level : pyramid_.levels) {
         const double span_s = static_cast<double>(level.span) / pyramid_.rate_hz;
         std::vector<double> by_lag;
+        by_lag.reserve(static_cast<std::size_t>(level.length));
         for (int lag = 0; lag < level.length; ++lag) { by_lag.push_back(noise.of_unit_square(lag, span_s)); }
         for (const auto& row : cosine_contrasts(level.length)) {
             double sum = 0.0;

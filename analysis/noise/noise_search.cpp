@@ -76,16 +76,15 @@ Fitted fit(const ContrastPyramid& pyramid, SpectrumModel model, Eigen::VectorXd 
     for (int pass = 0; pass < 6; ++pass) {
         const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
         fitted.maximum = maximise(likelihood, start);
-        if (!std::isfinite(fitted.maximum.value)) { break; }
+        if (!std::isfinite(fitted.maximum.value)) { return fitted; }
         const double error =
             departure(likelihood.misfits(fitted.maximum.squares), fitted.model.upper_hz).value_or(0.0);
-        const double before = std::exchange(fitted.model.error, error);
-        if (std::abs(error - before) <= 0.05 * error) {
-            fitted.model.error = before;
-            break;
-        }
+        if (std::abs(error - fitted.model.error) <= 0.05 * error) { return fitted; }
+        fitted.model.error = error;
         start = fitted.maximum.squares;
     }
+    // The squares belong to the departure that the model now has.
+    fitted.maximum = maximise(likelihood_of(pyramid, fitted.model), start);
     return fitted;
 }
 
@@ -95,7 +94,9 @@ Fitted without_upper_end(const ContrastPyramid& pyramid, const Fitted& whole) {
     const double lowest_hz =
         32.0 * pyramid.rate_hz /
         (static_cast<double>(pyramid.top_span) * static_cast<double>(pyramid.top.size()));
-    for (double upper_hz = pyramid.rate_hz / 4.0; upper_hz > lowest_hz; upper_hz /= 2.0) {
+    const int octaves = static_cast<int>(std::log2(pyramid.rate_hz / lowest_hz));
+    for (int octave = 2; octave < octaves; ++octave) {
+        const double upper_hz = pyramid.rate_hz * std::exp2(-octave);
         SpectrumModel model = whole.model;
         model.upper_hz = upper_hz;
         Fitted next = fit(pyramid, model, best.maximum.squares);
@@ -129,37 +130,26 @@ Fitted search_gauss_markov(const ContrastPyramid& pyramid, const Fitted& base) {
     const double length_s =
         static_cast<double>(pyramid.top_span) * static_cast<double>(pyramid.top.size()) / pyramid.rate_hz;
     Fitted best = base;
-    const double step = std::sqrt(10.0);
+    constexpr double step = 3.0;
     const double shortest_s = std::max(3.0 / pyramid.rate_hz, fastest_drift_s);
-    for (double t_s = shortest_s; t_s < length_s / 8.0; t_s *= step) {
+    const int steps = static_cast<int>(std::ceil(std::log(length_s / 8.0 / shortest_s) / std::log(step)));
+    const auto try_time = [&](double t_s) {
         Fitted next = with_gauss_markov(pyramid, base, t_s);
         if (next.value() > best.value()) { best = std::move(next); }
-    }
+    };
+    for (int i = 0; i < steps; ++i) { try_time(shortest_s * std::pow(step, i)); }
     if (best.model.correlations_s.size() == base.model.correlations_s.size()) { return base; }
-    for (double ratio = std::sqrt(step); ratio > 1.02; ratio = std::sqrt(ratio)) {
+    // Few records gain by it, and then the exact time is worth looking for.
+    if (best.value() - base.value() < 0.5 * gauss_markov_gain) { return base; }
+    constexpr int halvings = 5;
+    for (int i = 1; i <= halvings; ++i) {
         const double centre_s = best.model.correlations_s.back();
-        for (const double t_s : {centre_s / ratio, centre_s * ratio}) {
-            if (t_s < shortest_s) { continue; }
-            Fitted next = with_gauss_markov(pyramid, base, t_s);
-            if (next.value() > best.value()) { best = std::move(next); }
-        }
+        const double ratio = std::pow(step, std::exp2(-i));
+        try_time(std::max(centre_s / ratio, shortest_s));
+        try_time(centre_s * ratio);
     }
     // What is best at the very end of the search is something faster.
     return best.model.correlations_s.back() > 1.5 * shortest_s ? best : base;
-}
-
-// Whether the squares of some contrasts or averages are further from the model than chance, 99 times in a
-// hundred, puts them.
-bool departs(const std::vector<ContrastMisfit>& misfits) {
-    constexpr double enough_dof = 8.0;
-    double sum = 0.0;
-    double count = 0.0;
-    for (const ContrastMisfit& misfit : misfits) {
-        if (misfit.dof < enough_dof) { continue; }
-        sum += square(misfit.ratio - 1.0) * misfit.dof / 2.0 - 1.0;
-        count += 1.0;
-    }
-    return sum > 2.5 * std::sqrt(2.0 * count);
 }
 
 bool white_noise_stays(const ContrastPyramid& pyramid, const Fitted& fitted) {
@@ -167,12 +157,10 @@ bool white_noise_stays(const ContrastPyramid& pyramid, const Fitted& fitted) {
     return likelihood_ratio(likelihood, fitted.maximum, 0) > identified_ratio;
 }
 
-// Amends a model that the record departs from: Gauss-Markov noise if it mends that and leaves the white noise
-// in place (a filter on white noise looks like it, too), else a narrower band.
+// Gauss-Markov noise where it gains clearly and leaves the white noise in place (a filter on white noise
+// looks like it, too); a narrower band where the upper end departs still.
 Fitted amended(const ContrastPyramid& pyramid, Fitted fitted) {
     for (int terms = 0; terms < 2; ++terms) {
-        const auto misfits = likelihood_of(pyramid, fitted.model).misfits(fitted.maximum.squares);
-        if (!departs(misfits)) { break; }
         const Fitted tried = search_gauss_markov(pyramid, fitted);
         const bool any = tried.model.correlations_s.size() > fitted.model.correlations_s.size();
         if (!any || tried.value() - fitted.value() < gauss_markov_gain) { break; }
@@ -181,6 +169,19 @@ Fitted amended(const ContrastPyramid& pyramid, Fitted fitted) {
         fitted = std::move(next);
     }
     return fitted.model.error > clear_error ? without_upper_end(pyramid, fitted) : fitted;
+}
+
+// Q that was called for before the rest of the model was there may not be any more.
+Fitted without_needless_angle_noise(const ContrastPyramid& pyramid, Fitted fitted) {
+    if (!fitted.model.angle_noise) { return fitted; }
+    const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
+    const Index at = fitted.model.angle_noise_at();
+    if (likelihood_ratio(likelihood, fitted.maximum, at) > optional_ratio) { return fitted; }
+    SpectrumModel model = fitted.model;
+    model.angle_noise = false;
+    Eigen::VectorXd squares(fitted.maximum.squares.size() - 1);
+    squares << fitted.maximum.squares.head(at), fitted.maximum.squares.tail(squares.size() - at);
+    return fit(pyramid, model, squares);
 }
 
 Fitted with_angle_noise(const ContrastPyramid& pyramid, const Fitted& base) {
@@ -258,7 +259,11 @@ SearchResult search_terms(const ContrastPyramid& pyramid, const NoiseFit& start,
     if (!std::isfinite(result.fitted.value())) { return result; }
     result.fitted = amended(pyramid, with_angle_noise(pyramid, result.fitted));
     result.ramp = with_ramp(pyramid, result.fitted);
-    if (is_significant(result.ramp)) { result.fitted = result.ramp.fitted; }
+    if (is_significant(result.ramp)) {
+        result.fitted = without_needless_angle_noise(pyramid, result.ramp.fitted);
+    } else {
+        result.fitted = without_needless_angle_noise(pyramid, std::move(result.fitted));
+    }
     return result;
 }
 

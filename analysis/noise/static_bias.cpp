@@ -10,8 +10,7 @@
 namespace gyrolog {
 namespace {
 
-// One degree of freedom less and the factor would say more about the fit than about the bias.
-constexpr double least_dof = 2.0;
+constexpr double least_dof = 1.0;
 
 double coverage_factor(double dof) {
     constexpr double upper_tail = 0.02275;  // beyond 2 of a normal distribution
@@ -28,17 +27,20 @@ StaticBias static_bias(const Column& column, double rate_hz, const NoiseFit& fit
     if (column.size() < 2) { return bias; }
     const double mean = raw_mean(column);
     bias.value = mean * column.scale + column.offset;
+    double fourth = 0.0;
     const double squares = std::visit(
         [&](const auto& data) {
             double sum = 0.0;
             for (const auto x : data) {
-                const double d = static_cast<double>(x) - mean;
-                sum += d * d;
+                const double square = (static_cast<double>(x) - mean) * (static_cast<double>(x) - mean);
+                sum += square;
+                fourth += square * square;
             }
             return sum;
         },
         column.data);
     bias.sample_sd = std::abs(column.scale) * std::sqrt(squares / (samples - 1.0));
+    if (squares > 0.0) { bias.excess_kurtosis = fourth * samples / (squares * squares) - 3.0; }
     const double variance = fit.sparse.allan_variance(samples / rate_hz);
     bias.coverage_factor = coverage_factor(fit.mean_dof);
     bias.expanded_uncertainty = bias.coverage_factor * std::sqrt(variance);

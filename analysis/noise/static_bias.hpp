@@ -9,6 +9,7 @@ namespace gyrolog {
 struct StaticBias {
     double value = 0.0;                 // unit of the column
     double sample_sd = 0.0;             // of single samples
+    double excess_kurtosis = 0.0;       // of single samples; 0 for a Gaussian
     double expanded_uncertainty = 0.0;  // coverage_factor times the standard uncertainty (JCGM 100:2008, 6.2)
     double coverage_factor = 2.0;       // for a coverage of 95.45 %
     double effective_samples = 0.0;     // as many independent samples would give this uncertainty

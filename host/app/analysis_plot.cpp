@@ -55,8 +55,11 @@ AllanTrace trace_of(const AxisReport& axis, bool is_allan) {
         if (variance > 0.0) { trace.model.push_back({point.tau_s, std::sqrt(variance)}); }
     }
     trace.spectrum = axis.spectrum;
+    // A ramp is no noise: pieces of the record do not show it as its power law.
+    NoiseModel noise = axis.fit.best;
+    noise.coefficients.R_rad_per_s2 = 0.0;
     for (const SpectrumPoint& point : axis.spectrum.points) {
-        trace.model_spectrum.push_back({point.f_hz, axis.fit.best.psd(point.f_hz)});
+        trace.model_spectrum.push_back({point.f_hz, noise.psd(point.f_hz)});
     }
     trace.lines = axis.lines;
     trace.group = axis.axis.substr(0, 1);

@@ -36,6 +36,9 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
 
 Status write_results(Console& console, const AnalysisRequest& request, const Recording& recording,
                      const AnalysisReport& report) {
+    // What was worked out is shown before a file that cannot be written ends this.
+    request.on_stage("report");
+    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", analysis_text(report))); }
     if (!request.json_path.empty()) {
         request.on_stage("json");
         GYROLOG_CHECK(write_text(console, request.json_path, analysis_json(report)));
@@ -53,11 +56,16 @@ Status write_results(Console& console, const AnalysisRequest& request, const Rec
                 ErrorCode::invalid_argument,
                 "a model needs rates, and this recording has counts: give their scale with --lsb-dps"};
         }
+        if (std::ranges::none_of(report.axes, [](const AxisReport& axis) {
+                return axis.axis == "x" || axis.axis == "y" || axis.axis == "z";
+            })) {
+            return Error{
+                ErrorCode::invalid_argument,
+                "a model is of one sensor with axes x, y and z, and this recording has none of them"};
+        }
         request.on_stage("model");
         GYROLOG_CHECK(write_model(fitted_model(report, recording), request.model_path));
     }
-    request.on_stage("report");
-    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", analysis_text(report))); }
     for (const std::string* path :
          {&request.json_path, &request.plot_path, &request.histogram_path, &request.model_path}) {
         if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }

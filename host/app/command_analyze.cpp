@@ -75,7 +75,8 @@ Action setup_analyze(CLI::App& app) {
         ->capture_default_str();
     auto timing = std::make_shared<bool>(false);
     app.add_flag("--timing", *timing, "Print on standard error where the time went");
-    for (const char* of_samples : {"--deviation", "--convention", "--m", "--lsb-dps"}) {
+    for (const char* of_samples :
+         {"--deviation", "--convention", "--m", "--robust", "--histogram", "--lsb-dps"}) {
         curve->excludes(app.get_option(of_samples));
     }
     return [request, curve_path, timing](Console& console) {

@@ -23,6 +23,7 @@ void warn(Console& console, const char* command, const std::vector<std::string>&
 
 Status write_results(Console& console, const char* command, const CurveRequest& request,
                      const CurveReport& report) {
+    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", curve_text(report))); }
     if (!request.json_path.empty()) {
         GYROLOG_CHECK(write_text(console, request.json_path, curve_json(report)));
     }
@@ -32,7 +33,6 @@ Status write_results(Console& console, const char* command, const CurveRequest& 
         warn(console, command, result.warnings);
         GYROLOG_CHECK(write_model(result.model, request.model_path));
     }
-    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", curve_text(report))); }
     for (const std::string* path : {&request.json_path, &request.plot_path, &request.model_path}) {
         if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
     }

@@ -1,5 +1,6 @@
 #include "host/app/recording_input.hpp"
 
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -21,6 +22,12 @@ Result<Recording> read_capture(const RecordingInput& input) {
                         capture.file.blocks.damaged_ranges));
     }
     if (input.rate_hz) {
+        if (std::abs(*input.rate_hz / recording->rate_hz - 1.0) > 1e-3) {
+            recording->warnings.push_back(
+                fmt::format("the rate is taken as {:g} Hz, as given; the board's clock says {:.6g} Hz",
+                            *input.rate_hz, recording->rate_hz));
+        }
+        recording->nominal_rate_hz.reset();
         recording->rate_hz = *input.rate_hz;
         recording->rate_sd_hz.reset();
     }

@@ -49,9 +49,10 @@ Json matrix_json(const ExportedAxis& axis, double dt_s) {
     const double white = axis.N.value * axis.N.value;
     const double walk = axis.K.value * axis.K.value;
     const double cross = -walk * dt_s * dt_s / 2.0;
-    return {{"states", {"angle", "bias"}},
-            {"Q", {{white * dt_s + walk * dt_s * dt_s * dt_s / 3.0, cross}, {cross, walk * dt_s}}},
-            {"unit", {{"rad^2", "rad^2/s"}, {"rad^2/s", "rad^2/s^2"}}}};
+    return {
+        {"states", {"angle", "bias"}},
+        {"Q", {{white * dt_s + walk * dt_s * dt_s * dt_s / 3.0, cross}, {cross, walk * dt_s}}},
+        {"unit", Json::array({Json::array({"rad^2", "rad^2/s"}), Json::array({"rad^2/s", "rad^2/s^2"})})}};
 }
 
 // Where the Allan curve is flat: as it was read, or where white noise and random walk together are lowest.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include <fmt/format.h>
+
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/recording/grid.hpp"
 #include "host/formats/csv_column.hpp"
@@ -26,12 +28,19 @@ struct InputColumn {
 };
 
 // With `needs_stamps` an empty field of t_s is an error.
+// Beyond any gyro in any unit; squares of squares of it are still numbers.
+constexpr double most_rate = 1e15;
+
 CsvTable recording_table(bool needs_stamps) {
     const auto rule = [needs_stamps](std::vector<CsvTableColumn>& columns) -> Status {
         bool any_gyro = false;
         for (CsvTableColumn& column : columns) {
             const auto meaning = csv_column(column.header);
             column.used = meaning.has_value();
+            if (meaning && meaning->is_gyro()) {
+                column.lowest = -most_rate;
+                column.highest = most_rate;
+            }
             any_gyro = any_gyro || (meaning && meaning->is_gyro());
             if (needs_stamps && meaning && meaning->kind == CsvColumn::Kind::time_stamp) {
                 column.mend_if_empty = "no time stamp; give the sampling rate with --rate";
@@ -75,6 +84,25 @@ struct Gridded {
     }
 };
 
+// How long a period lasts is what was asked for; where samples are missing, stamps tell all the same.
+void use_given_rate(Gridded& gridded, std::size_t rows, double rate_hz) {
+    Grid& grid = gridded.grid;
+    if (!grid.failure.empty()) {
+        const std::string warning = "missing samples cannot be seen: " + grid.failure;
+        gridded.t_s.clear();
+        grid = grid_from_rate(rows, rate_hz);
+        grid.warnings.push_back(warning);
+        return;
+    }
+    constexpr double same = 1e-3;
+    if (std::abs(rate_hz / grid.rate_hz - 1.0) > same) {
+        grid.warnings.push_back(fmt::format(
+            "the rate is taken as {:g} Hz, as given; the time stamps say {:.6g} Hz", rate_hz, grid.rate_hz));
+    }
+    grid.rate_hz = rate_hz;
+    grid.rate_sd_hz.reset();
+}
+
 Result<Gridded> on_grid(std::vector<InputColumn> columns, const CsvReadOptions& options) {
     Gridded gridded;
     std::size_t rows = 0;
@@ -88,16 +116,21 @@ Result<Gridded> on_grid(std::vector<InputColumn> columns, const CsvReadOptions& 
         }
     }
     if (rows == 0) { return malformed("no samples after the header line"); }
-    if (options.rate_hz) {
-        gridded.t_s.clear();
+    if (options.rate_hz && gridded.t_s.empty()) {
         gridded.grid = grid_from_rate(rows, *options.rate_hz);
         return gridded;
     }
     if (gridded.t_s.empty()) {
         return Error{ErrorCode::invalid_argument, "no column t_s: give the sampling rate with --rate"};
     }
-    gridded.grid = grid_from_stamps(gridded.t_s);
-    if (!gridded.grid.failure.empty()) { return malformed(gridded.grid.failure); }
+    const bool stamped = std::ranges::none_of(gridded.t_s, [](double t_s) { return std::isnan(t_s); });
+    gridded.grid = stamped ? grid_from_stamps(gridded.t_s) : Grid{};
+    if (!stamped) { gridded.grid.failure = "time stamps are missing"; }
+    if (options.rate_hz) {
+        use_given_rate(gridded, rows, *options.rate_hz);
+    } else if (!gridded.grid.failure.empty()) {
+        return malformed(gridded.grid.failure);
+    }
     return gridded;
 }
 
