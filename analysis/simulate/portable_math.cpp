@@ -105,7 +105,7 @@ double portable_sine_of_turns(double turns) {
     const double x = 6.283185307179586 * rest;
     const double square = x * x;
     double sum = 0.0;
-    for (double n = 20.0; n >= 2.0; n -= 2.0) { sum = (1.0 + sum) * (-square / (n * (n + 1.0))); }
+    for (int n = 20; n >= 2; n -= 2) { sum = (1.0 + sum) * (-square / (n * (n + 1.0))); }
     return x * (1.0 + sum);
 }
 

@@ -46,6 +46,7 @@ Action setup_analyze(CLI::App& app) {
     app.add_option("--model", request->model_path, "Write the noise model for simulations")
         ->type_name("FILE");
     std::vector<std::string> deviations;
+    deviations.reserve(all_deviation_kinds.size());
     for (const DeviationKind kind : all_deviation_kinds) { deviations.emplace_back(name_of(kind)); }
     app.add_option("--deviation", request->deviation,
                    "Which deviation (standard_halving: m = 1, 2, 4, ..., error 1/sqrt(2(n-1)) of n averages)")
