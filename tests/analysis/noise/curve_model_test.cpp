@@ -2,80 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
-#include <string>
 
 #include <gtest/gtest.h>
 
 #include "analysis/noise/curve_gap.hpp"
+#include "tests/analysis/noise/printed_curve.hpp"
 
 namespace gyrolog {
 namespace {
 
 using Kind = CurveTerm::Kind;
 
-// Sixty averaging times over six decades, as in print.
-constexpr int print_points = 60;
-constexpr double print_first_s = 0.01;
-constexpr double print_last_s = 1e4;
-
-struct Reading {
-    double error = 0.0;      // relative, independent
-    double smooth_db = 0.0;  // standard deviation of what neighbours share, over an octave
-    std::uint64_t seed = 1;
-};
-
-AllanCurve curve_of(const NoiseModel& model, const Reading& reading = {}) {
-    std::mt19937_64 generator(reading.seed);
-    std::normal_distribution<double> normal;
-    const double ratio = std::pow(print_last_s / print_first_s, 1.0 / (print_points - 1));
-    const double memory = std::exp(-std::log2(ratio));
-    double smooth = normal(generator);
-    AllanCurve curve;
-    for (int i = 0; i < print_points; ++i) {
-        AllanPoint point;
-        point.tau_s = print_first_s * std::pow(ratio, i);
-        const double error_db =
-            20.0 / std::log(10.0) * reading.error * normal(generator) + reading.smooth_db * smooth;
-        point.deviation = std::sqrt(model.allan_variance(point.tau_s)) * std::pow(10.0, error_db / 20.0);
-        smooth = memory * smooth + std::sqrt(1.0 - memory * memory) * normal(generator);
-        curve.points.push_back(point);
-    }
-    return curve;
-}
-
-NoiseModel nbk() {
-    NoiseModel model;
-    model.coefficients = {0.0, 0.01, 0.002, 1e-4, 0.0};
-    return model;
-}
-
-NoiseModel all_five() {
-    NoiseModel model;
-    model.coefficients = {5e-4, 0.01, 0.002, 1e-4, 2e-6};
-    return model;
-}
-
-NoiseModel with_gauss_markov() {
-    NoiseModel model;
-    model.coefficients = {0.0, 0.01, 0.0, 1e-4, 0.0};
-    model.gauss_markov = {{0.004, 20.0}};
-    return model;
-}
-
-NoiseModel with_sinusoid() {
-    NoiseModel model = nbk();
-    model.sinusoids = {{0.006, 0.05}};
-    return model;
-}
-
-std::string kinds_of(const std::vector<CurveTerm>& terms) {
-    std::string kinds;
-    for (const CurveTerm& term : terms) {
-        kinds += std::string(kinds.empty() ? "" : " ") + std::string(name_of(term.kind));
-    }
-    return kinds;
-}
+using test::all_five;
+using test::curve_of;
+using test::kinds_of;
+using test::nbk;
+using test::print_first_s;
+using test::print_points;
+using test::with_gauss_markov;
+using test::with_sinusoid;
 
 const CurveTerm& only(const CurveModelFit& fit, Kind kind) {
     const auto found = std::ranges::find(fit.terms, kind, &CurveTerm::kind);
@@ -102,73 +47,6 @@ TEST(CurveModel, GivesBackTheTermsOfAnExactCurve) {
     EXPECT_EQ(kinds_of(line.terms), "N B K sinusoid");
     EXPECT_NEAR(only(line, Kind::sinusoid).size, 0.006, 0.006 * 1e-3);
     EXPECT_NEAR(only(line, Kind::sinusoid).shape, 0.05, 0.05 * 1e-3);
-}
-
-// How many of so many readings of a model's curve got other terms than it has.
-int wrong_models(const NoiseModel& model, const std::string& kinds, Reading reading, int seeds) {
-    int wrong = 0;
-    for (int seed = 1; seed <= seeds; ++seed) {
-        reading.seed = static_cast<std::uint64_t>(seed);
-        if (kinds_of(fit_curve_model(curve_of(model, reading)).terms) != kinds) { ++wrong; }
-    }
-    return wrong;
-}
-
-// Measured over 700 curves of seven models: 1.4 %. Of 80, more than 4 by chance: 1 in 200.
-TEST(CurveModel, ReadingErrorsOfTwoPerCentAddNoTermAndHideNone) {
-    const Reading reading{.error = 0.02};
-    EXPECT_LE(wrong_models(nbk(), "N B K", reading, 20) + wrong_models(all_five(), "Q N B K R", reading, 20) +
-                  wrong_models(with_gauss_markov(), "N K Gauss-Markov", reading, 20) +
-                  wrong_models(with_sinusoid(), "N B K sinusoid", reading, 20),
-              4);
-}
-
-// A wiggle that neighbouring points share is one witness, however many points draw it: 2 % of 400 curves.
-TEST(CurveModel, TheRecordsOwnScatterIsNotTakenForTerms) {
-    const Reading reading{.error = 0.02, .smooth_db = 0.3};
-    EXPECT_LE(wrong_models(nbk(), "N B K", reading, 30), 3);
-}
-
-// 60 seeds: the share within one standard deviation is 0.683 with a standard deviation of 0.06.
-TEST(CurveModel, StatedUncertaintiesAreThoseOfRepeatedReadings) {
-    constexpr int seeds = 60;
-    int inside_N = 0;
-    int inside_B = 0;
-    int inside_K = 0;
-    for (int seed = 1; seed <= seeds; ++seed) {
-        const CurveModelFit fit =
-            fit_curve_model(curve_of(nbk(), {.error = 0.02, .seed = static_cast<std::uint64_t>(seed)}));
-        const auto holds = [&](NoiseTerm term, double truth) {
-            return fit.noise[term].lo <= truth && truth <= fit.noise[term].hi ? 1 : 0;
-        };
-        inside_N += holds(NoiseTerm::N, 0.01);
-        inside_B += holds(NoiseTerm::B, 0.002);
-        inside_K += holds(NoiseTerm::K, 1e-4);
-    }
-    for (const int inside : {inside_N, inside_B, inside_K}) {
-        EXPECT_GT(inside, seeds * (0.683 - 3.0 * 0.06));
-        EXPECT_LT(inside, seeds * (0.683 + 3.0 * 0.06));
-    }
-}
-
-// A Q of 1e-4 is below what the curve shows. The upper end of a two-sided interval at 68.3 % covers it in 84
-// of 100 readings; of 60, with a standard deviation of 0.047.
-TEST(CurveModel, UpperLimitsHoldTermsTooSmallToBeSeen) {
-    constexpr int seeds = 60;
-    constexpr double true_Q = 1e-4;
-    NoiseModel model = nbk();
-    model.coefficients.Q_rad = true_Q;
-    int covered = 0;
-    int unseen = 0;
-    for (int seed = 1; seed <= seeds; ++seed) {
-        const Reading reading{.error = 0.02, .seed = static_cast<std::uint64_t>(seed)};
-        const FittedCoefficient Q = fit_curve_model(curve_of(model, reading)).noise[NoiseTerm::Q];
-        unseen += Q.state == FittedCoefficient::State::not_identifiable ? 1 : 0;
-        covered += Q.upper >= true_Q ? 1 : 0;
-    }
-    EXPECT_GT(unseen, seeds * 9 / 10);
-    EXPECT_GT(covered, seeds * (0.84 - 3.0 * 0.047));
-    EXPECT_LT(covered, seeds * (0.84 + 3.0 * 0.047));
 }
 
 TEST(CurveModel, ScalesWithTheCurve) {

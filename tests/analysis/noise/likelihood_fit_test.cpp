@@ -7,7 +7,6 @@
 
 #include "analysis/allan/allan_deviation.hpp"
 #include "analysis/noise/analyze.hpp"
-#include "tests/analysis/noise/over_seeds.hpp"
 #include "tests/analysis/noise/sensor_noise.hpp"
 #include "tests/analysis/noise/test_recording.hpp"
 
@@ -42,24 +41,6 @@ std::vector<double> gauss_markov(const GaussMarkov& noise, std::size_t samples, 
 bool within(const FittedCoefficient& coefficient, double truth, double sds) {
     return coefficient.state == State::identified &&
            std::abs(coefficient.value - truth) < sds * coefficient.sd;
-}
-
-TEST(LikelihoodFit, OfWhiteNoiseForcesNoSlopeWhereThereIsNone) {
-    constexpr std::size_t records = 40;
-    const auto fits = test::over_seeds(records, [](std::uint64_t seed) {
-        return fit_of(test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, 20'000, 100.0, seed), 100.0);
-    });
-    int others = 0;
-    for (const NoiseFit& fit : fits) {
-        EXPECT_TRUE(within(fit[NoiseTerm::N], 0.01, 4.0));
-        for (const NoiseTerm term : {NoiseTerm::Q, NoiseTerm::B, NoiseTerm::K, NoiseTerm::R}) {
-            others += fit[term].state == State::identified ? 1 : 0;
-            EXPECT_GT(fit[term].upper, 0.0) << name_of(term);
-        }
-        others += static_cast<int>(fit.gauss_markov.size() + fit.sinusoids.size());
-    }
-    // Half a percent each of 40 records and four terms is 0.8.
-    EXPECT_LE(others, 4);
 }
 
 TEST(LikelihoodFit, ChangesWithTheUnitAndNotWithTheBias) {
@@ -98,16 +79,6 @@ TEST(LikelihoodFit, FindsARampBesideARandomWalk) {
     const NoiseFit fit = fit_of(samples, 10.0);
     EXPECT_TRUE(within(fit[NoiseTerm::R], R_rad_per_s2, 4.0)) << fit[NoiseTerm::R].value;
     EXPECT_LT(fit[NoiseTerm::K].upper, 3e-4);
-}
-
-TEST(LikelihoodFit, TakesARandomWalkForARampInFewRecordsOnly) {
-    constexpr std::size_t records = 40;
-    const auto fits = test::over_seeds(records, [](std::uint64_t seed) {
-        return fit_of(test::sensor_noise({0.0, 0.001, 0.0, 1e-3, 0.0}, 20'000, 10.0, seed), 10.0);
-    });
-    int ramps = 0;
-    for (const NoiseFit& fit : fits) { ramps += fit[NoiseTerm::R].state == State::identified ? 1 : 0; }
-    EXPECT_LE(ramps, 2);
 }
 
 TEST(LikelihoodFit, FindsGaussMarkovNoiseAndItsCorrelationTime) {
@@ -166,12 +137,12 @@ TEST(LikelihoodFit, DoesNotCountTheConvertersErrorAsNoise) {
     EXPECT_NEAR(fit.best.converter.step_rad_per_s, step, 1e-9);
 }
 
-// Bursts of ten seconds are lost, one percent in all.
+// Bursts of five seconds are lost, one percent in all.
 TEST(LikelihoodFit, OfARecordWithHolesIsThatOfTheWholeAndNotOfTheRestClosedUp) {
     constexpr double rate_hz = 10.0;
     constexpr double R_rad_per_s2 = 1e-3;
     constexpr NoiseCoefficients truth = {0.0, 0.01, 0.002, 1e-4, 0.0};
-    auto samples = test::sensor_noise(truth, 216'000, rate_hz, 11);
+    auto samples = test::sensor_noise(truth, 108'000, rate_hz, 11);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double t_s = static_cast<double>(i) / rate_hz;
         samples[i] += R_rad_per_s2 * t_s + 0.02 * std::sin(2.0 * pi * 0.713 * t_s);
@@ -179,9 +150,9 @@ TEST(LikelihoodFit, OfARecordWithHolesIsThatOfTheWholeAndNotOfTheRestClosedUp) {
     Recording holes = recording_of({}, rate_hz);
     holes.segments.clear();
     std::vector<double> kept;
-    constexpr std::size_t period = 10'000;
+    constexpr std::size_t period = 5'000;
     for (std::size_t begin = 0; begin < samples.size(); begin += period) {
-        const std::size_t count = std::min(period - 100, samples.size() - begin);
+        const std::size_t count = std::min(period - 50, samples.size() - begin);
         holes.segments.push_back({kept.size(), count, static_cast<std::int64_t>(begin)});
         kept.insert(kept.end(), samples.begin() + static_cast<std::ptrdiff_t>(begin),
                     samples.begin() + static_cast<std::ptrdiff_t>(begin + count));
@@ -210,23 +181,23 @@ TEST(LikelihoodFit, OfARecordWithHolesIsThatOfTheWholeAndNotOfTheRestClosedUp) {
 }
 
 TEST(LikelihoodFit, OfARobustAnalysisIsThatOfTheRecordWithoutItsOutliers) {
-    const auto clean = test::sensor_noise({0.0, 0.01, 0.002, 0.0, 0.0}, 100'000, 100.0, 12);
+    const auto clean = test::sensor_noise({0.0, 0.01, 0.002, 0.0, 0.0}, 50'000, 100.0, 12);
     auto spiked = clean;
     std::mt19937_64 random(12);
-    for (int i = 0; i < 60; ++i) { spiked[random() % spiked.size()] += (i % 2 == 0 ? 5.0 : -3.0); }
+    for (int i = 0; i < 30; ++i) { spiked[random() % spiked.size()] += (i % 2 == 0 ? 5.0 : -3.0); }
     AnalysisOptions robust;
     robust.robust = true;
     const AnalysisReport report = analyze(recording_of(spiked, 100.0), robust);
     const double N = fit_of(clean, 100.0)[NoiseTerm::N].value;
     EXPECT_NEAR(report.axes[0].fit[NoiseTerm::N].value, N, 2.0 * report.axes[0].fit[NoiseTerm::N].sd);
     EXPECT_GT(fit_of(spiked, 100.0)[NoiseTerm::N].value, 1.3 * N);
-    EXPECT_NEAR(static_cast<double>(report.axes[0].outliers.samples), 60.0, 2.0);
+    EXPECT_NEAR(static_cast<double>(report.axes[0].outliers.samples), 30.0, 1.0);
 }
 
 TEST(LikelihoodFit, OfTooFewOrUnvaryingSamplesLeavesTheCurve) {
     EXPECT_EQ(fit_of(std::vector<double>(1000, 0.25), 10.0).method, FitMethod::curve);
     EXPECT_EQ(fit_of({1.0, 2.0, 3.0, 1.0}, 10.0).method, FitMethod::curve);
-    for (std::size_t samples = 2; samples < 60; ++samples) {
+    for (const std::size_t samples : {2U, 3U, 4U, 5U, 6U, 8U, 12U, 20U, 31U, 32U, 33U, 50U}) {
         const NoiseFit fit =
             fit_of(test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, samples, 10.0, samples), 10.0);
         for (const FittedCoefficient& term : fit.terms) {

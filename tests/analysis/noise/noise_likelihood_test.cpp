@@ -64,9 +64,9 @@ TEST(AverageCovariance, OfFlickerGoesOnSmoothlyWhereItsSeriesBegins) {
 }
 
 TEST(NoiseLikelihood, OfWhiteNoiseIsTheSameWithAndWithoutThePyramid) {
-    const Column column = column_of(test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, 2400, rate_hz, 5));
-    const ContrastPyramid levels = pyramid_of(column, 100);
-    const ContrastPyramid exact = pyramid_of(column, 2400);
+    const Column column = column_of(test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, 1200, rate_hz, 5));
+    const ContrastPyramid levels = pyramid_of(column, 60);
+    const ContrastPyramid exact = pyramid_of(column, 1200);
     ASSERT_GT(levels.levels.size(), 1U);
     const auto gain = [](const ContrastPyramid& pyramid) {
         const NoiseLikelihood likelihood = with_terms(pyramid, {NoiseTerm::N});
@@ -79,7 +79,7 @@ TEST(NoiseLikelihood, OfWhiteNoiseIsTheSameWithAndWithoutThePyramid) {
 // The dense covariance of every sample against blocks: what the blocks neglect costs little.
 TEST(NoiseLikelihood, OfMixedNoiseHasItsMaximumWhereTheExactOneHasIt) {
     for (const std::uint64_t seed : {1U, 2U}) {
-        const Column column = column_of(test::sensor_noise(truth, 700, rate_hz, seed));
+        const Column column = column_of(test::sensor_noise(truth, 400, rate_hz, seed));
         const auto maximum = [&](std::size_t most_top, Eigen::MatrixXd* information) {
             const ContrastPyramid pyramid = pyramid_of(column, most_top);
             const NoiseLikelihood likelihood =
@@ -89,8 +89,8 @@ TEST(NoiseLikelihood, OfMixedNoiseHasItsMaximumWhereTheExactOneHasIt) {
             return found.squares;
         };
         Eigen::MatrixXd information;
-        const Eigen::VectorXd exact = maximum(700, &information);
-        const Eigen::VectorXd blocks = maximum(70, nullptr);
+        const Eigen::VectorXd exact = maximum(400, &information);
+        const Eigen::VectorXd blocks = maximum(40, nullptr);
         const Eigen::VectorXd sd = information.inverse().diagonal().cwiseSqrt();
         EXPECT_LT((blocks - exact).cwiseQuotient(sd).cwiseAbs().maxCoeff(), 0.35) << "seed " << seed;
     }
