@@ -58,9 +58,9 @@ TEST_F(Capture, OfTheVirtualBoardIsWholeAndExactlyAsLongAsAsked) {
 }
 
 TEST_F(Capture, ASeedGivesTheSameSamplesAndAnotherSeedOthers) {
-    ASSERT_EQ(capture("sim:seed=3", "a.pcapng", {"--duration", "20m"}).exit_code, 0);
-    ASSERT_EQ(capture("sim:seed=3", "b.pcapng", {"--duration", "20m"}).exit_code, 0);
-    ASSERT_EQ(capture("sim:seed=4", "c.pcapng", {"--duration", "20m"}).exit_code, 0);
+    ASSERT_EQ(capture("sim:seed=3", "a.pcapng", {"--duration", "5m"}).exit_code, 0);
+    ASSERT_EQ(capture("sim:seed=3", "b.pcapng", {"--duration", "5m"}).exit_code, 0);
+    ASSERT_EQ(capture("sim:seed=4", "c.pcapng", {"--duration", "5m"}).exit_code, 0);
     const auto analysis = [&](const char* file) {
         const ProgramResult result = run_gyrolog({"analyze", folder.path(file), "--json", "-"});
         EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -181,7 +181,7 @@ TEST_F(Capture, TheBareProgramCapturesUntilInterruptedAndThenAnalyses) {
 }
 
 TEST_F(Capture, AModelFileDrivesTheVirtualBoard) {
-    ASSERT_EQ(capture("sim:", "first.pcapng", {"--duration", "10m"}).exit_code, 0);
+    ASSERT_EQ(capture("sim:", "first.pcapng", {"--duration", "2m"}).exit_code, 0);
     ASSERT_EQ(
         run_gyrolog({"analyze", folder.path("first.pcapng"), "--model", folder.path("model.json")}).exit_code,
         0);
