@@ -1,8 +1,6 @@
-// A simulated gyro at rest: the model's bias, noise and effects, then its converter.
+// A simulated gyro: the signal chain (chain.hpp), block by block, then its converter.
 //
-// The same model, rate and seed give the same samples, bit for bit, whatever the machine. The filter that a
-// real part applies to its noise (DLPF), and motion through the model's M, orientation and misalignment, are
-// not simulated here.
+// The same model, rate, world and seed give the same samples, bit for bit, whatever the machine.
 #pragma once
 
 #include <memory>
@@ -22,7 +20,9 @@ std::optional<std::string> simulation_refusal(const SensorModel& model);
 class SensorSimulator {
 public:
     // `model` has no simulation_refusal(). `rate_hz` takes the place of the model's.
-    SensorSimulator(const SensorModel& model, double rate_hz, std::uint64_t seed);
+    // `world`: null for a sensor at rest.
+    SensorSimulator(const SensorModel& model, double rate_hz, std::uint64_t seed,
+                    std::shared_ptr<const World> world = nullptr);
 
     // The next block_samples samples; valid until the next call.
     const SampleBlock& next_block();
@@ -32,6 +32,7 @@ private:
 
     double lsb_rad_s_;
     double saturation_rad_s_;
+    std::shared_ptr<const World> world_;
     std::vector<std::unique_ptr<Stage>> stages_;
     std::unique_ptr<SampleBlock> block_;
     std::uint64_t next_index_ = 0;

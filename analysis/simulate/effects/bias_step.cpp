@@ -16,14 +16,26 @@ struct BiasStep {
     }
 };
 
-}  // namespace
-
-std::unique_ptr<Stage> make_bias_step_effect(const StageContext& context, const EffectModel& effect) {
+std::unique_ptr<Stage> make(const EffectUse& use) {
     return PerAxis<BiasStep>::make([&](std::size_t axis) -> std::optional<BiasStep> {
-        if (!acts_on(effect, axis)) { return std::nullopt; }
-        return BiasStep{effect.params.at("step_dps") * rad_per_deg,
-                        effect.params.at("at_s") * context.rate_hz};
+        if (!use.acts_on(axis)) { return std::nullopt; }
+        return BiasStep{use["step_dps"] * rad_per_deg, use["at_s"] * use.context().rate_hz};
     });
 }
+
+constexpr EffectParam params[] = {
+    {.name = "step_dps", .meaning = "change of the bias", .plausible_from = -0.5, .plausible_to = 0.5},
+    {.name = "at_s", .meaning = "from this time on", .plausible_from = 0.0, .plausible_to = 1e5},
+};
+
+}  // namespace
+
+constinit const EffectDefinition bias_step_effect = {
+    .name = "bias_step",
+    .model = "rate + step_dps for t >= at_s",
+    .source = "",
+    .params = params,
+    .make = make,
+};
 
 }  // namespace gyrolog

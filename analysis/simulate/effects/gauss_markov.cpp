@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "analysis/simulate/effects/effects.hpp"
@@ -27,19 +26,35 @@ struct GaussMarkovNoise {
     }
 };
 
-}  // namespace
-
-std::unique_ptr<Stage> make_gauss_markov_effect(const StageContext& context, const EffectModel& effect) {
-    // Several of them on one axis are independent of each other.
-    const auto& all = context.model.effects;
-    const auto part = static_cast<unsigned>(
-        std::ranges::find_if(all, [&](const EffectModel& other) { return &other == &effect; }) - all.begin());
+std::unique_ptr<Stage> make(const EffectUse& use) {
     return PerAxis<GaussMarkovNoise>::make([&](std::size_t axis) -> std::optional<GaussMarkovNoise> {
-        if (!acts_on(effect, axis)) { return std::nullopt; }
-        const double correlation = portable_exp(-1.0 / (context.rate_hz * effect.params.at("tau_s")));
-        return GaussMarkovNoise{context.stream({'G', 'M'}, axis, part),
-                                effect.params.at("sigma_dps") * rad_per_deg, correlation};
+        if (!use.acts_on(axis)) { return std::nullopt; }
+        const double correlation = portable_exp(-1.0 / (use.context().rate_hz * use["tau_s"]));
+        return GaussMarkovNoise{use.stream(axis), use["sigma_dps"] * rad_per_deg, correlation};
     });
 }
+
+constexpr EffectParam params[] = {
+    {.name = "sigma_dps",
+     .meaning = "standard deviation",
+     .range = EffectParam::Range::not_negative,
+     .plausible_from = 0.001,
+     .plausible_to = 0.05},
+    {.name = "tau_s",
+     .meaning = "correlation time",
+     .range = EffectParam::Range::positive,
+     .plausible_from = 0.2,
+     .plausible_to = 500.0},
+};
+
+}  // namespace
+
+constinit const EffectDefinition gauss_markov_effect = {
+    .name = "gauss_markov",
+    .model = "stationary Gaussian, covariance sigma_dps^2 exp(-|t|/tau_s), independent on each axis",
+    .source = "IEEE 952-1997, C.1.5",
+    .params = params,
+    .make = make,
+};
 
 }  // namespace gyrolog

@@ -1,16 +1,30 @@
+#include "analysis/simulate/stages/rate_ramp.hpp"
+
 #include "analysis/simulate/effects/effects.hpp"
-#include "analysis/simulate/stages/stages.hpp"
 
 namespace gyrolog {
 
-std::unique_ptr<Stage> make_rate_ramp_effect(const StageContext& context, const EffectModel& effect) {
-    SensorModel ramp_only;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (acts_on(effect, axis)) {
-            ramp_only.axes[axis].noise.R_rad_per_s2 = effect.params.at("ramp_dps_per_s") * rad_per_deg;
-        }
-    }
-    return make_rate_ramp({ramp_only, context.rate_hz, context.seed});
+namespace {
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    return PerAxis<RateRamp>::make([&](std::size_t axis) -> std::optional<RateRamp> {
+        if (!use.acts_on(axis)) { return std::nullopt; }
+        return RateRamp{use["ramp_dps_per_s"] * rad_per_deg / use.context().rate_hz};
+    });
 }
+
+constexpr EffectParam params[] = {
+    {.name = "ramp_dps_per_s", .meaning = "slope", .plausible_from = -2e-4, .plausible_to = 2e-4},
+};
+
+}  // namespace
+
+constinit const EffectDefinition rate_ramp_effect = {
+    .name = "rate_ramp",
+    .model = "rate + ramp_dps_per_s t",
+    .source = "IEEE 952-1997, C.1 (rate ramp)",
+    .params = params,
+    .make = make,
+};
 
 }  // namespace gyrolog

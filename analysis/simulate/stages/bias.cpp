@@ -20,8 +20,7 @@ public:
             for (double& rate : block.rate_rad_s[axis]) { rate += bias_rad_s_[axis]; }
             if (!follows_temperature_) { continue; }
             for (std::size_t i = 0; i < block_samples; ++i) {
-                block.rate_rad_s[axis][i] +=
-                    slope_rad_s_per_C_[axis] * (block.temperature_C[i] - reference_C_);
+                block.rate_rad_s[axis][i] += slope_rad_s_per_C_[axis] * (block.die_C[i] - reference_C_);
             }
         }
     }

@@ -1,16 +1,22 @@
-// The stages of every sensor, each in a file of its own; sensor_simulator.cpp holds their order.
+// The stages of every sensor, each in a file of its own; the chain (chain.cpp) holds their order.
 #pragma once
 
 #include "analysis/simulate/stage.hpp"
 
 namespace gyrolog {
 
-// The sensor's temperature: the model's reference, a slow wander (0.5 degC, half an hour) and the reading's
-// own noise. Fills SampleBlock::temperature_C, adds nothing to the rate.
-std::unique_ptr<Stage> make_temperature(const StageContext& context);
+// Sample k is taken at k / rate, shows the world latency_s before, and its stamp has the model's jitter.
+std::unique_ptr<Stage> make_sample_clock(const StageContext& context);
+// True rate, specific force and temperature at the moments that the samples show, in the sensor's axes
+// (SensorModel::orientation). Without a world: at rest, z upward, the temperature wandering slowly about the
+// model's reference (0.5 degC, half an hour).
+std::unique_ptr<Stage> make_world(const StageContext& context);
+// Scale and misalignment: M and the relative misalignment of the model, times its scale factor's change with
+// temperature.
+std::unique_ptr<Stage> make_rate_response(const StageContext& context);
 // Turn-on bias, and the bias that follows the temperature in proportion.
 std::unique_ptr<Stage> make_bias(const StageContext& context);
-// N: independent samples of standard deviation N sqrt(rate).
+// N: independent samples of standard deviation N sqrt(rate), into SampleBlock::white_rad_s.
 std::unique_ptr<Stage> make_white_noise(const StageContext& context);
 // B: flicker_noise.hpp.
 std::unique_ptr<Stage> make_flicker_noise(const StageContext& context);
@@ -20,5 +26,9 @@ std::unique_ptr<Stage> make_rate_random_walk(const StageContext& context);
 std::unique_ptr<Stage> make_rate_ramp(const StageContext& context);
 // Q: the first difference of independent angle errors of standard deviation Q, times the rate.
 std::unique_ptr<Stage> make_angle_quantisation(const StageContext& context);
+// The white noise joins the rest.
+std::unique_ptr<Stage> make_noise_sum(const StageContext& context);
+// The temperature as the sensor reports it: with the model's temp_noise_C.
+std::unique_ptr<Stage> make_thermometer(const StageContext& context);
 
 }  // namespace gyrolog

@@ -1,32 +1,41 @@
 #include <cmath>
+#include <optional>
 
-#include "analysis/simulate/stages/per_axis.hpp"
 #include "analysis/simulate/stages/stages.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-struct WhiteNoise {
-    RandomStream stream;
-    double sd_rad_s;
-
-    void add(std::uint64_t first_index, std::span<double> rate_rad_s) const {
-        std::array<double, block_samples> draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-        const std::span<double> used = std::span(draws).first(rate_rad_s.size());
-        stream.normals(first_index, used);
-        for (std::size_t i = 0; i < used.size(); ++i) { rate_rad_s[i] += sd_rad_s * used[i]; }
+class WhiteNoise final : public Stage {
+public:
+    explicit WhiteNoise(const StageContext& context) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            sd_rad_s_[axis] = context.model.axes[axis].noise.N_rad_per_sqrt_s * std::sqrt(context.rate_hz);
+            streams_[axis] = context.stream({'N', '0'}, axis);
+        }
     }
+
+    void apply(SampleBlock& block) override {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (sd_rad_s_[axis] == 0.0) { continue; }
+            BlockValues draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+            streams_[axis]->normals(block.first_index, draws);
+            for (std::size_t i = 0; i < block_samples; ++i) {
+                block.white_rad_s[axis][i] += sd_rad_s_[axis] * draws[i];
+            }
+        }
+    }
+
+private:
+    Vector3 sd_rad_s_{};
+    std::array<std::optional<RandomStream>, 3> streams_;
 };
 
 }  // namespace
 
 std::unique_ptr<Stage> make_white_noise(const StageContext& context) {
-    return PerAxis<WhiteNoise>::make([&](std::size_t axis) -> std::optional<WhiteNoise> {
-        const double N = context.model.axes[axis].noise.N_rad_per_sqrt_s;
-        if (N == 0.0) { return std::nullopt; }
-        return WhiteNoise{context.stream({'N', '0'}, axis), N * std::sqrt(context.rate_hz)};
-    });
+    return std::make_unique<WhiteNoise>(context);
 }
 
 }  // namespace gyrolog

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/converter.hpp"
-#include "analysis/simulate/effects/effects.hpp"
 
 namespace gyrolog {
 namespace {

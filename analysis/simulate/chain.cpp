@@ -1,0 +1,73 @@
+#include "analysis/simulate/chain.hpp"
+
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/stages/stages.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr ChainLink own(StageMaker make) { return {.own = make, .effect = nullptr}; }
+constexpr ChainLink effect(const EffectDefinition& definition) {
+    return {.own = nullptr, .effect = &definition};
+}
+
+constexpr ChainLink links[] = {
+    // when a sample is taken, and what its stamp says
+    own(make_sample_clock),
+    // what is there to be measured
+    own(make_world),
+    // the answer to it
+    own(make_rate_response),
+    // the bias
+    own(make_bias),
+    effect(rate_ramp_effect),
+    effect(bias_step_effect),
+    own(make_rate_ramp),
+    // noise
+    own(make_flicker_noise),
+    own(make_rate_random_walk),
+    own(make_angle_quantisation),
+    effect(gauss_markov_effect),
+    effect(tone_effect),
+    own(make_white_noise),
+    // what acts on the white noise alone
+    // the sensor's bandwidth
+    own(make_noise_sum),
+    // reading out
+    own(make_thermometer),
+};
+
+}  // namespace
+
+std::span<const ChainLink> signal_chain() { return links; }
+
+const EffectDefinition* find_effect(std::string_view name) {
+    for (const ChainLink& link : links) {
+        if (link.effect != nullptr && link.effect->name == name) { return link.effect; }
+    }
+    return nullptr;
+}
+
+std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& context) {
+    std::vector<std::unique_ptr<Stage>> stages;
+    const auto take = [&](std::unique_ptr<Stage> stage) {
+        if (stage) { stages.push_back(std::move(stage)); }
+    };
+    for (const ChainLink& link : links) {
+        if (link.own != nullptr) {
+            take(link.own(context));
+            continue;
+        }
+        unsigned place = 0;
+        for (const EffectModel& entry : context.model.effects) {
+            if (entry.effect == link.effect->name) {
+                take(link.effect->make(EffectUse(context, *link.effect, entry, place)));
+            }
+            ++place;
+        }
+    }
+    return stages;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,28 @@
+// The signal chain of the simulated sensor: its own stages and all effects, in the order of their action.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "analysis/simulate/effect.hpp"
+#include "analysis/simulate/stage.hpp"
+
+namespace gyrolog {
+
+// One of the two is set.
+struct ChainLink {
+    StageMaker own = nullptr;  // a part of every sensor
+    const EffectDefinition* effect = nullptr;
+};
+
+std::span<const ChainLink> signal_chain();
+
+// Null for an unknown name.
+const EffectDefinition* find_effect(std::string_view name);
+
+// The stages that the context's model needs; it has no simulation_refusal().
+std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& context);
+
+}  // namespace gyrolog

@@ -1,0 +1,62 @@
+// The effects that a model may list under "effects": one file each in effects/, one line each in the chain
+// (chain.cpp), whose order is that of their action.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "analysis/simulate/stage.hpp"
+
+namespace gyrolog {
+
+struct EffectParam {
+    enum class Range { any, not_negative, positive };
+
+    std::string_view name;  // its unit at the end
+    std::string_view meaning;
+    Range range = Range::any;
+    double plausible_from = 0.0;  // for an MPU-9250
+    double plausible_to = 0.0;
+    std::optional<double> otherwise{};  // where the model says nothing; without it the parameter is needed
+};
+
+class EffectUse;
+
+struct EffectDefinition {
+    std::string_view name;
+    std::string_view model;   // the formula, in the parameters' names
+    std::string_view source;  // of the formula, with equation or section; for what is plain: ""
+    std::span<const EffectParam> params;
+    std::unique_ptr<Stage> (*make)(const EffectUse&);
+};
+
+// One entry of a model's list, as its stage is made from it.
+class EffectUse {
+public:
+    // `effect` has no effect_refusal() and is the `place`-th in the list of the context's model.
+    EffectUse(const StageContext& context, const EffectDefinition& definition, const EffectModel& effect,
+              unsigned place)
+        : context_(&context), definition_(&definition), effect_(&effect), place_(place) {}
+
+    const StageContext& context() const { return *context_; }
+    // The value given, or the parameter's own.
+    double operator[](std::string_view param) const;
+    // An entry without axes acts on all.
+    bool acts_on(std::size_t axis) const;
+    // A random stream of this entry's own; `part` below 4096.
+    RandomStream stream(std::size_t axis, unsigned part = 0) const;
+
+private:
+    const StageContext* context_;
+    const EffectDefinition* definition_;
+    const EffectModel* effect_;
+    unsigned place_;
+};
+
+// Why the effect cannot be simulated: an unknown name, axis or parameter, one that is missing or out of its
+// range. Empty when it can.
+std::optional<std::string> effect_refusal(const EffectModel& effect);
+
+}  // namespace gyrolog
