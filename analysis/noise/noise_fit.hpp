@@ -72,9 +72,11 @@ struct NoiseFit {
     // The best-fitting curve: holds the estimates of terms that are not identifiable as well, so that it is
     // an unbiased description of the curve and no statement about them.
     NoiseModel best;
-    // The fewest terms that describe the curve: the least significant is left out and the rest fitted again
-    // until all are at least one standard deviation above zero. What another record of this sensor should be
-    // expected to do.
+    // The fewest terms that do: what another record of this sensor should be expected to show.
+    //   curve: the least significant term is left out and the rest fitted again, until all are at least one
+    //     standard deviation above zero;
+    //   likelihood: N, with whichever of B, K or both leaves most of twice the log likelihood after 4 for
+    //     each; Q, R, Gauss-Markov noise and sinusoids as in `best`.
     NoiseModel sparse;
     std::size_t points = 0;  // of the curve that were used
     double worst_residual_sd =
