@@ -42,6 +42,10 @@ struct ContrastPyramid {
     std::vector<ContrastLevel> levels;  // from the samples up
     std::int64_t top_span = 1;          // samples in each of the top's averages
     std::vector<TopAverage> top;
+
+    // What the top's averages stand for together, in samples and in time.
+    double length() const { return static_cast<double>(top_span) * static_cast<double>(top.size()); }
+    double length_s() const { return length() / rate_hz; }
 };
 
 inline constexpr std::size_t most_top_averages = 128;

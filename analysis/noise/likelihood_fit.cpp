@@ -118,9 +118,7 @@ public:
           covariance_(inverse_information(likelihood_.expected_information(fitted.maximum.squares))) {}
 
     void fill(NoiseFit& fit, const RampFit& ramp) {
-        const double length_s = static_cast<double>(pyramid_.top_span) *
-                                static_cast<double>(pyramid_.top.size()) / pyramid_.rate_hz;
-        const Eigen::VectorXd bounds = cramer_rao(fitted_, pyramid_.rate_hz, length_s);
+        const Eigen::VectorXd bounds = cramer_rao(fitted_, pyramid_.rate_hz, pyramid_.length_s());
         const RateQuantisation converter{options_.step, pyramid_.rate_hz};
         fit.best.converter = fit.sparse.converter = converter;
         add(fit, NoiseTerm::N, 0, bounds, converter.density());
@@ -136,19 +134,17 @@ public:
         const LikelihoodMaximum needed = with_needed_terms(pyramid_, fitted_);
         fit.sparse.coefficients = coefficients_of(needed.squares, converter, fit);
         for (std::size_t i = 0; i < fitted_.model.correlations_s.size(); ++i) {
-            fit.gauss_markov.push_back(
-                judged_gauss_markov(pyramid_, fitted_, i, sd_of(fitted_.model.gauss_markov_at(i))));
+            const Index at = fitted_.model.gauss_markov_at(i);
+            fit.gauss_markov.push_back(judged_gauss_markov(pyramid_, fitted_, i, sd_of(at)));
             fit.best.gauss_markov.push_back(fit.gauss_markov.back().value);
+            fit.sparse.gauss_markov.push_back(
+                {std::sqrt(needed.squares[at]), fitted_.model.correlations_s[i]});
         }
         fit.sinusoids = fitted_.model.lines;
         for (const FittedSinusoid& line : fit.sinusoids) { fit.best.sinusoids.push_back(line.value); }
-        for (std::size_t i = 0; i < fitted_.model.correlations_s.size(); ++i) {
-            const double sigma_square = needed.squares[fitted_.model.gauss_markov_at(i)];
-            fit.sparse.gauss_markov.push_back({std::sqrt(sigma_square), fitted_.model.correlations_s[i]});
-        }
         fit.sparse.sinusoids = fit.best.sinusoids;
         correlate(fit);
-        fit.mean_dof = mean_dof(needed, length_s);
+        fit.mean_dof = mean_dof(needed);
         find_worst(fit);
     }
 
@@ -197,7 +193,8 @@ private:
     }
 
     // Of the sparse model's Allan variance at an averaging time of the whole record (JCGM 100:2008, G.4).
-    double mean_dof(const LikelihoodMaximum& needed, double length_s) const {
+    double mean_dof(const LikelihoodMaximum& needed) const {
+        const double length_s = pyramid_.length_s();
         std::vector<Index> there;
         Eigen::VectorXd shares = Eigen::VectorXd::Zero(fitted_.model.components());
         shares[0] = 1.0 / length_s;

@@ -35,7 +35,6 @@ Eigen::VectorXd first_guess(const ContrastPyramid& pyramid, const SpectrumModel&
     squares[0] = std::max(square(curve.N_rad_per_sqrt_s), 0.01 * white);
     squares[1] = square(curve.B_rad_per_s);
     squares[2] = square(curve.K_rad_per_s_sqrt_s);
-    if (model.angle_noise) { squares[model.angle_noise_at()] = square(curve.Q_rad); }
     for (std::size_t i = 0; i < model.lines.size(); ++i) {
         squares[model.gauss_markov_at(model.correlations_s.size() + i)] =
             square(model.lines[i].value.amplitude_rad_per_s);
@@ -91,10 +90,8 @@ Fitted fit(const ContrastPyramid& pyramid, SpectrumModel model, Eigen::VectorXd 
 // Leaves out the upper end of the band, octave by octave, until what is left agrees with the model.
 Fitted without_upper_end(const ContrastPyramid& pyramid, const Fitted& whole) {
     Fitted best = whole;
-    const double lowest_hz =
-        32.0 * pyramid.rate_hz /
-        (static_cast<double>(pyramid.top_span) * static_cast<double>(pyramid.top.size()));
-    const int octaves = static_cast<int>(std::log2(pyramid.rate_hz / lowest_hz));
+    constexpr double least_periods = 32.0;  // in the record, of the highest frequency that is left
+    const int octaves = static_cast<int>(std::log2(pyramid.length() / least_periods));
     for (int octave = 2; octave < octaves; ++octave) {
         const double upper_hz = pyramid.rate_hz * std::exp2(-octave);
         SpectrumModel model = whole.model;
@@ -127,12 +124,11 @@ Fitted with_gauss_markov(const ContrastPyramid& pyramid, const Fitted& base, dou
 
 // The best Gauss-Markov term beside what is there, correlation times searched over the whole record.
 Fitted search_gauss_markov(const ContrastPyramid& pyramid, const Fitted& base) {
-    const double length_s =
-        static_cast<double>(pyramid.top_span) * static_cast<double>(pyramid.top.size()) / pyramid.rate_hz;
     Fitted best = base;
     constexpr double step = 3.0;
     const double shortest_s = std::max(3.0 / pyramid.rate_hz, fastest_drift_s);
-    const int steps = static_cast<int>(std::ceil(std::log(length_s / 8.0 / shortest_s) / std::log(step)));
+    const int steps =
+        static_cast<int>(std::ceil(std::log(pyramid.length_s() / 8.0 / shortest_s) / std::log(step)));
     const auto try_time = [&](double t_s) {
         Fitted next = with_gauss_markov(pyramid, base, t_s);
         if (next.value() > best.value()) { best = std::move(next); }
@@ -259,11 +255,8 @@ SearchResult search_terms(const ContrastPyramid& pyramid, const NoiseFit& start,
     if (!std::isfinite(result.fitted.value())) { return result; }
     result.fitted = amended(pyramid, with_angle_noise(pyramid, result.fitted));
     result.ramp = with_ramp(pyramid, result.fitted);
-    if (is_significant(result.ramp)) {
-        result.fitted = without_needless_angle_noise(pyramid, result.ramp.fitted);
-    } else {
-        result.fitted = without_needless_angle_noise(pyramid, std::move(result.fitted));
-    }
+    result.fitted = without_needless_angle_noise(
+        pyramid, is_significant(result.ramp) ? result.ramp.fitted : std::move(result.fitted));
     return result;
 }
 

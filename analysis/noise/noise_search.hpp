@@ -63,7 +63,7 @@ SearchResult search_terms(const ContrastPyramid& pyramid, const NoiseFit& start,
 // Whether a ramp is called for.
 bool is_significant(const RampFit& ramp);
 
-// The model without Q: where its squares begin when it is added.
+// `base` is a model without Q: the same with Q beside its terms, fitted.
 Fitted with_angle_noise_added(const ContrastPyramid& pyramid, const Fitted& base);
 
 // Of white noise, flicker and random walk, those that the record does call for, together: N and whichever of
