@@ -38,7 +38,7 @@ struct AllanOptions {
                                     // or the powers of two for standard_halving
     bool every_m = false;           // instead of those, all from 1 to half the longest segment; the time
                                     // taken grows with the square of the record's length
-    unsigned threads = 1;           // the result is the same bits for any number
+    unsigned threads = 1;           // 0: all processors; the result is the same bits for any number
     StageObserver on_stage{};       // of "integrate", "deviation", "intervals"
 };
 

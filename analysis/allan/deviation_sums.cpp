@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <concepts>
-#include <thread>
 #include <type_traits>
+
+#include "analysis/parallel/parallel_for.hpp"
 
 namespace gyrolog {
 namespace {
@@ -156,18 +156,11 @@ std::vector<double> deviation_sums(const IntegratedSignal& signal, const Deviati
     std::vector<double> sums =
         plain ? sums_of_squared_differences(signal.stretches, m, threads) : std::vector<double>(m.size());
     if (plain && !rule.reflected) { return sums; }
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
-        for (std::size_t f = next++; f < m.size(); f = next++) {
-            for (std::size_t s = 0; s < signal.stretches.size(); ++s) {
-                sums[f] += squares_of(signal, rule, s, m[f]);
-            }
+    parallel_for(m.size(), threads, [&](std::size_t f) {
+        for (std::size_t s = 0; s < signal.stretches.size(); ++s) {
+            sums[f] += squares_of(signal, rule, s, m[f]);
         }
-    };
-    std::vector<std::jthread> others;
-    for (unsigned i = 1; i < threads; ++i) { others.emplace_back(work); }
-    work();
-    others.clear();
+    });
     return sums;
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <numeric>
-#include <thread>
+
+#include "analysis/parallel/parallel_for.hpp"
 
 #if defined(__x86_64__) && !defined(GYROLOG_BASELINE_INSTRUCTIONS)
     #include <immintrin.h>
@@ -186,17 +186,8 @@ void add_task(const Task& task, std::span<const std::int64_t> factors, Sum* sums
 void sum_factors(std::span<const Task> tasks, std::span<const std::int64_t> factors, unsigned threads,
                  double* results) {
     std::vector<Sum> partial(tasks.size() * factors.size());
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
-        for (std::size_t t = next++; t < tasks.size(); t = next++) {
-            add_task(tasks[t], factors, partial.data() + t * factors.size());
-        }
-    };
-    {
-        std::vector<std::jthread> others;
-        for (unsigned i = 1; i < threads; ++i) { others.emplace_back(work); }
-        work();
-    }
+    parallel_for(tasks.size(), threads,
+                 [&](std::size_t t) { add_task(tasks[t], factors, partial.data() + t * factors.size()); });
     for (std::size_t f = 0; f < factors.size(); ++f) {
         Sum sum;
         for (std::size_t t = 0; t < tasks.size(); ++t) {

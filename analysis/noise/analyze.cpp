@@ -1,16 +1,15 @@
 #include "analysis/noise/analyze.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <iomanip>
 #include <map>
 #include <sstream>
-#include <thread>
 
 #include "analysis/noise/converter_step.hpp"
 #include "analysis/noise/likelihood_fit.hpp"
+#include "analysis/parallel/parallel_for.hpp"
 
 namespace gyrolog {
 namespace {
@@ -71,20 +70,6 @@ void find_coefficients(Work& work, const Recording& recording, const AnalysisOpt
     // Of a few samples only their own scatter is known.
     if (axis.fit.method == FitMethod::curve) { axis.fit.mean_dof = static_cast<double>(column.size()) - 1.0; }
     axis.bias = static_bias(column, recording.rate_hz, axis.fit);
-}
-
-// Axes are independent of each other: as many at a time as there are threads.
-template <typename Step>
-void for_each_axis(std::vector<Work>& axes, unsigned threads, const Step& step) {
-    std::atomic<std::size_t> next = 0;
-    const auto run = [&] {
-        for (std::size_t i = next++; i < axes.size(); i = next++) { step(axes[i]); }
-    };
-    std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < std::min<std::size_t>(threads, axes.size()); ++i) {
-        others.emplace_back(run);
-    }
-    run();
 }
 
 // Averaging factors that were asked for and cannot be answered.
@@ -239,9 +224,11 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
     }
     for (Work& axis : axes) { find_curves(axis, recording, options); }
     options.on_stage("spectrum");
-    for_each_axis(axes, options.threads, [&](Work& axis) { find_spectrum(axis, recording, options); });
+    parallel_for(axes.size(), options.threads,
+                 [&](std::size_t i) { find_spectrum(axes[i], recording, options); });
     options.on_stage("fit");
-    for_each_axis(axes, options.threads, [&](Work& axis) { find_coefficients(axis, recording, options); });
+    parallel_for(axes.size(), options.threads,
+                 [&](std::size_t i) { find_coefficients(axes[i], recording, options); });
     Warnings warnings;
     for (Work& axis : axes) {
         warn_of_misfit(axis.report, warnings);

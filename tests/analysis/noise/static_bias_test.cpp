@@ -55,9 +55,9 @@ TEST(StaticBias, CoversTheNextRecordsBiasWithARandomWalkAsWell) {
         for (std::size_t i = samples; i < both.size(); ++i) { next += both[i] / samples; }
         const StaticBias bias =
             analyze(test::recording_of({{both.begin(), both.begin() + samples}}, 10.0)).axes.at(0).bias;
-        return std::abs(bias.value - next) < std::sqrt(2.0) * bias.expanded_uncertainty;
+        return std::abs(bias.value - next) < std::sqrt(2.0) * bias.expanded_uncertainty ? 1 : 0;
     });
-    const auto count = std::ranges::count(covered, true);
+    const auto count = std::ranges::count(covered, 1);
     std::printf("covered %td of %zu\n", count, records);
     // Far below 95 %: where a record does not show its random walk, its uncertainty cannot contain it.
     EXPECT_GE(static_cast<double>(count), 0.70 * records);
