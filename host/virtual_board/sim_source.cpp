@@ -71,6 +71,11 @@ Result<std::unique_ptr<SimSource>> SimSource::create(const SimOptions& options, 
     board_options.seed = options.seed + (options.board - 1) * 0x9E3779B97F4A7C15U;
     board_options.serial = serial_of(options.board);
     board_options.sensor_clock_error = options.clock_error;
+    if (!options.model_path.empty()) {
+        // A model says all that is wrong with its clock: the capture is to be the signal that it simulates.
+        board_options.sensor_clock_error = options.clock_error.value_or(0.0);
+        board_options.tick_clock_error = 0.0;
+    }
     if (options.rate_hz) {
         board_options.rate_hz = *options.rate_hz;
     } else if (const auto nominal_hz = nominal_rate_near(model.rate_hz)) {

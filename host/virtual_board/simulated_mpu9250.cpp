@@ -16,6 +16,25 @@ constexpr double standard_gravity_m_s2 = 9.80665;
 constexpr double temperature_lsb_C = 1.0 / 333.87;
 constexpr double temperature_zero_C = 21.0;
 
+// PS-MPU-9250A-01, table 1
+constexpr std::array lsb_per_dps{131.0, 65.5, 32.8, 16.4};
+
+// Of the period: nearer or farther than half of it, a firmware calls two instants a discontinuity.
+constexpr double shortest_distance = 0.51;
+constexpr double longest_distance = 1.49;
+
+constexpr double same_scale = 1e-3;
+
+bool about_equal(double a, double b) { return std::fabs(a - b) <= same_scale * b; }
+
+Converter gyro_converter(const SensorModel& model, unsigned range) {
+    const double range_rad_s = (250U << range) * rad_per_deg;
+    const double lsb_rad_s = rad_per_deg / lsb_per_dps[range];
+    if (!about_equal(model.full_scale_rad_s, range_rad_s)) { return {lsb_rad_s, 32767.0 * lsb_rad_s}; }
+    const bool own_step = about_equal(model.lsb_rad_s, lsb_rad_s);
+    return {own_step ? model.lsb_rad_s : lsb_rad_s, model.saturation_rad_s};
+}
+
 void put_big_endian(std::uint8_t* bytes, std::int16_t value) {
     bytes[0] = static_cast<std::uint8_t>(static_cast<std::uint16_t>(value) >> 8U);
     bytes[1] = static_cast<std::uint8_t>(value);
@@ -32,9 +51,6 @@ double inside_rate_hz(std::uint8_t gyro_config, std::uint8_t config) {
 
 SimulatedMpu9250::SimulatedMpu9250(const SensorModel& model, std::uint64_t seed, double clock_error)
     : model_(model), seed_(seed), clock_error_(std::clamp(clock_error, -clock_error_max, clock_error_max)) {
-    // The converter follows the full scale that the registers set, not the model's.
-    model_.lsb_rad_s = 0.0;
-    model_.saturation_rad_s = std::numeric_limits<double>::infinity();
     reset(0);
 }
 
@@ -68,16 +84,17 @@ void SimulatedMpu9250::restart_clock(std::int64_t now_ns) {
     schedule(now_ns);
 }
 
-// The first instant of the grid after `after_ns`, if anything waits for one.
+// The next sample comes at the first instant of the grid after `after_ns`, if anything waits for one.
 void SimulatedMpu9250::schedule(std::int64_t after_ns) {
     if (!samples_wanted()) {
         next_instant_ns_ = never_ns;
         return;
     }
-    instants_ =
-        static_cast<std::int64_t>(std::floor(static_cast<double>(after_ns - clock_start_ns_) / period_ns_)) +
-        1;
-    next_instant_ns_ = clock_start_ns_ + std::llround(static_cast<double>(instants_) * period_ns_);
+    prepare_simulator();
+    const double periods = std::floor(static_cast<double>(after_ns - clock_start_ns_) / period_ns_) + 1.0;
+    next_instant_ns_ = clock_start_ns_ + std::llround(periods * period_ns_);
+    stamps_start_ns_ = next_instant_ns_ - stamp_ns();
+    if (block_->lost[place_]) { go_to_next_slot(); }
 }
 
 void SimulatedMpu9250::set_pin_divider(unsigned divider, std::int64_t now_ns) {
@@ -103,7 +120,9 @@ void SimulatedMpu9250::write(std::uint8_t address, std::uint8_t value, std::int6
     const double rate_before_hz = nominal_rate_hz();
     const bool wanted_before = samples_wanted();
     registers_[address] = value;
-    if (address == glp_mpu_gyro_config || address == glp_mpu_accel_config) { place_ = block_samples; }
+    if ((address == glp_mpu_gyro_config || address == glp_mpu_accel_config) && block_ != nullptr) {
+        convert();
+    }
     if (nominal_rate_hz() != rate_before_hz) {
         restart_clock(now_ns);
     } else if (samples_wanted() != wanted_before) {
@@ -190,38 +209,56 @@ void SimulatedMpu9250::store_sample_in_fifo() {
 }
 
 bool SimulatedMpu9250::pass_instant() {
-    draw_sample();
-    ++instants_;
-    next_instant_ns_ = clock_start_ns_ + std::llround(static_cast<double>(instants_) * period_ns_);
+    fields_ = counts_[place_];
+    go_to_next_slot();
     registers_[glp_mpu_int_status] |= glp_mpu_int_raw_rdy;
     if ((registers_[glp_mpu_user_ctrl] & glp_mpu_user_ctrl_fifo_en) != 0) { store_sample_in_fifo(); }
     return (registers_[glp_mpu_int_enable] & glp_mpu_int_raw_rdy) != 0;
 }
 
-void SimulatedMpu9250::draw_sample() {
-    const double rate_hz = true_rate_hz();
-    if (!simulator_ || simulated_rate_hz_ != rate_hz) {
-        // The first simulation is the seed's own, as anyone may repeat it; later ones must not repeat it.
-        simulator_.emplace(model_, rate_hz, seed_ + (simulations_ << 32U));
-        ++simulations_;
-        simulated_rate_hz_ = rate_hz;
-        block_ = nullptr;
-        place_ = block_samples;
+std::int64_t SimulatedMpu9250::stamp_ns() const { return std::llround(block_->stamp_s[place_] * 1e9); }
+
+void SimulatedMpu9250::go_to_next_slot() {
+    const std::int64_t before_ns = next_instant_ns_;
+    bool neighbours = true;
+    while (true) {
+        if (++place_ == block_samples) { next_block(); }
+        if (!block_->lost[place_]) { break; }
+        neighbours = false;
     }
-    if (place_ == block_samples) { refill(); }
-    fields_ = counts_[place_++];
+    const std::int64_t earliest_ns = before_ns + std::llround(shortest_distance * period_ns_);
+    next_instant_ns_ = std::max(stamps_start_ns_ + stamp_ns(), earliest_ns);
+    if (neighbours) {
+        const std::int64_t latest_ns = before_ns + std::llround(longest_distance * period_ns_);
+        next_instant_ns_ = std::min(next_instant_ns_, latest_ns);
+    }
 }
 
-void SimulatedMpu9250::refill() {
+void SimulatedMpu9250::prepare_simulator() {
+    const double rate_hz = true_rate_hz();
+    if (simulator_ && simulated_rate_hz_ == rate_hz) { return; }
+    // What the chip converts is the rate before any converter: the registers may change while it runs.
+    SensorModel unconverted = model_;
+    unconverted.lsb_rad_s = 0.0;
+    unconverted.saturation_rad_s = std::numeric_limits<double>::infinity();
+    // The first simulation is the seed's own, as anyone may repeat it; later ones must not repeat it.
+    simulator_.emplace(unconverted, rate_hz, seed_ + (simulations_ << 32U));
+    ++simulations_;
+    simulated_rate_hz_ = rate_hz;
+    next_block();
+}
+
+void SimulatedMpu9250::next_block() {
     block_ = &simulator_->next_block();
     place_ = 0;
+    convert();
+}
+
+void SimulatedMpu9250::convert() {
     const unsigned gyro_range = (registers_[glp_mpu_gyro_config] >> glp_mpu_gyro_fs_sel_shift) & 3U;
     const unsigned accel_range = (registers_[glp_mpu_accel_config] >> glp_mpu_accel_fs_sel_shift) & 3U;
-    // PS-MPU-9250A-01, table 1
-    constexpr std::array lsb_per_dps{131.0, 65.5, 32.8, 16.4};
-    const double gyro_lsb_rad_s = rad_per_deg / lsb_per_dps[gyro_range];
     const double accel_lsb_m_s2 = (2U << accel_range) * standard_gravity_m_s2 / 32768.0;
-    const Converter gyro(gyro_lsb_rad_s, 32767.0 * gyro_lsb_rad_s);
+    const Converter gyro = gyro_converter(model_, gyro_range);
     const Converter accel(accel_lsb_m_s2, 32767.0 * accel_lsb_m_s2);
     const Converter temperature(temperature_lsb_C, 32767.0 * temperature_lsb_C);
 
@@ -229,9 +266,8 @@ void SimulatedMpu9250::refill() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const StageContext context{model_, simulated_rate_hz_, seed_ + ((simulations_ - 1) << 32U)};
         context.stream({'A', '0'}, axis).normals(block_->first_index, noise);
-        const double at_rest_m_s2 = axis == 2 ? standard_gravity_m_s2 : 0.0;
         for (std::size_t i = 0; i < block_samples; ++i) {
-            counts_[i][axis] = accel(at_rest_m_s2 + model_.acc_noise_m_s2 * noise[i]);
+            counts_[i][axis] = accel(block_->specific_force_m_s2[axis][i] + model_.acc_noise_m_s2 * noise[i]);
             counts_[i][4 + axis] = gyro(block_->rate_rad_s[axis][i]);
         }
     }

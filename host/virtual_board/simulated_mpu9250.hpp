@@ -1,10 +1,26 @@
 // An MPU-9250 behind its registers (RM-MPU-9250A-00): what a firmware writes, reads and is interrupted by.
 //
-// Simulated: reset, sleep, identity, sample rate and divider, full scales, the 512-byte FIFO with both of its
-// overflow modes, the data-ready interrupt and its status bits, the data registers, the die's temperature,
-// and a sample clock that is off its nominal rate. Not simulated: the filter's shape and delay (DLPF_CFG
-// chooses the rate only; the model's noise density holds at the output rate that is set), self test, motion
-// interrupts, the magnetometer, the time that a bus access takes.
+// Its samples are those of SensorSimulator with the same model and seed, at the rate that is set:
+//   when      A sample is there at its slot's time stamp, counted from the first one. The model's clock
+//   effects
+//             and its timestamp_jitter_s act through the stamps. Instants keep their order and, between slots
+//             that follow each other, a distance of 0.51 to 1.49 periods, so that no firmware takes jitter
+//             for a lost interrupt.
+//   lost      A slot that the model marks as lost brings no interrupt and nothing into the FIFO. The firmware
+//             cannot count it: the next sample is flagged as a discontinuity of time, the host's accounts
+//             miss nothing, and the recording has a hole by the ticks.
+//   gyro      The counts are SensorSimulator's own, bit for bit, where the registers set the model's full
+//   scale
+//             and the model's step is the register's to 0.1 % (files round it). Otherwise the registers' step
+//             and range convert the same rates.
+//   accel     The specific force in the sensor's axes, with acc_noise_m_s2.
+//   DLPF_CFG  Chooses the rates only. The model's noise holds at the output; what filters is the model's own
+//             `lowpass` effect.
+//
+// Simulated too: reset, sleep, identity, sample rate and divider, full scales, the 512-byte FIFO with both of
+// its overflow modes, the data-ready interrupt and its status bits, the data registers, the die's
+// temperature, and a sample clock that is off its nominal rate. Not simulated: self test, motion interrupts,
+// the magnetometer, the time that a bus access takes.
 //
 // Time is handed in; the chip never reads a clock. Samples are drawn only while an interrupt or the FIFO
 // wants them: what the chip gives after a start does not depend on how long it idled.
@@ -55,8 +71,11 @@ private:
     void restart_clock(std::int64_t now_ns);
     void schedule(std::int64_t after_ns);
     bool samples_wanted() const;
-    void draw_sample();
-    void refill();
+    void prepare_simulator();
+    void go_to_next_slot();
+    void next_block();
+    void convert();
+    std::int64_t stamp_ns() const;
     void put_in_fifo(std::uint8_t byte);
     void store_sample_in_fifo();
     std::uint8_t read_register(std::uint8_t address);
@@ -69,9 +88,9 @@ private:
     Fields fields_{};
     unsigned pin_divider_ = 1;
 
-    std::int64_t clock_start_ns_ = 0;  // of the grid of instants
+    std::int64_t clock_start_ns_ = 0;  // of the grid on which a start finds its first instant
     double period_ns_ = 0.0;
-    std::int64_t instants_ = 0;  // index on the grid of next_instant_ns_
+    std::int64_t stamps_start_ns_ = 0;  // time 0 of the simulator's stamps
     std::int64_t next_instant_ns_ = never_ns;
 
     // Samples ahead of time, a block at once. A new rate begins a new simulation.
@@ -79,8 +98,8 @@ private:
     double simulated_rate_hz_ = 0.0;
     std::uint64_t simulations_ = 0;
     const SampleBlock* block_ = nullptr;
-    std::size_t place_ = block_samples;
-    std::array<std::array<std::int16_t, 7>, block_samples> counts_{};
+    std::size_t place_ = block_samples;  // of the sample at next_instant_ns_
+    std::array<Fields, block_samples> counts_{};
 
     std::array<std::uint8_t, 512> fifo_{};
     std::size_t fifo_begin_ = 0;

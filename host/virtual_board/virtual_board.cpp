@@ -16,9 +16,8 @@ namespace {
 constexpr std::int64_t poll_period_ns = 10'000'000;  // the main loop's longest pause while it streams
 constexpr std::size_t endpoint_bytes = 65536;        // until a host says how much it has posted
 constexpr double tick_clock_sd = 20e-6;              // a plain crystal
-// Any stream that no stage of the simulator uses.
+// A stream that no stage of the simulator uses.
 constexpr std::uint32_t clock_stream = 0x434B0000;
-constexpr std::uint32_t jitter_stream = 0x4A540000;
 
 VirtualBoard& board_of(void* context) { return *static_cast<VirtualBoard*>(context); }
 
@@ -49,7 +48,6 @@ VirtualBoard::VirtualBoard(VirtualBoardOptions options)
       sensor_(options_.model, options_.seed,
               options_.sensor_clock_error.value_or(relative_sd_of_rate(options_.model) *
                                                    RandomStream(options_.seed, clock_stream).normal(1))),
-      jitter_(options_.seed, jitter_stream),
       in_endpoint_(endpoint_bytes),
       hal_(make_hal(this)),
       ring_(options_.ring_bytes),
@@ -227,19 +225,7 @@ void VirtualBoard::advance_to(std::int64_t time_ns) {
 }
 
 void VirtualBoard::take_instant() {
-    const double period_s = 1.0 / sensor_.true_rate_hz();
-    const bool pulse = sensor_.pass_instant();
-    // The interrupt is served late by a time that varies as the model's stamps do, but far less than a
-    // period.
-    const double sd_s = std::min(options_.model.timestamp_jitter_s, period_s / 40.0);
-    if (sd_s > 0.0) {
-        const std::size_t place = instants_drawn_ % jitter_draws_.size();
-        if (place == 0) { jitter_.normals(instants_drawn_, jitter_draws_); }
-        const double spread = std::clamp(jitter_draws_[place], -4.0, 4.0);
-        now_ns_ += to_ns(sd_s * (4.0 + spread));
-    }
-    ++instants_drawn_;
-    if (pulse) { glp_board_on_sampling_instant(&board_, ticks()); }
+    if (sensor_.pass_instant()) { glp_board_on_sampling_instant(&board_, ticks()); }
 }
 
 void VirtualBoard::meet_faults() {

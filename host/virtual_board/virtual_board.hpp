@@ -4,7 +4,6 @@
 // calls at the same times give the same bytes.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -102,8 +101,6 @@ private:
     VirtualBoardOptions options_;
     double ticks_per_ns_;
     SimulatedMpu9250 sensor_;
-    RandomStream jitter_;
-    std::array<double, 256> jitter_draws_{};  // of the instants around instants_drawn_
     InEndpoint in_endpoint_;
     glp_hal hal_;
     glp_board board_{};
@@ -112,7 +109,6 @@ private:
 
     std::int64_t now_ns_ = 0;
     std::int64_t last_poll_ns_ = 0;
-    std::uint64_t instants_drawn_ = 0;
     std::optional<std::int64_t> first_start_ns_;
     std::optional<std::uint64_t> sample_limit_;
     std::optional<double> duration_limit_s_;

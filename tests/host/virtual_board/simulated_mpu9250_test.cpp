@@ -1,5 +1,8 @@
 #include "host/virtual_board/simulated_mpu9250.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "firmware_protocol/device/mpu9250.h"
@@ -68,7 +71,9 @@ TEST_F(Mpu9250, IsSilentUntilSomethingWantsItsSamples) {
 }
 
 TEST_F(Mpu9250, AFastClockBringsInstantsSooner) {
-    chip = SimulatedMpu9250(typical_mpu9250(), 1, 0.01);
+    SensorModel model = typical_mpu9250();
+    model.timestamp_jitter_s = 0.0;
+    chip = SimulatedMpu9250(model, 1, 0.01);
     start(0);
     take_samples(1010);
     EXPECT_EQ(now_ns, 1'000'000'000);
@@ -112,6 +117,65 @@ TEST_F(Mpu9250, AFullFifoKeepsTheOldestOrTheNewestAsConfigured) {
             EXPECT_TRUE(std::equal(last.begin(), last.end(), content.end() - 6));
         }
     }
+}
+
+TEST_F(Mpu9250, InstantsScatterWithTheStampsButNeverLookLost) {
+    SensorModel model = typical_mpu9250();
+    model.timestamp_jitter_s = 2e-3;  // twice the period
+    chip = SimulatedMpu9250(model, 1, 0.0);
+    start(0);
+    std::int64_t before_ns = 0;
+    double shortest_ns = 1e9;
+    double longest_ns = 0.0;
+    for (int i = 0; i < 20'000; ++i) {
+        take_samples(1);
+        shortest_ns = std::min(shortest_ns, static_cast<double>(now_ns - before_ns));
+        if (i > 0) { longest_ns = std::max(longest_ns, static_cast<double>(now_ns - before_ns)); }
+        before_ns = now_ns;
+    }
+    EXPECT_EQ(shortest_ns, 0.51e6);
+    EXPECT_EQ(longest_ns, 1.49e6);
+    EXPECT_NEAR(static_cast<double>(now_ns), 20'000e6, 10.0 * 2e6);  // no drift
+}
+
+TEST_F(Mpu9250, AnotherRangeHoldsFromTheNextSampleOnAndSkipsNone) {
+    const auto gyro_x = [&] {
+        take_samples(1);
+        std::array<std::uint8_t, 2> x{};
+        chip.read(glp_mpu_gyro_xout_h, x);
+        return static_cast<std::int16_t>(static_cast<std::uint16_t>(x[0] * 256U + x[1]));
+    };
+    SensorModel model = typical_mpu9250();
+    model.axes[0].noise.N_rad_per_sqrt_s *= 100.0;  // 500 counts: no two samples are alike
+    chip = SimulatedMpu9250(model, 1, 0.0);
+    start(0);
+    std::vector<double> unchanged_dps;
+    for (int i = 0; i < 8; ++i) { unchanged_dps.push_back(gyro_x() / 131.0); }
+    chip = SimulatedMpu9250(model, 1, 0.0);
+    now_ns = 0;
+    start(0);
+    for (int i = 0; i < 8; ++i) {
+        if (i == 4) { set(glp_mpu_gyro_config, 3U << glp_mpu_gyro_fs_sel_shift); }
+        EXPECT_NEAR(gyro_x() / (i < 4 ? 131.0 : 16.4), unchanged_dps[static_cast<std::size_t>(i)],
+                    0.51 / 16.4);
+    }
+}
+
+TEST_F(Mpu9250, GravityLiesAlongTheAxisThatTheOrientationTurnsUpward) {
+    SensorModel model = typical_mpu9250();
+    model.orientation = Matrix3{{{0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}}};  // x points down
+    chip = SimulatedMpu9250(model, 1, 0.0);
+    start(0);
+    take_samples(1);
+    std::array<std::uint8_t, 6> bytes{};
+    chip.read(glp_mpu_accel_xout_h, bytes);
+    const auto accel = [&](std::size_t axis) {
+        return static_cast<std::int16_t>(
+            static_cast<std::uint16_t>(bytes[2 * axis] * 256U + bytes[2 * axis + 1]));
+    };
+    EXPECT_NEAR(accel(0), -16384, 500);  // at 2 g
+    EXPECT_NEAR(accel(1), 0, 500);
+    EXPECT_NEAR(accel(2), 0, 500);
 }
 
 TEST_F(Mpu9250, TheFullScaleSetsTheCounts) {
