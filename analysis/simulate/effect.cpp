@@ -1,6 +1,7 @@
 #include "analysis/simulate/effect.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/simulate/chain.hpp"
 
@@ -17,7 +18,17 @@ std::string quoted(std::string_view text) { return std::string(1, '\'').append(t
 
 std::optional<std::string> range_refusal(const EffectParam& param, double value) {
     if (param.range == EffectParam::Range::positive && value <= 0.0) { return "is not above zero"; }
+    if (param.range == EffectParam::Range::above_two && value <= 2.0) { return "is not above two"; }
     if (param.range == EffectParam::Range::not_negative && value < 0.0) { return "is negative"; }
+    if (param.range == EffectParam::Range::share && (value < 0.0 || value > 1.0)) {
+        return "is not between 0 and 1";
+    }
+    if (param.range == EffectParam::Range::yes_no && value != 0.0 && value != 1.0) { return "is not 0 or 1"; }
+    if (param.whole_up_to != 0.0 &&
+        (value < 1.0 || value > param.whole_up_to || value != std::floor(value))) {
+        return "is not a whole number from 1 to " +
+               std::to_string(static_cast<long long>(param.whole_up_to));
+    }
     return std::nullopt;
 }
 
@@ -26,6 +37,11 @@ std::optional<std::string> range_refusal(const EffectParam& param, double value)
 double EffectUse::operator[](std::string_view param) const {
     const auto given = effect_->params.find(std::string(param));
     return given != effect_->params.end() ? given->second : *find_param(*definition_, param)->otherwise;
+}
+
+double EffectUse::or_else(std::string_view param, double from_model) const {
+    const auto given = effect_->params.find(std::string(param));
+    return given != effect_->params.end() ? given->second : from_model;
 }
 
 bool EffectUse::acts_on(std::size_t axis) const {
@@ -43,7 +59,7 @@ std::optional<std::string> effect_refusal(const EffectModel& effect) {
     for (const EffectParam& param : definition->params) {
         const auto given = effect.params.find(std::string(param.name));
         if (given == effect.params.end()) {
-            if (!param.otherwise) { return name + " lacks its parameter " + quoted(param.name); }
+            if (!param.otherwise && !param.from_model) { return name + " lacks its parameter " + quoted(param.name); }
         } else if (const auto refusal = range_refusal(param, given->second)) {
             return name + ": " + std::string(param.name) + " " + *refusal;
         }

@@ -12,7 +12,14 @@
 namespace gyrolog {
 
 struct EffectParam {
-    enum class Range { any, not_negative, positive };
+    enum class Range {
+        any,
+        not_negative,
+        positive,
+        above_two,
+        share,  // 0 to 1
+        yes_no  // 0 or 1
+    };
 
     std::string_view name;  // its unit at the end
     std::string_view meaning;
@@ -20,6 +27,9 @@ struct EffectParam {
     double plausible_from = 0.0;  // for an MPU-9250
     double plausible_to = 0.0;
     std::optional<double> otherwise{};  // where the model says nothing; without it the parameter is needed
+    bool from_model = false;            // not needed: what takes its place is another part of the model
+    // Only whole numbers from 1 to this, unless zero.
+    double whole_up_to = 0.0;
 };
 
 class EffectUse;
@@ -43,6 +53,8 @@ public:
     const StageContext& context() const { return *context_; }
     // The value given, or the parameter's own.
     double operator[](std::string_view param) const;
+    // The value given, or `from_model` of a parameter that is marked so.
+    double or_else(std::string_view param, double from_model) const;
     // An entry without axes acts on all.
     bool acts_on(std::size_t axis) const;
     // A random stream of this entry's own; `part` below 4096.
