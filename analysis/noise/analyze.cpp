@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iomanip>
-#include <map>
+#include <iterator>
 #include <sstream>
 
+#include "analysis/noise/axis_warnings.hpp"
+#include "analysis/noise/clipping.hpp"
 #include "analysis/noise/converter_step.hpp"
 #include "analysis/noise/likelihood_fit.hpp"
 #include "analysis/parallel/parallel_for.hpp"
@@ -84,28 +85,6 @@ std::vector<std::string> refused_factors(const AnalysisOptions& options, const A
     return warnings;
 }
 
-// A warning that several axes share is one line.
-class Warnings {
-public:
-    void add(const std::string& axis, const std::string& text) {
-        auto& axes = by_text_[text];
-        axes.push_back(axis);
-        if (axes.size() == 1) { order_.push_back(text); }
-    }
-    void move_to(std::vector<std::string>& warnings) const {
-        for (const std::string& text : order_) {
-            const auto& axes = by_text_.at(text);
-            std::string line = axes.size() == 1 ? "axis" : "axes";
-            for (const std::string& axis : axes) { line.append(" ").append(axis); }
-            warnings.push_back(line.append(": ").append(text));
-        }
-    }
-
-private:
-    std::map<std::string, std::vector<std::string>> by_text_;
-    std::vector<std::string> order_;
-};
-
 std::string rounded(double value) {
     std::ostringstream text;
     text << std::setprecision(2) << value;
@@ -113,14 +92,15 @@ std::string rounded(double value) {
 }
 
 // Coefficients of a spectrum that the model does not follow are no property of the sensor.
-void warn_of_misfit(const AxisReport& axis, Warnings& warnings) {
+void warn_of_misfit(const AxisReport& axis, AxisWarnings& warnings) {
     constexpr double allowed_error = 0.05;
     constexpr double hopeless_error = 0.5;
     const NoiseFit& fit = axis.fit;
     if (fit.upper_frequency_hz > 0.0) {
-        warnings.add(axis.axis, "above " + rounded(fit.upper_frequency_hz) +
-                                    " Hz the spectrum does not follow the model (a filter or vibration does "
-                                    "that); the coefficients are those below");
+        warnings.add(axis.axis,
+                     "at high frequencies the spectrum does not follow the model (a filter or vibration "
+                     "does that); the coefficients are those of what lies below",
+                     "above " + rounded(fit.upper_frequency_hz) + " Hz");
     }
     if (fit.method == FitMethod::likelihood && fit.model_error > hopeless_error) {
         warnings.add(axis.axis,
@@ -132,50 +112,18 @@ void warn_of_misfit(const AxisReport& axis, Warnings& warnings) {
                      "that); the uncertainties allow for it as well as they can");
     }
     if (axis.outliers.samples > 0) {
-        warnings.add(axis.axis, std::to_string(axis.outliers.samples) +
-                                    " outliers were replaced by the median of their neighbours");
+        warnings.add(axis.axis, "outliers were replaced by the median of their neighbours",
+                     std::to_string(axis.outliers.samples));
     }
     constexpr double heavy_tails = 1.0;
     if (axis.bias.excess_kurtosis > heavy_tails) {
-        warnings.add(axis.axis, "the samples have heavy tails or outliers (excess kurtosis " +
-                                    rounded(axis.bias.excess_kurtosis) + "): see what --robust changes");
+        warnings.add(axis.axis, "the samples have heavy tails or outliers: see what --robust changes",
+                     "excess kurtosis " + rounded(axis.bias.excess_kurtosis));
     }
     if (!axis.curve.points.empty() && axis.bias.sample_sd == 0.0) {
         warnings.add(axis.axis,
                      "all samples are equal: the axis is stuck, or its noise is below the resolution");
     }
-}
-
-// More samples at the largest or the smallest value than beside it: noise that ends at a wall.
-bool is_clipped(const Column& column) {
-    constexpr std::size_t enough = 20;
-    return std::visit(
-        [](const auto& data) {
-            const auto wall = [&](auto further) {
-                auto end = data.front();
-                auto next = end;
-                std::size_t at_end = 0;
-                std::size_t at_next = 0;
-                for (const auto x : data) {
-                    if (x == end) {
-                        ++at_end;
-                    } else if (further(x, end)) {
-                        next = end;
-                        at_next = at_end;
-                        end = x;
-                        at_end = 1;
-                    } else if (at_next > 0 && x == next) {
-                        ++at_next;
-                    } else if (at_next == 0 || further(x, next)) {
-                        next = x;
-                        at_next = 1;
-                    }
-                }
-                return at_next > 0 && at_end >= enough && at_end > 2 * at_next;
-            };
-            return wall(std::greater<>()) || wall(std::less<>());
-        },
-        column.data);
 }
 
 // A clock that is off makes every averaging time wrong by as much.
@@ -229,7 +177,7 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
     options.on_stage("fit");
     parallel_for(axes.size(), options.threads,
                  [&](std::size_t i) { find_coefficients(axes[i], recording, options); });
-    Warnings warnings;
+    AxisWarnings warnings;
     for (Work& axis : axes) {
         warn_of_misfit(axis.report, warnings);
         if (is_clipped(*axis.column)) {
@@ -239,7 +187,7 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
         }
         report.axes.push_back(std::move(axis.report));
     }
-    warnings.move_to(report.warnings);
+    std::ranges::copy(warnings.lines(), std::back_inserter(report.warnings));
     if (report.axes.empty()) {
         report.warnings.emplace_back("no gyro column: nothing to analyse");
         return report;
