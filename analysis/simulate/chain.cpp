@@ -17,21 +17,36 @@ constexpr ChainLink links[] = {
     own(make_sample_clock),
     // what is there to be measured
     own(make_world),
+    effect(self_heating_effect),
     // the answer to it
     own(make_rate_response),
     // the bias
     own(make_bias),
     effect(rate_ramp_effect),
     effect(bias_step_effect),
+    effect(warmup_effect),
+    effect(temp_linear_effect),
+    effect(temp_quadratic_effect),
+    effect(temp_lag_effect),
     own(make_rate_ramp),
     // noise
     own(make_flicker_noise),
     own(make_rate_random_walk),
     own(make_angle_quantisation),
+    effect(flicker_missing_effect),
+    effect(rrw_missing_effect),
+    effect(angle_noise_effect),
     effect(gauss_markov_effect),
+    effect(rtn_effect),
     effect(tone_effect),
     own(make_white_noise),
     // what acts on the white noise alone
+    effect(heavy_tail_effect),
+    effect(arw_scale_effect),
+    effect(variance_change_effect),
+    effect(temp_noise_effect),
+    // white noise from outside, such as the supply's
+    effect(common_mode_effect),
     // the sensor's bandwidth
     own(make_noise_sum),
     // reading out

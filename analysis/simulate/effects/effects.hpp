@@ -5,9 +5,23 @@
 
 namespace gyrolog {
 
+extern const EffectDefinition angle_noise_effect;
+extern const EffectDefinition arw_scale_effect;
 extern const EffectDefinition bias_step_effect;
+extern const EffectDefinition common_mode_effect;
+extern const EffectDefinition flicker_missing_effect;
 extern const EffectDefinition gauss_markov_effect;
+extern const EffectDefinition heavy_tail_effect;
 extern const EffectDefinition rate_ramp_effect;
+extern const EffectDefinition rrw_missing_effect;
+extern const EffectDefinition rtn_effect;
+extern const EffectDefinition self_heating_effect;
+extern const EffectDefinition temp_lag_effect;
+extern const EffectDefinition temp_linear_effect;
+extern const EffectDefinition temp_noise_effect;
+extern const EffectDefinition temp_quadratic_effect;
 extern const EffectDefinition tone_effect;
+extern const EffectDefinition variance_change_effect;
+extern const EffectDefinition warmup_effect;
 
 }  // namespace gyrolog

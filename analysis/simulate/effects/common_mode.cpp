@@ -1,0 +1,65 @@
+#include <cmath>
+
+#include "analysis/simulate/effects/effects.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+class CommonNoise final : public Stage {
+public:
+    explicit CommonNoise(const EffectUse& use) : stream_(use.stream(0)) {
+        constexpr std::array<const char*, 3> gains = {"gain_x", "gain_y", "gain_z"};
+        const double sd_rad_s = use["N_dps_per_sqrt_hz"] * rad_per_deg * std::sqrt(use.context().rate_hz);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (use.acts_on(axis)) { sd_rad_s_[axis] = sd_rad_s * use[gains[axis]]; }
+        }
+    }
+
+    void apply(SampleBlock& block) override {
+        BlockValues draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+        stream_.normals(block.first_index, draws);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t i = 0; i < block_samples; ++i) {
+                block.white_rad_s[axis][i] += sd_rad_s_[axis] * draws[i];
+            }
+        }
+    }
+
+private:
+    RandomStream stream_;
+    Vector3 sd_rad_s_{};
+};
+
+std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<CommonNoise>(use); }
+
+constexpr EffectParam gain(std::string_view name) {
+    return {.name = name,
+            .meaning = "share of this axis; below zero in opposite phase",
+            .plausible_from = 0.5,
+            .plausible_to = 1.0,
+            .otherwise = 1.0};
+}
+
+constexpr EffectParam params[] = {
+    {.name = "N_dps_per_sqrt_hz",
+     .meaning = "density of the common noise, two-sided",
+     .range = EffectParam::Range::not_negative,
+     .plausible_from = 0.001,
+     .plausible_to = 0.01},
+    gain("gain_x"),
+    gain("gain_y"),
+    gain("gain_z"),
+};
+
+}  // namespace
+
+constinit const EffectDefinition common_mode_effect = {
+    .name = "common_mode",
+    .model = "one white noise of density N_dps_per_sqrt_hz^2, added to each axis times its gain",
+    .source = "",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

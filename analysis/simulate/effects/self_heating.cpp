@@ -1,0 +1,48 @@
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/settling.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+class SelfHeating final : public Stage {
+public:
+    SelfHeating(double rise_C, const Settling& settling) : rise_C_(rise_C), settling_(settling) {}
+
+    void apply(SampleBlock& block) override {
+        double left = settling_.left_at(block.first_index);
+        for (double& die_C : block.die_C) {
+            die_C += rise_C_ * (1.0 - left);
+            left *= settling_.left_after_one();
+        }
+    }
+
+private:
+    double rise_C_;
+    Settling settling_;
+};
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    return std::make_unique<SelfHeating>(use["rise_C"], Settling(use["tau_s"] * use.context().rate_hz));
+}
+
+constexpr EffectParam params[] = {
+    {.name = "rise_C", .meaning = "in the end", .plausible_from = 0.0, .plausible_to = 15.0},
+    {.name = "tau_s",
+     .meaning = "time constant",
+     .range = EffectParam::Range::positive,
+     .plausible_from = 60.0,
+     .plausible_to = 900.0},
+};
+
+}  // namespace
+
+constinit const EffectDefinition self_heating_effect = {
+    .name = "self_heating",
+    .model = "T + rise_C (1 - exp(-t / tau_s)), of the whole die, whatever the axes",
+    .source = "",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

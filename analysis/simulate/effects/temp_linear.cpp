@@ -1,0 +1,36 @@
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/reference_temperature.hpp"
+#include "analysis/simulate/effects/temperature_bias.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+struct Line {
+    double slope_rad_s_per_C;
+    double reference_C;
+
+    double operator()(double die_C) const { return slope_rad_s_per_C * (die_C - reference_C); }
+};
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    return std::make_unique<TemperatureBias<Line>>(use,
+                                                   Line{use["c1_dps_per_C"] * rad_per_deg, reference_C(use)});
+}
+
+constexpr EffectParam params[] = {
+    {.name = "c1_dps_per_C", .meaning = "slope", .plausible_from = -0.3, .plausible_to = 0.3},
+    reference_C_param,
+};
+
+}  // namespace
+
+constinit const EffectDefinition temp_linear_effect = {
+    .name = "temp_linear",
+    .model = "rate + c1_dps_per_C (T - reference_C)",
+    .source = "",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

@@ -1,0 +1,49 @@
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/reference_temperature.hpp"
+#include "analysis/simulate/effects/temperature_bias.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+struct Parabola {
+    double c1_rad_s_per_C;
+    double c2_rad_s_per_C2;
+    double reference_C;
+
+    double operator()(double die_C) const {
+        const double above_C = die_C - reference_C;
+        return (c1_rad_s_per_C + c2_rad_s_per_C2 * above_C) * above_C;
+    }
+};
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    return std::make_unique<TemperatureBias<Parabola>>(
+        use,
+        Parabola{use["c1_dps_per_C"] * rad_per_deg, use["c2_dps_per_C2"] * rad_per_deg, reference_C(use)});
+}
+
+constexpr EffectParam params[] = {
+    {.name = "c1_dps_per_C",
+     .meaning = "slope at the reference",
+     .plausible_from = -0.3,
+     .plausible_to = 0.3,
+     .otherwise = 0.0},
+    {.name = "c2_dps_per_C2",
+     .meaning = "half of the curvature",
+     .plausible_from = -0.02,
+     .plausible_to = 0.02},
+    reference_C_param,
+};
+
+}  // namespace
+
+constinit const EffectDefinition temp_quadratic_effect = {
+    .name = "temp_quadratic",
+    .model = "rate + c1_dps_per_C (T - reference_C) + c2_dps_per_C2 (T - reference_C)^2",
+    .source = "",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

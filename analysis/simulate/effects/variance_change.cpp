@@ -1,0 +1,52 @@
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/white_noise_gain.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+struct Change {
+    double factor;
+    double at_samples;
+    double ramp_samples;
+
+    double operator()(const SampleBlock& block, std::size_t i) const {
+        const double since = static_cast<double>(block.first_index + i) - at_samples;
+        if (since < 0.0) { return 1.0; }
+        const double share = since < ramp_samples ? since / ramp_samples : 1.0;
+        return 1.0 + (factor - 1.0) * share;
+    }
+};
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    const double rate_hz = use.context().rate_hz;
+    return std::make_unique<WhiteNoiseGain<Change>>(
+        use, Change{use["factor"], use["at_s"] * rate_hz, use["ramp_s"] * rate_hz});
+}
+
+constexpr EffectParam params[] = {
+    {.name = "factor",
+     .meaning = "of the standard deviation, in the end",
+     .range = EffectParam::Range::not_negative,
+     .plausible_from = 0.5,
+     .plausible_to = 4.0},
+    {.name = "at_s", .meaning = "when the change begins", .plausible_from = 0.0, .plausible_to = 1e5},
+    {.name = "ramp_s",
+     .meaning = "how long it takes, in a straight line",
+     .range = EffectParam::Range::not_negative,
+     .plausible_from = 0.0,
+     .plausible_to = 1e5,
+     .otherwise = 0.0},
+};
+
+}  // namespace
+
+constinit const EffectDefinition variance_change_effect = {
+    .name = "variance_change",
+    .model = "white noise times 1 before at_s, factor from at_s + ramp_s on, straight between",
+    .source = "",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

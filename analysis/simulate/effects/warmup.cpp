@@ -1,0 +1,49 @@
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/settling.hpp"
+#include "analysis/simulate/stages/per_axis.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+struct Warmup {
+    double a_rad_s;
+    Settling settling;
+
+    void add(std::uint64_t first_index, std::span<double> rate_rad_s) const {
+        double left = a_rad_s * settling.left_at(first_index);
+        for (double& rate : rate_rad_s) {
+            rate += left;
+            left *= settling.left_after_one();
+        }
+    }
+};
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    const Settling settling(use["tau_s"] * use.context().rate_hz);
+    return PerAxis<Warmup>::make([&](std::size_t axis) -> std::optional<Warmup> {
+        if (!use.acts_on(axis)) { return std::nullopt; }
+        return Warmup{use["a_dps"] * rad_per_deg, settling};
+    });
+}
+
+constexpr EffectParam params[] = {
+    {.name = "a_dps", .meaning = "away from the bias at first", .plausible_from = -3.0, .plausible_to = 3.0},
+    {.name = "tau_s",
+     .meaning = "time constant",
+     .range = EffectParam::Range::positive,
+     .plausible_from = 60.0,
+     .plausible_to = 900.0},
+};
+
+}  // namespace
+
+constinit const EffectDefinition warmup_effect = {
+    .name = "warmup",
+    .model = "rate + a_dps exp(-t / tau_s)",
+    .source = "",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog
