@@ -27,10 +27,10 @@ struct InputColumn {
     bool is_gyro() const { return meaning && meaning->is_gyro(); }
 };
 
-// With `needs_stamps` an empty field of t_s is an error.
 // Beyond any gyro in any unit; squares of squares of it are still numbers.
 constexpr double most_rate = 1e15;
 
+// With `needs_stamps` an empty field of t_s is an error.
 CsvTable recording_table(bool needs_stamps) {
     const auto rule = [needs_stamps](std::vector<CsvTableColumn>& columns) -> Status {
         bool any_gyro = false;

@@ -128,6 +128,14 @@ TEST(FilterTuning, MatrixIsTheContinuousProcessOverOneSample) {
                      4e-8 * 2.0);
 }
 
+TEST(FilterTuning, MatrixHasAUnitForEachOfItsElements) {
+    const json tuning = json::parse(filter_tuning_json(made_source()));
+    const json& matrix = tuning["axes"]["z"]["angle_and_bias"];
+    EXPECT_EQ(matrix["unit"], json::parse(R"([["rad^2", "rad^2/s"], ["rad^2/s", "rad^2/s^2"]])"));
+    ASSERT_EQ(matrix["Q"].size(), 2U);
+    for (const json& row : matrix["Q"]) { EXPECT_EQ(row.size(), 2U); }
+}
+
 TEST(FilterTuning, GaussMarkovOfBTouchesTheFlatOfTheCurve) {
     ExportSource source = made_source();
     source.gyro[1].K.identified = false;  // the flat is then where the curve was read

@@ -107,6 +107,32 @@ TEST(RecordingCsv, TheRateGivenReplacesTheStamps) {
     EXPECT_THAT(r.t_s, IsEmpty());
 }
 
+TEST(RecordingCsv, TheRateGivenKeepsTheHolesThatTheStampsShow) {
+    std::string text = "t_s,gx_dps\n";
+    for (int i = 0; i < 200; ++i) {
+        if (i < 100 || i >= 105) { text += std::to_string(i / 100.0) + ",1\n"; }
+    }
+    const Recording r = parsed(text, {.rate_hz = 101.0});
+    EXPECT_EQ(r.rate_hz, 101.0);
+    EXPECT_FALSE(r.rate_sd_hz.has_value());
+    ASSERT_THAT(r.segments, SizeIs(2));
+    EXPECT_EQ(r.segments[1].first_index, 105);
+    EXPECT_EQ(r.missing_samples(), 5);
+    EXPECT_THAT(r.warnings, ElementsAre(HasSubstr("taken as 101 Hz, as given; the time stamps say 100 Hz")));
+    EXPECT_THAT(parsed(text, {.rate_hz = 100.0}).warnings, IsEmpty());
+}
+
+TEST(RecordingCsv, TheRateGivenWarnsWhereStampsAreNone) {
+    const Recording r = parsed("t_s,gx_dps\n0,1\n0,2\n-50,3\n", {.rate_hz = 200.0});
+    EXPECT_THAT(r.warnings, ElementsAre(HasSubstr("missing samples cannot be seen")));
+}
+
+TEST(RecordingCsv, RatesBeyondAnyGyroAreRefused) {
+    EXPECT_THAT(refusal("t_s,gx_dps\n0,1\n1,1.1e15\n"), HasSubstr("line 3, column 'gx_dps'"));
+    EXPECT_THAT(refusal("t_s,gx_rad_s\n0,-1e160\n1,1\n"), HasSubstr("line 2, column 'gx_rad_s'"));
+    EXPECT_EQ(refusal("t_s,gx_dps\n0,-1e15\n1,1e15\n"), "accepted");
+}
+
 TEST(RecordingCsv, WarnsOnceAboutUnknownColumns) {
     const Recording r = parsed("t_s,seq,gx_dps,moving,gx\n0,a,1,b,c\n1,a,1,b,c\n");
     EXPECT_THAT(r.warnings, ElementsAre(HasSubstr("seq, moving, gx")));
