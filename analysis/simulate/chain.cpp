@@ -15,11 +15,22 @@ constexpr ChainLink effect(const EffectDefinition& definition) {
 constexpr ChainLink links[] = {
     // when a sample is taken, and what its stamp says
     own(make_sample_clock),
+    effect(dropped_effect),
+    effect(clock_rate_effect),
+    effect(latency_effect),
+    effect(clock_jitter_effect),
     // what is there to be measured
     own(make_world),
     effect(self_heating_effect),
     // the answer to it
     own(make_rate_response),
+    effect(scale_factor_effect),
+    effect(misalignment_effect),
+    effect(nonlinearity_effect),
+    effect(asymmetry_effect),
+    effect(dead_zone_effect),
+    effect(g_sensitivity_effect),
+    effect(vibration_rectification_effect),
     // the bias
     own(make_bias),
     effect(rate_ramp_effect),
@@ -48,9 +59,16 @@ constexpr ChainLink links[] = {
     // white noise from outside, such as the supply's
     effect(common_mode_effect),
     // the sensor's bandwidth
+    effect(lowpass_effect),
     own(make_noise_sum),
+    own(make_temperature_scale),
+    effect(temp_scale_effect),
+    effect(saturation_effect),
+    effect(quantization_effect),
+    effect(spikes_effect),
     // reading out
     own(make_thermometer),
+    effect(stale_effect),
 };
 
 }  // namespace

@@ -54,7 +54,7 @@ struct SensorModel {
     double acc_noise_m_s2 = 0.0;           // one sigma of an accelerometer sample
     double temp_noise_C = 0.0;             // one sigma of a temperature sample
     std::optional<Matrix3> orientation;    // body to sensor
-    std::optional<Vector3> misalignment;   // relative cross-axis sensitivity
+    std::optional<Vector3> misalignment;   // leak of each rate into the other two axes; a full matrix: M
     std::optional<TemperatureModel> temperature;
     std::vector<EffectModel> effects;
     std::string carried_json;  // keys that this build does not know, as JSON text; written back untouched; ""

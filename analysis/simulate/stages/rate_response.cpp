@@ -6,9 +6,10 @@ namespace {
 
 class RateResponse final : public Stage {
 public:
-    explicit RateResponse(const SensorModel& model) : gain_(model.M), temperature_(model.temperature) {
+    explicit RateResponse(const SensorModel& model) : gain_(model.M) {
         if (!model.misalignment) { return; }
-        // Each axis' number is its leak into the other two.
+        // Each axis' number is the leak of the rate about it into the other two, a column of the matrix: so
+        // MathWorks' gyroparams has it (AxesMisalignment; its generated code fills column k with number k).
         const Vector3& leak = *model.misalignment;
         const Matrix3 mixed = gain_;
         for (std::size_t row = 0; row < 3; ++row) {
@@ -24,20 +25,16 @@ public:
         if (!block.moving) { return; }
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const Vector3& gain = gain_[axis];
-            const double per_C = temperature_ ? temperature_->scale_per_C[axis] : 0.0;
-            const double reference_C = temperature_ ? temperature_->reference_C : 0.0;
             for (std::size_t i = 0; i < block_samples; ++i) {
-                const double rate_rad_s = gain[0] * block.true_rate_rad_s[0][i] +
-                                          gain[1] * block.true_rate_rad_s[1][i] +
-                                          gain[2] * block.true_rate_rad_s[2][i];
-                block.rate_rad_s[axis][i] += rate_rad_s * (1.0 + per_C * (block.die_C[i] - reference_C));
+                block.rate_rad_s[axis][i] += gain[0] * block.true_rate_rad_s[0][i] +
+                                             gain[1] * block.true_rate_rad_s[1][i] +
+                                             gain[2] * block.true_rate_rad_s[2][i];
             }
         }
     }
 
 private:
     Matrix3 gain_;
-    std::optional<TemperatureModel> temperature_;
 };
 
 }  // namespace

@@ -11,8 +11,7 @@ std::unique_ptr<Stage> make_sample_clock(const StageContext& context);
 // (SensorModel::orientation). Without a world: at rest, z upward, the temperature wandering slowly about the
 // model's reference (0.5 degC, half an hour).
 std::unique_ptr<Stage> make_world(const StageContext& context);
-// Scale and misalignment: M and the relative misalignment of the model, times its scale factor's change with
-// temperature.
+// Scale and misalignment: M times the model's relative misalignment.
 std::unique_ptr<Stage> make_rate_response(const StageContext& context);
 // Turn-on bias, and the bias that follows the temperature in proportion.
 std::unique_ptr<Stage> make_bias(const StageContext& context);
@@ -28,6 +27,8 @@ std::unique_ptr<Stage> make_rate_ramp(const StageContext& context);
 std::unique_ptr<Stage> make_angle_quantisation(const StageContext& context);
 // The white noise joins the rest.
 std::unique_ptr<Stage> make_noise_sum(const StageContext& context);
+// The scale factor's change with temperature, for signal and noise.
+std::unique_ptr<Stage> make_temperature_scale(const StageContext& context);
 // The temperature as the sensor reports it: with the model's temp_noise_C.
 std::unique_ptr<Stage> make_thermometer(const StageContext& context);
 

@@ -1,0 +1,33 @@
+#include <cmath>
+
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/rate_map.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    const double gain = use["gain"];
+    return make_rate_map(use,
+                         [gain](double rate_rad_s) { return rate_rad_s + gain * std::fabs(rate_rad_s); });
+}
+
+constexpr EffectParam params[] = {
+    {.name = "gain",
+     .meaning = "half the difference of the gains of the two directions",
+     .plausible_from = -0.01,
+     .plausible_to = 0.01},
+};
+
+}  // namespace
+
+constinit const EffectDefinition asymmetry_effect = {
+    .name = "asymmetry",
+    .model = "w + gain |w|",
+    .source = "IEEE 528-2001 (scale factor asymmetry)",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

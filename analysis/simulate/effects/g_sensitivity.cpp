@@ -1,0 +1,57 @@
+#include "analysis/simulate/effects/effects.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr double standard_gravity_m_s2 = 9.80665;
+
+class GSensitivity final : public Stage {
+public:
+    explicit GSensitivity(const EffectUse& use)
+        : s_per_m_{use["x_dps_per_g"], use["y_dps_per_g"], use["z_dps_per_g"]} {
+        for (double& value : s_per_m_) { value *= rad_per_deg / standard_gravity_m_s2; }
+        for (std::size_t axis = 0; axis < 3; ++axis) { acts_[axis] = use.acts_on(axis); }
+    }
+
+    void apply(SampleBlock& block) override {
+        const BlockVectors& force = block.specific_force_m_s2;
+        for (std::size_t i = 0; i < block_samples; ++i) {
+            const double rate_rad_s =
+                s_per_m_[0] * force[0][i] + s_per_m_[1] * force[1][i] + s_per_m_[2] * force[2][i];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                if (acts_[axis]) { block.rate_rad_s[axis][i] += rate_rad_s; }
+            }
+        }
+    }
+
+private:
+    Vector3 s_per_m_;
+    std::array<bool, 3> acts_{};
+};
+
+std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<GSensitivity>(use); }
+
+constexpr EffectParam along(std::string_view name, std::string_view meaning) {
+    return {.name = name, .meaning = meaning, .plausible_from = -0.5, .plausible_to = 0.5, .otherwise = 0.0};
+}
+
+constexpr EffectParam params[] = {
+    along("x_dps_per_g", "for specific force along the sensor's x"),
+    along("y_dps_per_g", "for specific force along the sensor's y"),
+    along("z_dps_per_g", "for specific force along the sensor's z"),
+};
+
+}  // namespace
+
+constinit const EffectDefinition g_sensitivity_effect = {
+    .name = "g_sensitivity",
+    .model =
+        "w + x_dps_per_g f_x + y_dps_per_g f_y + z_dps_per_g f_z, f the specific force in g "
+        "(9.80665 m/s^2), gravity's own included",
+    .source = "IEEE 1431-2004, model equation (acceleration-sensitive bias)",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

@@ -1,0 +1,243 @@
+// The sensor's digital low-pass filter, which runs much faster than the samples are read: a continuous filter
+// H, then a sampler with nothing before it, so that what the filter leaves above half the rate folds.
+//
+//   order 1:  H(s) = w / (s + w)
+//   order 2:  H(s) = w^2 / (s^2 + sqrt 2 w s + w^2), Butterworth,             w = 2 pi fc
+//
+// White noise. Behind the filter, noise of two-sided density N^2 has the covariance
+//   order 1:  N^2 w/2 exp(-w t)
+//   order 2:  N^2 a/2 exp(-a t) (cos a t + sin a t),                          a = w / sqrt 2, t >= 0
+// (variances N^2 pi fc and N^2 pi fc / sqrt 2). Its samples, T apart, are an autoregression with a moving
+// average of one term less (G. E. P. Box, G. M. Jenkins, G. C. Reinsel, Time Series Analysis, A4.1):
+//   y_k = phi_1 y_{k-1} + phi_2 y_{k-2} + b (e_k + m e_{k-1}),  e of variance one,
+// folded spectrum included. Order 1: phi_1 = exp(-w T), m = 0. Order 2, with q = a T:
+//   phi_1 = 2 exp(-q) cos q, phi_2 = -exp(-2 q). The remainder v_k = y_k - phi_1 y_{k-1} - phi_2 y_{k-2} is
+//   the filter's impulse response 2 a exp(-a t) sin a t over the last interval, and over the one before what
+//   the recursion has left of it, 2 a exp(-q - a t) sin(q - a t). So, in units of N^2 / T, var v        = 4 q
+//   (I(sin^2 x) + exp(-2 q) I(sin^2(q - x))), cov v, v_-1  = 4 q exp(-q) I(sin x sin(q - x)),         I(g) =
+//   integral of exp(-2 x) g from x = 0 to q,
+// and the spectral factor with |m| < 1 follows from their ratio.
+//
+// All else in the signal passes the filter as straight lines between the samples, solved exactly; it starts
+// in the steady state of its first value.
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/portable_math.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+double portable_sine(double x) { return portable_sine_of_turns(x / (2.0 * pi)); }
+double portable_cosine(double x) { return portable_sine_of_turns(x / (2.0 * pi) + 0.25); }
+// 0 where e^x is too small to matter.
+double decay(double x) { return x < 700.0 ? portable_exp(-x) : 0.0; }
+
+// The samples of filtered white noise, from unit white noise, and their covariance at no lag and at one; all
+// in units of N^2 / T.
+struct NoiseFilter {
+    double phi_1;
+    double phi_2;
+    double b;
+    double m;
+    double covariance_0;
+    double covariance_1;
+};
+
+NoiseFilter first_order_noise(double w_T) {
+    const double phi = decay(w_T);
+    const double variance = 0.5 * w_T;
+    return {phi, 0.0, std::sqrt(variance * (1.0 - phi * phi)), 0.0, variance, variance * phi};
+}
+
+// I(g) of the file's head, by Simpson's rule; exp(-2 x) leaves nothing beyond 20.
+template <typename Function>
+double decaying_integral(double q, Function g) {
+    constexpr int panels = 1000;
+    const double step = std::min(q, 20.0) / panels;
+    double sum = 0.0;
+    for (int i = 0; i <= panels; ++i) {
+        const double weight = i == 0 || i == panels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+        sum += weight * decay(2.0 * step * i) * g(step * i);
+    }
+    return sum * step / 3.0;
+}
+
+NoiseFilter second_order_noise(double q) {
+    const double rho = decay(q);
+    const double last = decaying_integral(q, [](double x) { return portable_sine(x) * portable_sine(x); });
+    const double before =
+        decaying_integral(q, [q](double x) { return portable_sine(q - x) * portable_sine(q - x); });
+    const double both =
+        decaying_integral(q, [q](double x) { return portable_sine(x) * portable_sine(q - x); });
+    const double variance = 4.0 * q * (last + rho * rho * before);
+    const double ratio = 4.0 * q * rho * both / variance;
+    // m / (1 + m^2) = ratio, written so that a ratio of nothing is no division by it.
+    const double m = 2.0 * ratio / (1.0 + std::sqrt(1.0 - 4.0 * ratio * ratio));
+    const double cosine = portable_cosine(q);
+    return {2.0 * rho * cosine,
+            -rho * rho,
+            std::sqrt(variance / (1.0 + m * m)),
+            m,
+            0.5 * q,
+            0.5 * q * rho * (cosine + portable_sine(q))};
+}
+
+// One axis of the noise. State: y and e of the samples before.
+class FilteredNoise {
+public:
+    explicit FilteredNoise(const NoiseFilter& filter) : filter_(filter) {}
+
+    // In the stationary state. `draws`: three standard normal ones; `sd`: of the white noise that will
+    // follow.
+    void start(const std::array<double, 3>& draws, double sd) {
+        const NoiseFilter& f = filter_;
+        white_before_ = draws[0];
+        y_before_2_ = std::sqrt(f.covariance_0) * draws[1];
+        const double common = f.covariance_1 / f.covariance_0;
+        const double rest = f.covariance_0 - f.b * f.b - common * f.covariance_1;
+        y_before_ = f.b * white_before_ + common * y_before_2_ + std::sqrt(std::max(rest, 0.0)) * draws[2];
+        for (double* state : {&white_before_, &y_before_2_, &y_before_}) { *state *= sd; }
+    }
+
+    double operator()(double white) {
+        const NoiseFilter& f = filter_;
+        const double y = f.phi_1 * y_before_ + f.phi_2 * y_before_2_ + f.b * (white + f.m * white_before_);
+        y_before_2_ = y_before_;
+        y_before_ = y;
+        white_before_ = white;
+        return y;
+    }
+
+private:
+    NoiseFilter filter_;
+    double y_before_ = 0.0;
+    double y_before_2_ = 0.0;
+    double white_before_ = 0.0;
+};
+
+// One axis of all else: the filter's response to straight lines. State: output and its slope (per sample).
+class FilteredSignal {
+public:
+    FilteredSignal(int order, double w_T) : order_(order), w_T_(w_T) {
+        const double q = order == 1 ? 0.0 : w_T / std::sqrt(2.0);
+        a_T_ = q;
+        decay_ = order == 1 ? decay(w_T) : decay(q);
+        cosine_ = portable_cosine(q);
+        sine_ = portable_sine(q);
+    }
+
+    void start(double input) {
+        input_ = input;
+        output_ = input;
+    }
+
+    double operator()(double input) {
+        const double rise = input - input_;
+        if (order_ == 1) {
+            const double lag = rise / w_T_;
+            output_ = input - lag + decay_ * (output_ - (input_ - lag));
+        } else {
+            // The line's own response lags by sqrt 2 / w; what the state differs from it rings off.
+            const double lag = rise / a_T_;
+            const double off = output_ - (input_ - lag);
+            const double off_slope = slope_ - rise;
+            output_ = input - lag + decay_ * (off * (cosine_ + sine_) + off_slope / a_T_ * sine_);
+            slope_ = rise + decay_ * (off_slope * (cosine_ - sine_) - 2.0 * a_T_ * off * sine_);
+        }
+        input_ = input;
+        return output_;
+    }
+
+private:
+    int order_;
+    double w_T_;
+    double a_T_;
+    double decay_;
+    double cosine_;
+    double sine_;
+    double input_ = 0.0;
+    double output_ = 0.0;
+    double slope_ = 0.0;
+};
+
+double root_mean_square(const BlockValues& values) {
+    double sum = 0.0;
+    for (const double value : values) { sum += value * value; }
+    return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+class Lowpass final : public Stage {
+public:
+    explicit Lowpass(const EffectUse& use) {
+        const int order = use["order"] == 1.0 ? 1 : 2;
+        const double w_T = 2.0 * pi * use["fc_hz"] / use.context().rate_hz;
+        const NoiseFilter noise =
+            order == 1 ? first_order_noise(w_T) : second_order_noise(w_T / std::sqrt(2.0));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!use.acts_on(axis)) { continue; }
+            axes_[axis] = {FilteredNoise(noise), FilteredSignal(order, w_T), use.stream(axis)};
+        }
+    }
+
+    void apply(SampleBlock& block) override {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!axes_[axis]) { continue; }
+            BlockValues& rate = block.rate_rad_s[axis];
+            BlockValues& white = block.white_rad_s[axis];
+            if (block.first_index == 0) { start(*axes_[axis], rate, white); }
+            for (std::size_t i = 0; i < block_samples; ++i) {
+                rate[i] = axes_[axis]->signal(rate[i]) + axes_[axis]->noise(white[i]);
+                white[i] = 0.0;
+            }
+        }
+    }
+
+private:
+    struct Axis {
+        FilteredNoise noise;
+        FilteredSignal signal;
+        RandomStream draws;
+    };
+
+    // Other effects may have scaled the white noise: its level is taken from the first block.
+    static void start(Axis& axis, const BlockValues& rate, const BlockValues& white) {
+        axis.signal.start(rate[0]);
+        axis.noise.start({axis.draws.normal(0), axis.draws.normal(1), axis.draws.normal(2)},
+                         root_mean_square(white));
+    }
+
+    std::array<std::optional<Axis>, 3> axes_;
+};
+
+std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<Lowpass>(use); }
+
+constexpr EffectParam params[] = {
+    {.name = "fc_hz",
+     .meaning = "-3 dB frequency; it may lie above half the sample rate",
+     .range = EffectParam::Range::positive,
+     .plausible_from = 5.0,
+     .plausible_to = 250.0},
+    {.name = "order",
+     .meaning = "1, or 2 for Butterworth",
+     .plausible_from = 1.0,
+     .plausible_to = 2.0,
+     .otherwise = 2.0,
+     .whole_up_to = 2.0},
+};
+
+}  // namespace
+
+constinit const EffectDefinition lowpass_effect = {
+    .name = "lowpass",
+    .model =
+        "1 / (1 + s/w), or Butterworth's 1 / (1 + sqrt 2 s/w + s^2/w^2), w = 2 pi fc_hz, on the signal in "
+        "continuous time and then sampled, so that the noise folds",
+    .source = "definition; the samples of white noise: Box, Jenkins, Reinsel, Time Series Analysis, A4.1",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

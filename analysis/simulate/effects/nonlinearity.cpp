@@ -1,0 +1,39 @@
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/rate_map.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    const double full_scale_rad_s = use.context().model.full_scale_rad_s;
+    const double per_full_scale = 1.0 / full_scale_rad_s;
+    const double quadratic_rad_s = use["quadratic"] * full_scale_rad_s;
+    const double cubic_rad_s = use["cubic"] * full_scale_rad_s;
+    return make_rate_map(use, [=](double rate_rad_s) {
+        const double x = rate_rad_s * per_full_scale;
+        return rate_rad_s + x * x * (quadratic_rad_s + cubic_rad_s * x);
+    });
+}
+
+constexpr EffectParam share_at_full_scale(std::string_view name, std::string_view meaning) {
+    return {
+        .name = name, .meaning = meaning, .plausible_from = -1e-3, .plausible_to = 1e-3, .otherwise = 0.0};
+}
+
+constexpr EffectParam params[] = {
+    share_at_full_scale("quadratic", "even error at full scale, as a fraction of it"),
+    share_at_full_scale("cubic", "odd error at full scale, as a fraction of it"),
+};
+
+}  // namespace
+
+constinit const EffectDefinition nonlinearity_effect = {
+    .name = "nonlinearity",
+    .model = "w + FS (quadratic (w/FS)^2 + cubic (w/FS)^3), FS the model's full scale",
+    .source = "IEEE 952-1997, model equation (scale-factor nonlinearity)",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

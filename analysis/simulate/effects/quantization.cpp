@@ -1,0 +1,36 @@
+#include <cmath>
+
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/rate_map.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    const double lsb_rad_s = use["lsb_dps"] * rad_per_deg;
+    return make_rate_map(use, [=](double rate_rad_s) {
+        const double steps = std::floor(std::fabs(rate_rad_s) / lsb_rad_s + 0.5);
+        return std::copysign(steps * lsb_rad_s, rate_rad_s);
+    });
+}
+
+constexpr EffectParam params[] = {
+    {.name = "lsb_dps",
+     .meaning = "step",
+     .range = EffectParam::Range::positive,
+     .plausible_from = 1.0 / 65.5,
+     .plausible_to = 8.0 / 65.5},
+};
+
+}  // namespace
+
+constinit const EffectDefinition quantization_effect = {
+    .name = "quantization",
+    .model = "rate, rounded to a multiple of lsb_dps, half away from zero; the model's own converter follows",
+    .source = "",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog

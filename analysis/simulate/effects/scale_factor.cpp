@@ -1,0 +1,27 @@
+#include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/effects/rate_map.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    const double gain = 1.0 + use["eps"];
+    return make_rate_map(use, [gain](double rate_rad_s) { return gain * rate_rad_s; });
+}
+
+constexpr EffectParam params[] = {
+    {.name = "eps", .meaning = "relative gain error", .plausible_from = -0.03, .plausible_to = 0.03},
+};
+
+}  // namespace
+
+constinit const EffectDefinition scale_factor_effect = {
+    .name = "scale_factor",
+    .model = "(1 + eps) w, w the answer to the motion before bias and noise",
+    .source = "IEEE 1293-1998 and 952-1997, model equation (scale-factor error)",
+    .params = params,
+    .make = make,
+};
+
+}  // namespace gyrolog
