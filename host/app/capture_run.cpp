@@ -8,7 +8,6 @@
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
 #include "host/session/load_capture.hpp"
-#include "host/session/open_source.hpp"
 
 namespace gyrolog {
 namespace {
@@ -91,16 +90,23 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
         result.code = exit_code_of_opening(opened.error());
         return result;
     }
-    if (opened->keeps_limit) {
-        request->duration_s.reset();
-        request->samples.reset();
+    return capture_source_to_file(console, command, std::move(opened).value(), std::move(request).value(),
+                                  real_time);
+}
+
+CaptureResult capture_source_to_file(Console& console, const char* command, OpenedSource opened,
+                                     CaptureRequest request, bool real_time) {
+    CaptureResult result;
+    if (opened.keeps_limit) {
+        request.duration_s.reset();
+        request.samples.reset();
     }
-    ByteSource& source = *opened->source;
-    console.err << "capturing from " << source.identity().uri << " to " << path
+    ByteSource& source = *opened.source;
+    console.err << "capturing from " << source.identity().uri << " to " << request.path
                 << (real_time && console.progress ? "; Ctrl-C stops, closes the file and analyses it\n"
                                                   : "\n");
     LiveView view(console);
-    const auto outcome = run_capture(source, *request, [&](const CaptureProgress& progress) {
+    const auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
         view.show(progress);
         return !console.stop_wanted();
     });
@@ -112,7 +118,9 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
     }
     result.file_written = true;
     result.link = outcome->link;
-    if (outcome->end == CaptureEnd::storage_failed) { keep_what_is_stored(path, *outcome, result.link); }
+    if (outcome->end == CaptureEnd::storage_failed) {
+        keep_what_is_stored(request.path, *outcome, result.link);
+    }
     result.code = exit_code_of(*outcome);
     if (outcome->error) {
         console.err << program_and(command) << ": " << outcome->error->message
@@ -120,7 +128,7 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
                             ? "; the board is lost, what came before is saved\n"
                             : "; what was written before is saved\n");
     }
-    sum_up(console, *outcome, result.link, path);
+    sum_up(console, *outcome, result.link, request.path);
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include "host/app/capture_options.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
+#include "host/session/open_source.hpp"
 
 namespace gyrolog {
 
@@ -19,5 +20,9 @@ struct CaptureResult {
 // of it. `command` is the name that errors are reported under.
 CaptureResult capture_to_file(Console& console, const char* command, const CaptureOptions& options,
                               const std::string& path, bool real_time);
+
+// The same from a source that is open already.
+CaptureResult capture_source_to_file(Console& console, const char* command, OpenedSource opened,
+                                     CaptureRequest request, bool real_time);
 
 }  // namespace gyrolog

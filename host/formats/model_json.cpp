@@ -433,13 +433,21 @@ std::string format_model(const SensorModel& model) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Result<SensorModel> read_model(const std::string& path) {
+Result<SensorModel> read_model(const std::string& path, std::uint64_t seed) {
+    GYROLOG_TRY(ModelFile file, read_model_file(path, seed));
+    return std::move(file.model);
+}
+
+Result<ModelFile> read_model_file(const std::string& path, std::uint64_t /*seed*/) {
     auto reader = TextReader::open(path);
     std::string text;
     while (reader.ok()) {
         const auto piece = reader->read();
         if (!piece.ok()) { return in_context("read model '" + path + "'", piece.error()); }
-        if (piece->empty()) { return parse_model(text, path); }
+        if (piece->empty()) {
+            GYROLOG_TRY(SensorModel model, parse_model(text, path));
+            return ModelFile{std::move(model), {}};
+        }
         text.append(*piece);
     }
     return in_context("read model '" + path + "'", reader.error());

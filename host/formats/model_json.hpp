@@ -5,8 +5,10 @@
 // SI number. Keys that this version does not know are kept and written back.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "analysis/simulate/sensor_model.hpp"
 #include "host/base/result.hpp"
@@ -19,8 +21,15 @@ namespace gyrolog {
 Result<SensorModel> parse_model(std::string_view text, const std::string& name);
 std::string format_model(const SensorModel& model);
 
+// A model file with what a person should know about it.
+struct ModelFile {
+    SensorModel model;
+    std::vector<std::string> notes;
+};
+
 // Also `not_found`, `permission_denied`, `failed` as the file system has it; writing replaces the file.
-Result<SensorModel> read_model(const std::string& path);
+Result<SensorModel> read_model(const std::string& path, std::uint64_t seed = 1);
+Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed);
 Status write_model(const SensorModel& model, const std::string& path);
 
 }  // namespace gyrolog

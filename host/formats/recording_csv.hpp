@@ -7,6 +7,7 @@
 
 #include "analysis/recording/recording.hpp"
 #include "host/base/result.hpp"
+#include "host/formats/text_file.hpp"
 
 namespace gyrolog {
 
@@ -34,13 +35,41 @@ Result<Recording> parse_recording_csv(std::string_view text, std::string name,
                                       const CsvReadOptions& options = {});
 
 struct CsvWriteOptions {
-    std::string
-        rate_unit;  // "dps" or "rad_s" for gyro and reference rates; empty: as the source had them, else dps
+    enum class Digits {
+        exact,     // the shortest number that reads back as the same
+        resolved,  // counts to a thousandth of their step or finer, temperatures to 0.0001 degC, else 9
+                   // digits
+    };
+
+    std::string rate_unit{};  // "dps" or "rad_s" for gyro and reference rates; empty: as the source had them,
+                              // else dps
+    Digits digits = Digits::exact;  // of numbers that are not in their source's unit; those are exact always
 };
 
-// Time stamps as they came, or index / rate where none did. Compressed by the name's ending. Numbers are the
-// shortest that read back as the same.
+// Time stamps as they came, or index / rate where none did. Compressed by the name's ending. What was at
+// `path` before stays until all is written.
 Status write_recording_csv(const Recording& recording, const std::string& path,
                            const CsvWriteOptions& options = {});
+
+// The same, piece by piece: for recordings that no memory holds.
+class RecordingCsvWriter {
+public:
+    static Result<RecordingCsvWriter> create(const std::string& path, CsvWriteOptions options);
+
+    // The first piece decides the columns; the others have the same.
+    Status append(const Recording& piece);
+    // Without close() nothing is left of the file.
+    Status close();
+
+private:
+    RecordingCsvWriter(std::string path, CsvWriteOptions options, TextWriter file)
+        : path_(std::move(path)), options_(std::move(options)), file_(std::move(file)) {}
+
+    std::string path_;
+    CsvWriteOptions options_;
+    TextWriter file_;
+    std::string text_;
+    bool headed_ = false;
+};
 
 }  // namespace gyrolog

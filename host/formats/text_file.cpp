@@ -1,6 +1,8 @@
 #include "host/formats/text_file.hpp"
 
 #include <cerrno>
+#include <filesystem>
+#include <system_error>
 
 #include <archive.h>
 #include <archive_entry.h>
@@ -60,6 +62,12 @@ void TextWriter::Close::operator()(void* archive) const { archive_write_free(han
 
 Result<TextWriter> TextWriter::create(const std::string& path) {
     TextWriter writer;
+    writer.path_ = path;
+    std::error_code none;
+    const std::filesystem::file_status there = std::filesystem::status(path, none);
+    const bool direct = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
+    if (std::filesystem::is_directory(there)) { return Error{ErrorCode::failed, "it is a folder"}; }
+    const std::string written = direct ? path : path + ".part";
     archive* file = archive_write_new();
     writer.archive_.reset(file);
     archive_write_set_format_raw(file);
@@ -74,7 +82,8 @@ Result<TextWriter> TextWriter::create(const std::string& path) {
     }
     // Without this the file would be filled up to a multiple of a tape's block.
     archive_write_set_bytes_in_last_block(file, 1);
-    if (archive_write_open_filename(file, path.c_str()) != ARCHIVE_OK) { return error_of(file); }
+    if (archive_write_open_filename(file, written.c_str()) != ARCHIVE_OK) { return error_of(file); }
+    if (!direct) { writer.beside_ = written; }
     archive_entry* entry = archive_entry_new();
     archive_entry_set_pathname(entry, "text");
     archive_entry_set_filetype(entry, AE_IFREG);
@@ -97,7 +106,19 @@ Status TextWriter::close() {
     if (archive_write_close(handle(archive_.get())) != ARCHIVE_OK) {
         return error_of(handle(archive_.get()));
     }
+    if (beside_.empty()) { return {}; }
+    std::error_code problem;
+    std::filesystem::rename(beside_, path_, problem);
+    if (problem) { return Error{ErrorCode::storage_failed, problem.message()}; }
+    beside_.clear();
     return {};
+}
+
+TextWriter::~TextWriter() {
+    if (!archive_ || beside_.empty()) { return; }  // moved from, or done
+    archive_.reset();
+    std::error_code none;
+    std::filesystem::remove(beside_, none);
 }
 
 }  // namespace gyrolog

@@ -26,9 +26,15 @@ private:
     std::string buffer_;
 };
 
+// Written beside the file that it shall be and put in its place by close(), so that a failure leaves what was
+// there. A path that is no regular file (a pipe, /dev/stdout) is written directly.
 class TextWriter {
 public:
     static Result<TextWriter> create(const std::string& path);
+    TextWriter(TextWriter&&) = default;
+    TextWriter& operator=(TextWriter&&) = delete;
+    // Without close() nothing is left.
+    ~TextWriter();
 
     Status write(std::string_view text);
     // The file is whole only after close() said so.
@@ -38,7 +44,11 @@ private:
     struct Close {
         void operator()(void* archive) const;
     };
+    TextWriter() = default;
+
     std::unique_ptr<void, Close> archive_;
+    std::string path_;
+    std::string beside_;  // where it is written until then; empty: at path_
 };
 
 }  // namespace gyrolog

@@ -1,0 +1,84 @@
+// Simulated recordings: what the simulator makes, in the form that a sensor's recording has.
+//
+// A recording that is made whole equals, column by column and segment by segment, what reading its text file
+// gives (host/formats/recording_csv.hpp), but for the digits that the file leaves out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/recording/recording.hpp"
+#include "analysis/simulate/recorded_world.hpp"
+#include "analysis/simulate/sensor_model.hpp"
+#include "analysis/simulate/sensor_simulator.hpp"
+
+namespace gyrolog {
+
+struct SimulationRequest {
+    std::uint64_t samples = 0;  // sampling instants, lost ones too; with `like` 0 means all of its
+    std::uint64_t seed = 1;
+    std::optional<double> rate_hz{};              // in place of the model's; not with `like`
+    std::shared_ptr<const World> world{};         // none: at rest; not with `like`
+    std::shared_ptr<const RecordedWorld> like{};  // its rows, time stamps and columns other than gyros
+};
+
+// What of the model has no effect on time stamps that are copied: the model's keys and effects by name.
+std::vector<std::string> terms_of_stamps(const SensorModel& model);
+
+class RecordingSimulator {
+public:
+    // `model` has no simulation_refusal(). Cheap; worlds are shared, not copied.
+    RecordingSimulator(const SensorModel& model, const SimulationRequest& request);
+
+    // The rows of the next block that were delivered (there may be none); false when all have been. A piece
+    // that is handed in again is refilled. Its segments count on the grid of the whole recording. Stamps are
+    // whole nanoseconds.
+    //
+    // Columns: gx gy gz, counts where the model has an lsb; temp. In a moving world ref_x ref_y ref_z with
+    // the reference's noise, ax ay az with the accelerometer's. With `like`: its own columns in place of
+    // these, as they are, and the simulated temperature only if it has none.
+    bool next(Recording& piece);
+
+    std::uint64_t samples() const { return samples_; }
+    std::uint64_t samples_done() const { return done_; }
+    double rate_hz() const { return rate_hz_; }
+
+private:
+    struct Row {
+        std::size_t place;     // in the block
+        std::size_t like_row;  // of the recording that is followed
+    };
+
+    bool simulates_temperature() const;
+    bool is_simulated_temperature(const Column& column) const;
+    void take_own_rows(std::size_t count, const SampleBlock& block);
+    void take_like_rows(std::int64_t begin, std::size_t count, const SampleBlock& block);
+    void add_segment_row(Recording& piece, std::int64_t index) const;
+    void make_columns(Recording& piece) const;
+    void fill_gyro(const SampleBlock& block, Recording& piece) const;
+    void fill_motion(const SampleBlock& block, Recording& piece) const;
+    void fill_temperature(const SampleBlock& block, Recording& piece) const;
+    void fill_like(Recording& piece) const;
+
+    SensorSimulator simulator_;
+    std::shared_ptr<const World> world_;
+    std::shared_ptr<const RecordedWorld> like_;
+    double rate_hz_;
+    double lsb_rad_s_;
+    double reference_sd_rad_s_;
+    double accelerometer_sd_m_s2_;
+    std::array<RandomStream, 6> instrument_noise_;  // of the reference's axes, then the accelerometer's
+    std::uint64_t samples_ = 0;
+    std::uint64_t done_ = 0;
+    std::vector<Row> rows_;         // of the current block
+    std::size_t like_segment_ = 0;  // where the current block begins
+};
+
+// The whole, in memory. Its rate, segments and dropouts are those that its stamps show (grid.hpp), as for any
+// recording; with `like` they are those of `like`, less the rows that were lost.
+Recording simulate_recording(const SensorModel& model, const SimulationRequest& request);
+
+}  // namespace gyrolog

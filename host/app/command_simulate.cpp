@@ -1,0 +1,333 @@
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "host/app/capture_run.hpp"
+#include "host/app/command.hpp"
+#include "host/app/option_check.hpp"
+#include "host/app/quantity.hpp"
+#include "host/app/recording_input.hpp"
+#include "host/app/result_output.hpp"
+#include "host/app/simulation_run.hpp"
+#include "host/formats/effect_catalogue.hpp"
+#include "host/formats/model_json.hpp"
+#include "host/virtual_board/sim_source.hpp"
+
+namespace gyrolog {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double duration_without_wish_s = 3600.0;
+constexpr double samples_max = 1099511627776.0;  // 2^40
+
+struct Options {
+    std::string model;
+    std::string output;
+    std::string duration;
+    std::uint64_t seed = 1;
+    std::string like;
+    std::optional<double> rate_hz;
+    std::string model_out;
+    std::string json;
+    bool effects = false;
+    bool force = false;
+
+    bool makes_capture() const { return output.ends_with(".pcapng"); }
+};
+
+// What the answer says beyond the outcome.
+struct Story {
+    ModelFile file;
+    std::optional<double> duration_s;
+    std::shared_ptr<const RecordedWorld> like;
+    std::vector<std::string> warnings;
+};
+
+Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+bool is_text(const std::string& path) {
+    for (const char* ending : {".csv", ".csv.gz", ".csv.xz", ".csv.zst", ".csv.bz2"}) {
+        if (path.ends_with(ending)) { return true; }
+    }
+    std::error_code none;
+    const auto there = std::filesystem::status(path, none);
+    return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
+           !std::filesystem::is_directory(there);
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+    if (a.empty() || b.empty()) { return false; }
+    std::error_code none;
+    return a == b ? a != "-" : std::filesystem::equivalent(a, b, none);
+}
+
+// Nothing that is read may be written over, and nothing written twice.
+Status check_paths(const Options& options) {
+    const std::pair<const char*, const std::string*> written[] = {
+        {"--output", &options.output}, {"--model-out", &options.model_out}, {"--json", &options.json}};
+    const std::pair<const char*, const std::string*> read[] = {{"MODEL", &options.model},
+                                                               {"--like", &options.like}};
+    for (const auto& [name, path] : written) {
+        for (const auto& [other, source] : read) {
+            if (same_file(*path, *source)) {
+                return wrong(fmt::format("{} and {} are the same file '{}'; give another to write", other,
+                                         name, *path));
+            }
+        }
+        for (const auto& [other, target] : written) {
+            if (name != other && same_file(*path, *target)) {
+                return wrong(fmt::format("{} and {} are the same file '{}'", name, other, *path));
+            }
+        }
+    }
+    return {};
+}
+
+Status check(const Options& options) {
+    if (options.model.empty()) {
+        return wrong("give the MODEL to simulate (.json), or --effects to see what a model may list");
+    }
+    if (options.output.empty()) { return wrong("give the recording to write with -o"); }
+    if (!options.makes_capture() && !is_text(options.output)) {
+        return wrong("'" + options.output +
+                     "' has none of the endings that tell the format: .csv (.gz, .xz, .zst), .pcapng");
+    }
+    if (options.makes_capture() && !options.like.empty()) {
+        return wrong(
+            "--like with a capture: the virtual board makes its own time stamps; write a .csv instead");
+    }
+    return check_paths(options);
+}
+
+// "tone (x), bias_step"
+std::vector<std::string> effect_names(const SensorModel& model) {
+    std::vector<std::string> names;
+    for (const EffectModel& effect : model.effects) {
+        names.push_back(effect.axes.empty()
+                            ? effect.effect
+                            : fmt::format("{} ({})", effect.effect, fmt::join(effect.axes, ", ")));
+    }
+    return names;
+}
+
+Result<std::uint64_t> samples_of(double duration_s, double rate_hz) {
+    const double samples = std::round(duration_s * rate_hz);
+    if (samples < 1.0) {
+        return wrong(fmt::format("--duration {:g} s at {:g} Hz holds no sample", duration_s, rate_hz));
+    }
+    if (samples > samples_max) {
+        return wrong(fmt::format("--duration {:g} s at {:g} Hz is {:.3g} samples; at most 2^40 = {:.3g}",
+                                 duration_s, rate_hz, samples, samples_max));
+    }
+    return static_cast<std::uint64_t>(samples);
+}
+
+Result<std::shared_ptr<const RecordedWorld>> read_like(const Options& options, Story& story) {
+    auto read = read_recording({options.like, options.rate_hz, std::nullopt});
+    if (!read.ok()) { return in_context("--like", std::move(read).error()); }
+    auto recording = std::make_shared<const Recording>(std::move(read).value());
+    if (recording->rows() == 0) { return wrong("--like '" + options.like + "' has no samples"); }
+    for (const std::string& warning : recording->warnings) {
+        story.warnings.push_back(options.like + ": " + warning);
+    }
+    for (const Column& column : recording->columns) {
+        if (column.name.size() > 2 && column.name.starts_with('g')) {
+            story.warnings.emplace_back(options.like + " is of several gyros; one is simulated");
+            break;
+        }
+    }
+    auto world = std::make_shared<const RecordedWorld>(recording);
+    for (const std::string& warning : world->warnings()) {
+        story.warnings.push_back(options.like + ": " + warning);
+    }
+    if (const auto terms = terms_of_stamps(story.file.model); !terms.empty()) {
+        story.warnings.push_back(fmt::format("the time stamps are copied: {} of the model {} not act on them",
+                                             fmt::join(terms, ", "), terms.size() == 1 ? "does" : "do"));
+    }
+    return std::shared_ptr<const RecordedWorld>(std::move(world));
+}
+
+std::string taken_over(const RecordedWorld& like) {
+    std::string text = "time stamps";
+    if (like.has_temperature()) { text += ", temperature"; }
+    if (like.has_reference()) { text += ", reference rate"; }
+    if (like.has_specific_force()) { text += ", specific force"; }
+    return text;
+}
+
+std::string made_up(const RecordedWorld& like) {
+    std::string text;
+    if (!like.has_temperature()) { text += ", temperature"; }
+    if (!like.has_reference()) { text += like.has_specific_force() ? ", no turning" : ", rest"; }
+    return text.empty() ? text : "; not in it, so simulated: " + text.substr(2);
+}
+
+void tell(Console& console, const Options& options, const Story& story, const SimulationOutcome& outcome) {
+    console.err << fmt::format("  {}: {} samples in {}, seed {}{}\n", options.output,
+                               format_count(outcome.samples),
+                               format_duration(static_cast<double>(outcome.instants) / outcome.rate_hz),
+                               options.seed, outcome.interrupted ? "; stopped early, whole up to there" : "");
+    const auto effects = effect_names(story.file.model);
+    if (!effects.empty()) { console.err << fmt::format("  effects: {}\n", fmt::join(effects, ", ")); }
+    if (story.like) {
+        console.err << fmt::format("  from {}: {}{}\n", options.like, taken_over(*story.like),
+                                   made_up(*story.like));
+    }
+    if (outcome.instants != outcome.samples) {
+        console.err << fmt::format("  missing: {} samples in {} dropouts\n",
+                                   format_count(outcome.instants - outcome.samples), outcome.dropouts);
+    }
+    for (const std::string& note : story.file.notes) { console.err << "  " << note << '\n'; }
+}
+
+Json answer(const Options& options, const Story& story, const SimulationOutcome& outcome) {
+    Json json;
+    json["schema"] = "gyrolog-simulate/1";
+    json["model"] = options.model;
+    json["output"] = options.output;
+    json["seed"] = options.seed;
+    json["rate_hz"] = outcome.rate_hz;
+    json["duration_s"] = static_cast<double>(outcome.instants) / outcome.rate_hz;
+    json["samples"] = outcome.samples;
+    json["missing"] = {{"samples", outcome.instants - outcome.samples}, {"dropouts", outcome.dropouts}};
+    json["complete"] = !outcome.interrupted;
+    json["effects"] = effect_names(story.file.model);
+    if (story.like) {
+        json["like"] = {{"file", options.like},
+                        {"temperature", story.like->has_temperature()},
+                        {"reference", story.like->has_reference()},
+                        {"specific_force", story.like->has_specific_force()}};
+    }
+    json["notes"] = story.file.notes;
+    json["warnings"] = story.warnings;
+    return json;
+}
+
+ExitCode make_text(Console& console, const Options& options, Story& story) {
+    const auto fail = [&](const Error& error) { return report_error(console, "simulate", error); };
+    SimulationRequest request;
+    request.seed = options.seed;
+    if (!options.like.empty()) {
+        auto like = read_like(options, story);
+        if (!like.ok()) { return fail(like.error()); }
+        story.like = request.like = std::move(like).value();
+    } else {
+        request.rate_hz = options.rate_hz;
+    }
+    const double rate_hz =
+        story.like ? story.like->recording().rate_hz : options.rate_hz.value_or(story.file.model.rate_hz);
+    if (!story.like || story.duration_s) {
+        const auto samples = samples_of(story.duration_s.value_or(duration_without_wish_s), rate_hz);
+        if (!samples.ok()) { return fail(samples.error()); }
+        request.samples = *samples;
+    }
+    for (const std::string& warning : story.warnings) {
+        console.err << "gyrolog simulate: warning: " << warning << '\n';
+    }
+    const auto outcome = simulate_to_text(console, story.file.model, request, options.output);
+    if (!outcome.ok()) { return fail(outcome.error()); }
+    tell(console, options, story, *outcome);
+    if (options.json.empty()) { return ExitCode::ok; }
+    const Status written = write_json(console, options.json, answer(options, story, *outcome));
+    return written.ok() ? ExitCode::ok : fail(written.error());
+}
+
+ExitCode make_capture(Console& console, const Options& options, const Story& story) {
+    SimOptions board;
+    board.seed = options.seed;
+    board.rate_hz = options.rate_hz;
+    board.model_path = options.model;
+    board.text = fmt::format("model={},seed={}", options.model, options.seed);
+    auto source = SimSource::create(board, story.file.model,
+                                    {std::nullopt, story.duration_s.value_or(duration_without_wish_s)});
+    if (!source.ok()) { return report_error(console, "simulate", source.error()); }
+    CaptureRequest request;
+    request.path = options.output;
+    request.overwrite = options.force;
+    const CaptureResult result =
+        capture_source_to_file(console, "simulate", {std::move(source).value(), true}, request, false);
+    if (!result.file_written) { return result.code; }
+    for (const std::string& note : story.file.notes) { console.err << "  " << note << '\n'; }
+    if (options.json.empty()) { return result.code; }
+    SimulationOutcome outcome;
+    outcome.samples = result.link.samples.good;
+    outcome.instants = outcome.samples + result.link.samples.missing;
+    outcome.dropouts = result.link.dropouts.size() + result.link.dropouts_unlisted;
+    outcome.rate_hz = options.rate_hz.value_or(story.file.model.rate_hz);
+    outcome.interrupted = console.stop_wanted();
+    const Status written = write_json(console, options.json, answer(options, story, outcome));
+    return written.ok() ? result.code : report_error(console, "simulate", written.error());
+}
+
+ExitCode show_effects(Console& console, const Options& options) {
+    const Status shown = options.json.empty() ? write_text(console, "-", effect_catalogue_text())
+                                              : write_json(console, options.json, effect_catalogue_json());
+    return shown.ok() ? ExitCode::ok : report_error(console, "simulate", shown.error());
+}
+
+ExitCode simulate(Console& console, const Options& options) {
+    if (options.effects) { return show_effects(console, options); }
+    const auto fail = [&](const Error& error) { return report_error(console, "simulate", error); };
+    if (const Status fine = check(options); !fine.ok()) { return fail(fine.error()); }
+    Story story;
+    if (!options.duration.empty()) {
+        const auto duration_s = parse_duration_s(options.duration);
+        if (!duration_s.ok()) { return fail(in_context("--duration", duration_s.error())); }
+        story.duration_s = *duration_s;
+    }
+    auto file = read_model_file(options.model, options.seed);
+    if (!file.ok()) { return fail(file.error()); }
+    story.file = std::move(file).value();
+    if (const auto refusal = simulation_refusal(story.file.model)) {
+        return fail({ErrorCode::malformed, "model '" + options.model + "': " + *refusal +
+                                               "; `gyrolog simulate --effects` lists what there is"});
+    }
+    if (!options.model_out.empty()) {
+        const Status written = write_text(console, options.model_out, format_model(story.file.model));
+        if (!written.ok()) { return fail(written.error()); }
+    }
+    return options.makes_capture() ? make_capture(console, options, story)
+                                   : make_text(console, options, story);
+}
+
+}  // namespace
+
+Action setup_simulate(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    app.add_option("MODEL", options->model,
+                   "The sensor (.json): a gyrolog-model/1, a data sheet (gyrolog-datasheet/1) or gyroparams "
+                   "(gyrolog-gyroparams/1)");
+    app.add_option("-o,--output", options->output,
+                   "The recording to write, by its ending: .csv (.gz, .xz, .zst), or .pcapng as the virtual "
+                   "board sends it")
+        ->type_name("FILE");
+    app.add_option("--duration", options->duration,
+                   "Length: 90s, 15m, 6h, 7d; without it 1h, or with --like that recording's")
+        ->type_name("T");
+    app.add_option("--seed", options->seed, "Another sensor of the same kind")
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--like", options->like,
+                   "Take time stamps, holes, temperature and reference motion from this recording")
+        ->type_name("RECORDING");
+    app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the model's or the recording's")
+        ->type_name("HZ")
+        ->check(number_from_to(1e-4, 1e7, "Hz"));
+    app.add_option("--model-out", options->model_out,
+                   "Write the simulated unit as gyrolog-model/1 (of a data sheet: the one that was drawn)")
+        ->type_name("FILE");
+    app.add_option("--json", options->json,
+                   "Write what was done, or the effects, as JSON (- for standard output)")
+        ->type_name("FILE");
+    app.add_flag("--effects", options->effects,
+                 "List the effects that a model may have, and their parameters");
+    app.add_flag("--force", options->force, "Replace a capture that exists");
+    return [options](Console& console) { return simulate(console, *options); };
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,93 @@
+#include "host/formats/effect_catalogue.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/simulate/chain.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string allowed(const EffectParam& param) {
+    if (param.whole_up_to != 0.0) { return fmt::format("a whole number from 1 to {:g}", param.whole_up_to); }
+    switch (param.range) {
+        case EffectParam::Range::positive:
+            return "above 0";
+        case EffectParam::Range::not_negative:
+            return "0 or above";
+        case EffectParam::Range::above_two:
+            return "above 2";
+        case EffectParam::Range::share:
+            return "from 0 to 1";
+        case EffectParam::Range::yes_no:
+            return "0 or 1";
+        case EffectParam::Range::any:
+            break;
+    }
+    return "any number";
+}
+
+bool has_plausible(const EffectParam& param) {
+    return param.plausible_from != param.plausible_to || param.plausible_from != 0.0;
+}
+
+std::string param_text(const EffectParam& param) {
+    std::string text = fmt::format("    {:<24} {}; {}", param.name, param.meaning, allowed(param));
+    if (has_plausible(param)) {
+        text += fmt::format(", plausible {:g} to {:g}", param.plausible_from, param.plausible_to);
+    }
+    if (param.otherwise) { text += fmt::format("; without it {:g}", *param.otherwise); }
+    return text + "\n";
+}
+
+Json param_json(const EffectParam& param) {
+    Json json;
+    json["name"] = param.name;
+    json["meaning"] = param.meaning;
+    json["allowed"] = allowed(param);
+    if (has_plausible(param)) { json["plausible"] = {param.plausible_from, param.plausible_to}; }
+    json["needed"] = !param.otherwise.has_value() && !param.from_model;
+    if (param.otherwise) { json["otherwise"] = *param.otherwise; }
+    return json;
+}
+
+}  // namespace
+
+std::string effect_catalogue_text() {
+    std::string text =
+        "Effects that a model may list, in the order in which they act on a sample. An entry of the model:\n"
+        "  {\"effect\": NAME, \"axes\": [\"x\", \"y\", \"z\"], \"params\": {NAME: NUMBER}}; without axes it "
+        "acts on all.\n"
+        "Plausible ranges are those of an MPU-9250.\n";
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect == nullptr) { continue; }
+        const EffectDefinition& effect = *link.effect;
+        text += fmt::format("\n{}\n    {}\n", effect.name, effect.model);
+        for (const EffectParam& param : effect.params) { text += param_text(param); }
+        if (!effect.source.empty()) { text += fmt::format("    source: {}\n", effect.source); }
+    }
+    return text;
+}
+
+Json effect_catalogue_json() {
+    Json json;
+    json["schema"] = "gyrolog-effects/1";
+    json["effects"] = Json::array();
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect == nullptr) { continue; }
+        Json entry;
+        entry["effect"] = link.effect->name;
+        entry["model"] = link.effect->model;
+        entry["source"] = link.effect->source;
+        entry["params"] = Json::array();
+        for (const EffectParam& param : link.effect->params) { entry["params"].push_back(param_json(param)); }
+        json["effects"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+}  // namespace gyrolog
