@@ -13,6 +13,7 @@ namespace {
 constexpr double filter_side = 0.093882;  // weights: side, 1 - 2 side, side
 constexpr std::size_t ratio = 4;          // of the grids
 constexpr std::size_t chunk = 1024;
+constexpr std::uint64_t offset_draw = std::uint64_t{1} << 62U;  // of a stream; no sample reaches it
 
 }  // namespace
 
@@ -23,6 +24,9 @@ FlickerNoise::FlickerNoise(double B_rad_per_s, std::span<const RandomStream> str
     }
     // The slowest first: each level's line needs its first two knots from the level above.
     for (std::size_t level = levels_.size() - 1; level-- > 0;) {
+        const RandomStream& slower_stream = levels_[level + 1].process.stream;
+        levels_[level].offset =
+            static_cast<std::uint64_t>(slower_stream.uniform(offset_draw) * static_cast<double>(ratio));
         std::array<double, 2> knots{};
         produce(level + 1, knots);
         levels_[level].knot_before = knots[0];
@@ -62,13 +66,14 @@ void FlickerNoise::produce(std::size_t level, std::span<double> out) {
         fastest_.produce(first, std::span(more).first(out.size()));
         for (std::size_t i = 0; i < out.size(); ++i) { out[i] += more[i]; }
     }
-    if (level + 1 < levels_.size()) { add_slower(level, first, out); }
+    if (level + 1 < levels_.size()) { add_slower(level, first + self.offset, out); }
 }
 
 void FlickerNoise::add_slower(std::size_t level, std::uint64_t first, std::span<double> out) {
     Level& self = levels_[level];
     const std::uint64_t end = first + out.size();
-    // A knot is passed at every multiple of the ratio but 0, where the constructor has set both.
+    // `first` counts from a knot. One is passed at every multiple of the ratio but 0, where the constructor
+    // has set both.
     const std::uint64_t passed = end == 0 ? 0 : (end - 1) / ratio;
     const std::uint64_t passed_before = first == 0 ? 0 : (first - 1) / ratio;
     std::array<double, chunk / ratio + 2> knots{};
