@@ -19,22 +19,59 @@ constexpr int rounds = 10;
 // The fourth counter word keeps the extra bits of the tails apart from the draws.
 enum Purpose : std::uint32_t { draws = 0, tail_bits = 1 };
 
-// Many counters side by side, one array a word: the form that compilers turn into vector instructions.
-constexpr std::size_t lanes = 64;
-struct Lanes {
-    std::array<std::array<std::uint32_t, lanes>, 4> words;
-};
+std::uint32_t low_word(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
+std::uint32_t high_word(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32U); }
 
-void philox_round(Lanes& x, std::uint32_t key_0, std::uint32_t key_1) {
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const std::uint64_t product_0 = std::uint64_t{multiplier_0} * x.words[0][i];
-        const std::uint64_t product_1 = std::uint64_t{multiplier_1} * x.words[2][i];
-        x.words[0][i] = static_cast<std::uint32_t>(product_1 >> 32U) ^ x.words[1][i] ^ key_0;
-        x.words[1][i] = static_cast<std::uint32_t>(product_1);
-        x.words[2][i] = static_cast<std::uint32_t>(product_0 >> 32U) ^ x.words[3][i] ^ key_1;
-        x.words[3][i] = static_cast<std::uint32_t>(product_0);
+// Below this magnitude a word stands for the outermost 2^-20 of the probability.
+constexpr std::uint32_t tail_magnitude = 1U << 11U;
+constexpr std::uint32_t magnitude_mask = 0x7FFFFFFFU;
+
+// Many counters side by side, one array a word: the form that compilers turn into vector instructions.
+constexpr std::size_t lanes = 32;
+class Lanes {
+public:
+    void draw(std::uint64_t first_counter, std::uint32_t stream_id, PhiloxKey key) {
+        for (std::size_t i = 0; i < lanes; ++i) {
+            words_[0][i] = low_word(first_counter + i);
+            words_[1][i] = high_word(first_counter + i);
+            words_[2][i] = stream_id;
+            words_[3][i] = draws;
+        }
+        for (int i = 0; i < rounds; ++i) {
+            round(key);
+            key[0] += weyl_0;
+            key[1] += weyl_1;
+        }
+        for (std::size_t i = 0; i < lanes; ++i) {
+            for (std::size_t k = 0; k < 4; ++k) { in_order_[4 * i + k] = words_[k][i]; }
+        }
+        std::uint32_t borrows = 0;
+        for (const std::uint32_t w : in_order_) { borrows |= (w & magnitude_mask) - tail_magnitude; }
+        has_tail_ = borrows > magnitude_mask;
     }
-}
+
+    // In the order of the counters, four of each.
+    std::span<const std::uint32_t> words() const { return in_order_; }
+    bool has_tail() const { return has_tail_; }
+
+private:
+    void round(const PhiloxKey& key) {
+        for (std::size_t i = 0; i < lanes; ++i) {
+            const std::uint64_t product_0 = std::uint64_t{multiplier_0} * words_[0][i];
+            const std::uint64_t product_1 = std::uint64_t{multiplier_1} * words_[2][i];
+            words_[0][i] = high_word(product_1) ^ words_[1][i] ^ key[0];
+            words_[1][i] = low_word(product_1);
+            words_[2][i] = high_word(product_0) ^ words_[3][i] ^ key[1];
+            words_[3][i] = low_word(product_0);
+        }
+    }
+
+    std::array<std::array<std::uint32_t, lanes>, 4> words_;
+    std::array<std::uint32_t, 4 * lanes> in_order_;
+    bool has_tail_;
+};
+// Fewer draws than this cost less one by one.
+constexpr std::size_t worth_lanes = 10;
 
 // z(d): the normal deviate whose upper tail probability is d / 2^32, for 2^-33 <= d < 2^31.
 class QuantileTable {
@@ -50,12 +87,15 @@ public:
         }
     }
 
-    double operator()(double d) const {
-        // Exponent and leading mantissa bits number the part.
-        const auto place = static_cast<std::size_t>(std::bit_cast<std::uint64_t>(d) >> (52U - part_bits));
-        const Cubic& c = parts_[place - first_place];
+    // The part that holds d: its exponent and leading mantissa bits.
+    static std::size_t part_of(double d) {
+        return static_cast<std::size_t>(std::bit_cast<std::uint64_t>(d) >> (52U - part_bits)) - first_place;
+    }
+    double within(std::size_t part, double d) const {
+        const Cubic& c = parts_[part];
         return c[0] + d * (c[1] + d * (c[2] + d * c[3]));
     }
+    double operator()(double d) const { return within(part_of(d), d); }
 
 private:
     using Cubic = std::array<double, 4>;
@@ -106,16 +146,22 @@ const QuantileTable& quantile_table() {
     return table;
 }
 
-// Below this magnitude a word stands for the outermost 2^-20 of the probability.
-constexpr std::uint32_t tail_magnitude = 1U << 11U;
-constexpr std::uint32_t magnitude_mask = 0x7FFFFFFFU;
-
 double with_sign(double z, std::uint32_t word) {
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(z) ^ (std::uint64_t{word >> 31U} << 63U));
 }
 
-std::uint32_t low_word(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
-std::uint32_t high_word(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32U); }
+// Words to draws, those of the tails excepted. Pass by pass, because all but the look-up becomes vector
+// instructions that way.
+void transform(std::span<const std::uint32_t> words, std::span<double> out) {
+    const QuantileTable& quantile = quantile_table();
+    std::array<double, 4 * lanes> d;          // NOLINT(cppcoreguidelines-pro-type-member-init)
+    std::array<std::size_t, 4 * lanes> part;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+    const std::size_t n = out.size();
+    for (std::size_t i = 0; i < n; ++i) { d[i] = static_cast<std::int32_t>(words[i] & magnitude_mask) + 0.5; }
+    for (std::size_t i = 0; i < n; ++i) { part[i] = QuantileTable::part_of(d[i]); }
+    for (std::size_t i = 0; i < n; ++i) { out[i] = quantile.within(part[i], d[i]); }
+    for (std::size_t i = 0; i < n; ++i) { out[i] = with_sign(out[i], words[i]); }
+}
 
 }  // namespace
 
@@ -155,47 +201,23 @@ double RandomStream::normal(std::uint64_t index) const {
 }
 
 void RandomStream::normals(std::uint64_t first_index, std::span<double> out) const {
-    const QuantileTable& quantile = quantile_table();
-    std::size_t done = 0;
-    for (; done < out.size() && (first_index + done) % 4 != 0; ++done) {
-        out[done] = normal(first_index + done);
-    }
-
     Lanes x;
-    while (out.size() - done >= 4 * lanes) {
-        const std::uint64_t first_block = (first_index + done) / 4;
-        for (std::size_t i = 0; i < lanes; ++i) {
-            x.words[0][i] = low_word(first_block + i);
-            x.words[1][i] = high_word(first_block + i);
-            x.words[2][i] = stream_id_;
-            x.words[3][i] = draws;
-        }
-        PhiloxKey key = key_;
-        for (int round = 0; round < rounds; ++round) {
-            philox_round(x, key[0], key[1]);
-            key[0] += weyl_0;
-            key[1] += weyl_1;
-        }
-        std::uint32_t smallest = magnitude_mask;
-        for (std::size_t i = 0; i < lanes; ++i) {
-            for (std::size_t k = 0; k < 4; ++k) {
-                const std::uint32_t w = x.words[k][i];
-                const std::uint32_t magnitude = w & magnitude_mask;
-                smallest = std::min(smallest, magnitude);
-                out[done + 4 * i + k] = with_sign(quantile(static_cast<std::int32_t>(magnitude) + 0.5), w);
+    while (out.size() >= worth_lanes) {
+        const auto skipped = static_cast<std::size_t>(first_index % 4);
+        const std::span<double> now = out.first(std::min(out.size(), 4 * lanes - skipped));
+        x.draw(first_index / 4, stream_id_, key_);
+        const std::span words = x.words().subspan(skipped);
+        transform(words, now);
+        if (x.has_tail()) {
+            for (std::size_t i = 0; i < now.size(); ++i) {
+                const std::uint32_t w = words[i];
+                if ((w & magnitude_mask) < tail_magnitude) { now[i] = tail_normal(first_index + i, w); }
             }
         }
-        if (smallest < tail_magnitude) {
-            for (std::size_t i = 0; i < 4 * lanes; ++i) {
-                const std::uint32_t w = x.words[i % 4][i / 4];
-                if ((w & magnitude_mask) < tail_magnitude) {
-                    out[done + i] = tail_normal(first_index + done + i, w);
-                }
-            }
-        }
-        done += 4 * lanes;
+        first_index += now.size();
+        out = out.subspan(now.size());
     }
-    for (; done < out.size(); ++done) { out[done] = normal(first_index + done); }
+    for (double& draw : out) { draw = normal(first_index++); }
 }
 
 }  // namespace gyrolog
