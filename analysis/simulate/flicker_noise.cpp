@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "analysis/noise/noise_model.hpp"
 
@@ -18,9 +19,9 @@ constexpr std::uint64_t offset_draw = std::uint64_t{1} << 62U;  // of a stream; 
 }  // namespace
 
 FlickerNoise::FlickerNoise(double B_rad_per_s, std::span<const RandomStream> streams)
-    : B_rad_per_s_(B_rad_per_s), fastest_{fastest, streams[0]} {
+    : B_rad_per_s_(B_rad_per_s), fastest_{streams[0], Recursion(fastest)} {
     for (const RandomStream& stream : streams.subspan(1)) {
-        levels_.push_back({.process = {levels_.empty() ? fast : slower, stream}});
+        levels_.push_back({.process = {stream, Recursion(levels_.empty() ? fast : slower)}});
     }
     // The slowest first: each level's line needs its first two knots from the level above.
     for (std::size_t level = levels_.size() - 1; level-- > 0;) {
@@ -38,76 +39,91 @@ FlickerNoise::FlickerNoise(double B_rad_per_s, std::span<const RandomStream> str
     last_ = first[1];
 }
 
+FlickerNoise::Recursion::Recursion(const GaussMarkov& kind)
+    : correlation(kind.correlation),
+      sd(std::sqrt(kind.variance)),
+      innovation(std::sqrt(kind.variance * (1.0 - kind.correlation * kind.correlation))) {}
+
 void FlickerNoise::Process::produce(std::uint64_t first, std::span<double> out) {
-    const double a = kind.correlation;
-    const double innovation = std::sqrt(kind.variance * (1.0 - a * a));
     stream.normals(first, out);
     std::size_t i = 0;
+    if (first == 0 && !out.empty()) { out[i++] = recursion.start(out[0]); }
+    Recursion local = recursion;  // stays in a register: `out` cannot alias it
+    for (; i < out.size(); ++i) { out[i] = local.next(out[i]); }
+    recursion = local;
+}
+
+// The two processes at the sample rate, side by side: a recursion waits for its own last value, and two wait
+// no longer than one.
+void FlickerNoise::produce_fastest(std::uint64_t first, std::span<double> out) {
+    std::array<double, chunk> more;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+    Process& other = levels_[0].process;
+    fastest_.stream.normals(first, std::span(more).first(out.size()));
+    other.stream.normals(first, out);
+    std::size_t i = 0;
     if (first == 0 && !out.empty()) {
-        state = std::sqrt(kind.variance) * out[0];
-        out[i++] = state;
+        out[i++] = other.recursion.start(out[0]) + fastest_.recursion.start(more[0]);
     }
-    double x = state;
-    for (; i < out.size(); ++i) {
-        x = a * x + innovation * out[i];
-        out[i] = x;
-    }
-    state = x;
+    Recursion a = fastest_.recursion;
+    Recursion b = other.recursion;
+    for (; i < out.size(); ++i) { out[i] = b.next(out[i]) + a.next(more[i]); }
+    fastest_.recursion = a;
+    other.recursion = b;
 }
 
 // At most `chunk` values.
 void FlickerNoise::produce(std::size_t level, std::span<double> out) {
     Level& self = levels_[level];
-    const std::uint64_t first = self.position;
-    self.position += out.size();
-    self.process.produce(first, out);
+    const std::uint64_t first = std::exchange(self.position, self.position + out.size());
     if (level == 0) {
-        std::array<double, chunk> more;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-        fastest_.produce(first, std::span(more).first(out.size()));
-        for (std::size_t i = 0; i < out.size(); ++i) { out[i] += more[i]; }
+        produce_fastest(first, out);
+    } else {
+        self.process.produce(first, out);
     }
     if (level + 1 < levels_.size()) { add_slower(level, first + self.offset, out); }
 }
 
 void FlickerNoise::add_slower(std::size_t level, std::uint64_t first, std::span<double> out) {
     Level& self = levels_[level];
-    const std::uint64_t end = first + out.size();
-    // `first` counts from a knot. One is passed at every multiple of the ratio but 0, where the constructor
-    // has set both.
-    const std::uint64_t passed = end == 0 ? 0 : (end - 1) / ratio;
-    const std::uint64_t passed_before = first == 0 ? 0 : (first - 1) / ratio;
-    std::array<double, chunk / ratio + 2> knots{};
-    const std::span<double> fresh = std::span(knots).first(static_cast<std::size_t>(passed - passed_before));
-    produce(level + 1, fresh);
-
-    std::size_t next = 0;
-    std::size_t i = 0;
     auto phase = static_cast<std::size_t>(first % ratio);
-    while (i < out.size()) {
-        if (phase == 0 && first + i != 0) {
-            self.knot_before = self.knot_after;
-            self.knot_after = fresh[next++];
-        }
-        const double step = (self.knot_after - self.knot_before) * (1.0 / static_cast<double>(ratio));
-        for (; phase < ratio && i < out.size(); ++phase, ++i) {
-            out[i] += self.knot_before + step * static_cast<double>(phase);
-        }
-        phase = 0;
+    const std::size_t passed = (phase + out.size()) / ratio;  // knots up to the end of `out`
+    std::array<double, (chunk + ratio - 1) / ratio + 2>
+        knots;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+    knots[0] = self.knot_before;
+    knots[1] = self.knot_after;
+    produce(level + 1, std::span(knots).subspan(2, passed));
+
+    const auto on_line = [&](std::size_t line, std::size_t place) {
+        const double step = (knots[line + 1] - knots[line]) * (1.0 / static_cast<double>(ratio));
+        return knots[line] + step * static_cast<double>(place);
+    };
+    std::size_t i = 0;
+    std::size_t line = 0;
+    for (; phase != 0 && i < out.size(); ++i) {
+        out[i] += on_line(line, phase);
+        phase = (phase + 1) % ratio;
+        if (phase == 0) { ++line; }
     }
+    for (; i + ratio <= out.size(); i += ratio, ++line) {
+        for (std::size_t place = 0; place < ratio; ++place) { out[i + place] += on_line(line, place); }
+    }
+    for (; i < out.size(); ++i, ++phase) { out[i] += on_line(line, phase); }
+    self.knot_before = knots[passed];
+    self.knot_after = knots[passed + 1];
 }
 
 void FlickerNoise::add_next(std::span<double> out) {
-    std::array<double, chunk> fresh{};
+    std::array<double, chunk + 2> x;  // NOLINT(cppcoreguidelines-pro-type-member-init)
     const double side = filter_side * B_rad_per_s_;
     const double centre = (1.0 - 2.0 * filter_side) * B_rad_per_s_;
     while (!out.empty()) {
         const std::size_t n = std::min(out.size(), chunk);
-        produce(0, std::span(fresh).first(n));
-        for (std::size_t i = 0; i < n; ++i) {
-            out[i] += side * (before_last_ + fresh[i]) + centre * last_;
-            before_last_ = last_;
-            last_ = fresh[i];
-        }
+        x[0] = before_last_;
+        x[1] = last_;
+        produce(0, std::span(x).subspan(2, n));
+        for (std::size_t i = 0; i < n; ++i) { out[i] += side * (x[i] + x[i + 2]) + centre * x[i + 1]; }
+        before_last_ = x[n];
+        last_ = x[n + 1];
         out = out.subspan(n);
     }
 }

@@ -52,12 +52,22 @@ private:
     static constexpr GaussMarkov fast = {0.778511, 0.572925};
     static constexpr GaussMarkov slower = {0.8, 0.473};
 
-    struct Process {
-        GaussMarkov kind;
-        RandomStream stream;
-        double state = 0.0;
+    // Turns standard normal draws into the process's values.
+    struct Recursion {
+        explicit Recursion(const GaussMarkov& kind);
+        double start(double draw) { return value = sd * draw; }
+        double next(double draw) { return value = correlation * value + innovation * draw; }
 
-        // Values first, first + 1, ... of the process, which must have been asked for all before.
+        double correlation;
+        double sd;
+        double innovation;
+        double value = 0.0;
+    };
+    // Values are asked for in order, without a gap.
+    struct Process {
+        RandomStream stream;
+        Recursion recursion;
+
         void produce(std::uint64_t first, std::span<double> out);
     };
     // A slower process plus the straight lines between the values of the level above it.
@@ -65,12 +75,13 @@ private:
         Process process;
         std::uint64_t position = 0;  // values produced
         std::uint64_t offset = 0;    // of the first value from a knot
-        double knot_before = 0.0;    // of the next slower level, around `position`
-        double knot_after = 0.0;
+        double knot_before = 0.0;    // of the next slower level, the last one at or before `position`
+        double knot_after = 0.0;     // the one that follows it
     };
 
     static double psd_of(const GaussMarkov& process, double phase);
     void produce(std::size_t level, std::span<double> out);
+    void produce_fastest(std::uint64_t first, std::span<double> out);
     void add_slower(std::size_t level, std::uint64_t first, std::span<double> out);
 
     double B_rad_per_s_;

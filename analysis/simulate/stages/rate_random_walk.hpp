@@ -14,10 +14,12 @@ struct RateRandomWalk {
         std::array<double, block_samples> draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
         const std::span<double> used = std::span(draws).first(rate_rad_s.size());
         stream.normals(first_index, used);
+        double walk_rad_s = state_rad_s;  // stays in a register: `rate_rad_s` cannot alias it
         for (std::size_t i = 0; i < used.size(); ++i) {
-            rate_rad_s[i] += state_rad_s;
-            state_rad_s += step_sd_rad_s * used[i];
+            rate_rad_s[i] += walk_rad_s;
+            walk_rad_s += step_sd_rad_s * used[i];
         }
+        state_rad_s = walk_rad_s;
     }
 };
 
