@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -104,13 +105,19 @@ Status check(const Options& options) {
     return check_paths(options);
 }
 
-// "tone (x), bias_step"
+// "nonlinearity (x, z)", "bias_step": entries of one name together.
 std::vector<std::string> effect_names(const SensorModel& model) {
-    std::vector<std::string> names;
+    std::vector<std::pair<std::string, std::vector<std::string>>> found;
     for (const EffectModel& effect : model.effects) {
-        names.push_back(effect.axes.empty()
-                            ? effect.effect
-                            : fmt::format("{} ({})", effect.effect, fmt::join(effect.axes, ", ")));
+        auto entry = std::ranges::find_if(found, [&](const auto& x) { return x.first == effect.effect; });
+        if (entry == found.end()) { entry = found.insert(found.end(), {effect.effect, {}}); }
+        for (const std::string& axis : effect.axes) {
+            if (std::ranges::count(entry->second, axis) == 0) { entry->second.push_back(axis); }
+        }
+    }
+    std::vector<std::string> names;
+    for (const auto& [name, axes] : found) {
+        names.push_back(axes.empty() ? name : fmt::format("{} ({})", name, fmt::join(axes, ", ")));
     }
     return names;
 }
@@ -208,6 +215,12 @@ Json answer(const Options& options, const Story& story, const SimulationOutcome&
     return json;
 }
 
+// The unit itself, once nothing is left that could refuse it.
+Status write_unit(Console& console, const Options& options, const SensorModel& model) {
+    if (options.model_out.empty()) { return {}; }
+    return write_text(console, options.model_out, format_model(model));
+}
+
 ExitCode make_text(Console& console, const Options& options, Story& story) {
     const auto fail = [&](const Error& error) { return report_error(console, "simulate", error); };
     SimulationRequest request;
@@ -229,6 +242,9 @@ ExitCode make_text(Console& console, const Options& options, Story& story) {
     for (const std::string& warning : story.warnings) {
         console.err << "gyrolog simulate: warning: " << warning << '\n';
     }
+    if (const Status written = write_unit(console, options, story.file.model); !written.ok()) {
+        return fail(written.error());
+    }
     const auto outcome = simulate_to_text(console, story.file.model, request, options.output);
     if (!outcome.ok()) { return fail(outcome.error()); }
     tell(console, options, story, *outcome);
@@ -246,6 +262,9 @@ ExitCode make_capture(Console& console, const Options& options, const Story& sto
     auto source = SimSource::create(board, story.file.model,
                                     {std::nullopt, story.duration_s.value_or(duration_without_wish_s)});
     if (!source.ok()) { return report_error(console, "simulate", source.error()); }
+    if (const Status written = write_unit(console, options, story.file.model); !written.ok()) {
+        return report_error(console, "simulate", written.error());
+    }
     CaptureRequest request;
     request.path = options.output;
     request.overwrite = options.force;
@@ -286,10 +305,6 @@ ExitCode simulate(Console& console, const Options& options) {
     if (const auto refusal = simulation_refusal(story.file.model)) {
         return fail({ErrorCode::malformed, "model '" + options.model + "': " + *refusal +
                                                "; `gyrolog simulate --effects` lists what there is"});
-    }
-    if (!options.model_out.empty()) {
-        const Status written = write_text(console, options.model_out, format_model(story.file.model));
-        if (!written.ok()) { return fail(written.error()); }
     }
     return options.makes_capture() ? make_capture(console, options, story)
                                    : make_text(console, options, story);

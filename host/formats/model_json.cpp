@@ -9,9 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "host/base/file_output.hpp"
+#include "host/formats/datasheet_json.hpp"
+#include "host/formats/gyroparams_json.hpp"
+#include "host/formats/json_keys.hpp"
 #include "host/formats/text_file.hpp"
 
 namespace gyrolog {
@@ -19,118 +24,12 @@ namespace gyrolog {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Range = JsonKeys::Range;
+using Keys = JsonKeys;
 
 constexpr const char* schema_name = "gyrolog-model/1";
-constexpr int nesting_max = 32;
 constexpr double standard_gravity_m_s2 = 9.80665;
 constexpr double percent = 0.01;
-
-enum class Range { any, not_negative, positive };
-
-// Reads the keys of one JSON object. The first thing that is wrong is kept, with the key's full name; later
-// reads then return defaults. Keys that nobody asked for are left over.
-class Keys {
-public:
-    Keys(const Json& object, std::string path, std::optional<std::string>& problem)
-        : object_(&object), path_(std::move(path)), problem_(&problem) {
-        if (!object.is_object()) { fail(path_, "is not an object"); }
-    }
-
-    const Json* find(const std::string& key) {
-        known_.insert(key);
-        if (!object_->is_object()) { return nullptr; }
-        const auto found = object_->find(key);
-        return found == object_->end() ? nullptr : &*found;
-    }
-    const Json& need(const std::string& key) {
-        static const Json nothing;
-        const Json* found = find(key);
-        if (found == nullptr) { fail(name(key), "is missing"); }
-        return found == nullptr ? nothing : *found;
-    }
-
-    double number(const std::string& key, Range range) { return number_in(need(key), name(key), range); }
-    double number_or(const std::string& key, Range range, double otherwise) {
-        const Json* found = find(key);
-        return found == nullptr ? otherwise : number_in(*found, name(key), range);
-    }
-    std::string text(const std::string& key) { return text_in(need(key), name(key)); }
-    template <std::size_t size>
-    std::array<double, size> numbers(const Json& value, const std::string& where) {
-        std::array<double, size> list{};
-        if (!value.is_array() || value.size() != size) {
-            fail(where, "is not a list of " + std::to_string(size) + " numbers");
-            return list;
-        }
-        for (std::size_t i = 0; i < size; ++i) {
-            list[i] = number_in(value[i], where + "[" + std::to_string(i) + "]", Range::any);
-        }
-        return list;
-    }
-    Matrix3 matrix(const std::string& key) {
-        Matrix3 rows = identity_matrix;
-        const Json& value = need(key);
-        if (!value.is_array() || value.size() != 3) {
-            fail(name(key), "is not a 3x3 matrix");
-            return rows;
-        }
-        for (std::size_t i = 0; i < 3; ++i) {
-            rows[i] = numbers<3>(value[i], name(key) + "[" + std::to_string(i) + "]");
-        }
-        return rows;
-    }
-    // An object of numbers; empty when `value` is null (already complained of, or not there).
-    std::map<std::string, double> uncertainties(const Json& value, const std::string& key) {
-        std::map<std::string, double> numbers;
-        if (!value.is_object()) {
-            fail(name(key), "is not an object");
-            return numbers;
-        }
-        for (const auto& item : value.items()) {
-            numbers[item.key()] = number_in(item.value(), name(key) + "." + item.key(), Range::not_negative);
-        }
-        return numbers;
-    }
-
-    double number_in(const Json& value, const std::string& where, Range range) {
-        if (!value.is_number()) {
-            fail(where, "is not a finite number");
-            return 0.0;
-        }
-        const auto number = value.get<double>();
-        if (!std::isfinite(number)) { fail(where, "is not a finite number"); }
-        if (range == Range::not_negative && number < 0.0) { fail(where, "is negative"); }
-        if (range == Range::positive && number <= 0.0) { fail(where, "is not above zero"); }
-        return number;
-    }
-    std::string text_in(const Json& value, const std::string& where) {
-        if (value.is_string()) { return value.get<std::string>(); }
-        fail(where, "is not text");
-        return {};
-    }
-
-    std::string name(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
-    void fail(const std::string& where, const std::string& what) {
-        if (!*problem_) { *problem_ = where + " " + what; }
-    }
-    Keys inside(const Json& object, const std::string& key) const { return {object, name(key), *problem_}; }
-
-    // What was not asked for, as an object.
-    Json left_over() const {
-        Json rest = Json::object();
-        if (!object_->is_object()) { return rest; }
-        for (const auto& item : object_->items()) {
-            if (!known_.contains(item.key())) { rest[item.key()] = item.value(); }
-        }
-        return rest;
-    }
-
-private:
-    const Json* object_;
-    std::string path_;
-    std::optional<std::string>* problem_;
-    std::set<std::string> known_;
-};
 
 void carry(Json& carried, const std::string& key, Json rest) {
     if (!rest.empty()) { carried[key] = std::move(rest); }
@@ -258,52 +157,6 @@ SensorModel read_document(const Json& document, std::optional<std::string>& prob
     return model;
 }
 
-std::optional<Json> parse(std::string_view text, bool& too_deep) {
-    const auto watch = [&](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
-        if (depth > nesting_max) { too_deep = true; }
-        return !too_deep;
-    };
-    Json document = Json::parse(text, watch, false);
-    if (document.is_discarded() || too_deep) { return std::nullopt; }
-    return document;
-}
-
-// JSON has no NaN, no infinity and no 1e999, but programs write them. Put in quotes they parse, and the error
-// can name the key that holds one.
-std::string quote_non_finite(std::string_view text) {
-    std::string quoted;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size();) {
-        const char c = text[i];
-        if (in_string || c == '"') {
-            const bool escaped = in_string && c == '\\' && i + 1 < text.size();
-            if (c == '"') { in_string = !in_string; }
-            quoted.append(text.substr(i, escaped ? 2 : 1));
-            i += escaped ? 2 : 1;
-            continue;
-        }
-        const std::size_t end = std::min(text.find_first_of(" \t\r\n,:[]{}\"", i), text.size());
-        const std::string_view token = text.substr(i, end - i);
-        if (token.empty()) {
-            quoted.push_back(c);
-            ++i;
-            continue;
-        }
-        double value = 0.0;
-        const auto result = std::from_chars(token.data(), token.data() + token.size(), value);
-        const bool whole = result.ptr == token.data() + token.size();
-        const bool overflow = result.ec == std::errc::result_out_of_range;
-        const bool named = token == "NaN" || token == "Infinity" || token == "-Infinity";
-        if (named || (whole && (overflow || !std::isfinite(value)))) {
-            quoted.append("\"").append(token).append("\"");
-        } else {
-            quoted.append(token);
-        }
-        i = end;
-    }
-    return quoted;
-}
-
 // The value in a unit of so many SI units, with the fewest digits that come back as the same SI value.
 double in_unit(double si, double unit) {
     const double exact = si / unit;
@@ -349,6 +202,15 @@ Json format_axis(const AxisModel& axis) {
     return json;
 }
 
+// The unit is the seed's; what the sheet does not give is said.
+ModelFile draw_from(const Datasheet& sheet, std::uint64_t seed) {
+    DrawnUnit unit = draw_unit(sheet, seed);
+    std::vector<std::string> notes = {fmt::format("a unit drawn from the data sheet{}{} by seed {}",
+                                                  sheet.sensor.empty() ? "" : " of ", sheet.sensor, seed)};
+    notes.insert(notes.end(), unit.notes.begin(), unit.notes.end());
+    return {std::move(unit.model), std::move(notes)};
+}
+
 // Puts back what was carried: objects are merged, everything else is the carried value.
 void put_back(Json& to, const Json& carried) {
     for (const auto& item : carried.items()) {
@@ -367,29 +229,31 @@ void put_back(Json& to, const std::string& carried_json) {
 
 }  // namespace
 
-Result<SensorModel> parse_model(std::string_view text, const std::string& name) {
-    const auto malformed = [&](const std::string& why) {
-        return Error{ErrorCode::malformed, "model '" + name + "': " + why};
-    };
-    bool too_deep = false;
-    std::optional<Json> document = parse(text, too_deep);
-    const bool plain = document.has_value();
-    if (!plain && !too_deep) { document = parse(quote_non_finite(text), too_deep); }
-    if (too_deep) { return malformed("nested more than " + std::to_string(nesting_max) + " deep"); }
-    if (!document || !document->is_object()) { return malformed("not a JSON object"); }
-
-    const auto schema = document->find("schema");
-    if (schema == document->end()) { return malformed("schema is missing"); }
-    if (!schema->is_string()) { return malformed("schema is not text"); }
-    if (*schema != schema_name) {
-        return Error{ErrorCode::unsupported, "model '" + name + "': schema is '" +
-                                                 schema->get<std::string>() + "', not '" + schema_name + "'"};
-    }
+Result<ModelFile> parse_model_file(std::string_view text, const std::string& name, std::uint64_t seed) {
+    GYROLOG_TRY(const JsonDocument document, parse_json_document(text, name));
+    const auto schema = document.json["schema"].get<std::string>();
     std::optional<std::string> problem;
-    SensorModel model = read_document(*document, problem);
-    if (problem) { return malformed(*problem); }
-    if (!plain) { return malformed("holds a number that is not finite"); }
-    return model;
+    ModelFile file;
+    if (schema == schema_name) {
+        file.model = read_document(document.json, problem);
+    } else if (schema == datasheet_schema) {
+        const Datasheet sheet = read_datasheet(document.json, problem);
+        if (!problem) { file = draw_from(sheet, seed); }
+    } else if (schema == gyroparams_schema) {
+        file.model = read_gyroparams(document.json, problem, file.notes);
+    } else {
+        return Error{ErrorCode::unsupported,
+                     fmt::format("model '{}': schema is '{}', not '{}' (or '{}', '{}')", name, schema,
+                                 schema_name, datasheet_schema, gyroparams_schema)};
+    }
+    if (!problem && !document.plain) { problem = "holds a number that is not finite"; }
+    if (problem) { return Error{ErrorCode::malformed, "model '" + name + "': " + *problem}; }
+    return file;
+}
+
+Result<SensorModel> parse_model(std::string_view text, const std::string& name, std::uint64_t seed) {
+    GYROLOG_TRY(ModelFile file, parse_model_file(text, name, seed));
+    return std::move(file.model);
 }
 
 std::string format_model(const SensorModel& model) {
@@ -438,16 +302,13 @@ Result<SensorModel> read_model(const std::string& path, std::uint64_t seed) {
     return std::move(file.model);
 }
 
-Result<ModelFile> read_model_file(const std::string& path, std::uint64_t /*seed*/) {
+Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed) {
     auto reader = TextReader::open(path);
     std::string text;
     while (reader.ok()) {
         const auto piece = reader->read();
         if (!piece.ok()) { return in_context("read model '" + path + "'", piece.error()); }
-        if (piece->empty()) {
-            GYROLOG_TRY(SensorModel model, parse_model(text, path));
-            return ModelFile{std::move(model), {}};
-        }
+        if (piece->empty()) { return parse_model_file(text, path, seed); }
         text.append(*piece);
     }
     return in_context("read model '" + path + "'", reader.error());

@@ -1,4 +1,4 @@
-// Sensor models as JSON files, schema gyrolog-model/1.
+// Sensor models as JSON files, schema gyrolog-model/1, and what else a model can be read from.
 //
 // In the file angles are degrees and acceleration is g; in SensorModel everything is SI. Numbers read and
 // written back unchanged are the same text value: each is written with the fewest digits that give back the
@@ -15,21 +15,24 @@
 
 namespace gyrolog {
 
-// `name` is what errors call the text: the file's path.
-// Errors: `malformed` for text that is no JSON, a missing needed key, a wrong type, a number that is not
-// finite or out of its range, each naming the key; `unsupported` for another schema.
-Result<SensorModel> parse_model(std::string_view text, const std::string& name);
-std::string format_model(const SensorModel& model);
-
 // A model file with what a person should know about it.
 struct ModelFile {
     SensorModel model;
     std::vector<std::string> notes;
 };
 
+// A gyrolog-model/1; a data sheet (datasheet_json.hpp), from which `seed` draws a unit; or gyroparams
+// (gyroparams_json.hpp). `name` is what errors call the text: the file's path.
+// Errors: `malformed` for text that is no JSON, a missing needed key, a wrong type, a number that is not
+// finite or out of its range, each naming the key; `unsupported` for another schema.
+Result<ModelFile> parse_model_file(std::string_view text, const std::string& name, std::uint64_t seed);
+Result<SensorModel> parse_model(std::string_view text, const std::string& name, std::uint64_t seed = 1);
+// Always as gyrolog-model/1.
+std::string format_model(const SensorModel& model);
+
 // Also `not_found`, `permission_denied`, `failed` as the file system has it; writing replaces the file.
-Result<SensorModel> read_model(const std::string& path, std::uint64_t seed = 1);
 Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed);
+Result<SensorModel> read_model(const std::string& path, std::uint64_t seed = 1);
 Status write_model(const SensorModel& model, const std::string& path);
 
 }  // namespace gyrolog

@@ -40,7 +40,7 @@ Opened open_simulated(const SourceUri& uri, const SourceLimit& limit, bool real_
     options.realtime = options.realtime || real_time;
     SensorModel model = typical_mpu9250();
     if (!options.model_path.empty()) {
-        auto read = read_model(options.model_path);
+        auto read = read_model(options.model_path, options.seed);
         if (!read.ok()) { return file_error(std::move(read).error()); }
         model = std::move(read).value();
     }

@@ -1,0 +1,169 @@
+#include "host/formats/json_keys.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace gyrolog {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int nesting_max = 32;
+
+std::optional<Json> parse(std::string_view text, bool& too_deep) {
+    const auto watch = [&](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
+        if (depth > nesting_max) { too_deep = true; }
+        return !too_deep;
+    };
+    Json document = Json::parse(text, watch, false);
+    if (document.is_discarded() || too_deep) { return std::nullopt; }
+    return document;
+}
+
+// JSON has no NaN, no infinity and no 1e999, but programs write them. Put in quotes they parse, and the error
+// can name the key that holds one.
+std::string quote_non_finite(std::string_view text) {
+    std::string quoted;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size();) {
+        const char c = text[i];
+        if (in_string || c == '"') {
+            const bool escaped = in_string && c == '\\' && i + 1 < text.size();
+            if (c == '"') { in_string = !in_string; }
+            quoted.append(text.substr(i, escaped ? 2 : 1));
+            i += escaped ? 2 : 1;
+            continue;
+        }
+        const std::size_t end = std::min(text.find_first_of(" \t\r\n,:[]{}\"", i), text.size());
+        const std::string_view token = text.substr(i, end - i);
+        if (token.empty()) {
+            quoted.push_back(c);
+            ++i;
+            continue;
+        }
+        double value = 0.0;
+        const auto result = std::from_chars(token.data(), token.data() + token.size(), value);
+        const bool whole = result.ptr == token.data() + token.size();
+        const bool overflow = result.ec == std::errc::result_out_of_range;
+        const bool named = token == "NaN" || token == "Infinity" || token == "-Infinity";
+        if (named || (whole && (overflow || !std::isfinite(value)))) {
+            quoted.append("\"").append(token).append("\"");
+        } else {
+            quoted.append(token);
+        }
+        i = end;
+    }
+    return quoted;
+}
+
+}  // namespace
+
+Result<JsonDocument> parse_json_document(std::string_view text, const std::string& name) {
+    const auto malformed = [&](const std::string& why) {
+        return Error{ErrorCode::malformed, "model '" + name + "': " + why};
+    };
+    bool too_deep = false;
+    std::optional<Json> document = parse(text, too_deep);
+    const bool plain = document.has_value();
+    if (!plain && !too_deep) { document = parse(quote_non_finite(text), too_deep); }
+    if (too_deep) { return malformed("nested more than " + std::to_string(nesting_max) + " deep"); }
+    if (!document || !document->is_object()) { return malformed("not a JSON object"); }
+    const auto schema = document->find("schema");
+    if (schema == document->end()) { return malformed("schema is missing"); }
+    if (!schema->is_string()) { return malformed("schema is not text"); }
+    return JsonDocument{std::move(*document), plain};
+}
+
+JsonKeys::JsonKeys(const Json& object, std::string path, std::optional<std::string>& problem)
+    : object_(&object), path_(std::move(path)), problem_(&problem) {
+    if (!object.is_object()) { fail(path_, "is not an object"); }
+}
+
+const Json* JsonKeys::find(const std::string& key) {
+    known_.insert(key);
+    if (!object_->is_object()) { return nullptr; }
+    const auto found = object_->find(key);
+    return found == object_->end() ? nullptr : &*found;
+}
+
+const Json& JsonKeys::need(const std::string& key) {
+    static const Json nothing;
+    const Json* found = find(key);
+    if (found == nullptr) { fail(name(key), "is missing"); }
+    return found == nullptr ? nothing : *found;
+}
+
+double JsonKeys::number_or(const std::string& key, Range range, double otherwise) {
+    return optional_number(key, range).value_or(otherwise);
+}
+
+std::optional<double> JsonKeys::optional_number(const std::string& key, Range range) {
+    const Json* found = find(key);
+    if (found == nullptr) { return std::nullopt; }
+    return number_in(*found, name(key), range);
+}
+
+Matrix3 JsonKeys::matrix_in(const Json& value, const std::string& where) {
+    Matrix3 rows = identity_matrix;
+    if (!value.is_array() || value.size() != 3) {
+        fail(where, "is not a 3x3 matrix");
+        return rows;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        rows[i] = numbers<3>(value[i], where + "[" + std::to_string(i) + "]");
+    }
+    return rows;
+}
+
+std::map<std::string, double> JsonKeys::uncertainties(const Json& value, const std::string& key) {
+    std::map<std::string, double> numbers;
+    if (!value.is_object()) {
+        fail(name(key), "is not an object");
+        return numbers;
+    }
+    for (const auto& item : value.items()) {
+        numbers[item.key()] = number_in(item.value(), name(key) + "." + item.key(), Range::not_negative);
+    }
+    return numbers;
+}
+
+double JsonKeys::number_in(const Json& value, const std::string& where, Range range) {
+    if (!value.is_number()) {
+        fail(where, "is not a finite number");
+        return 0.0;
+    }
+    const auto number = value.get<double>();
+    if (!std::isfinite(number)) { fail(where, "is not a finite number"); }
+    if (range == Range::not_negative && number < 0.0) { fail(where, "is negative"); }
+    if (range == Range::positive && number <= 0.0) { fail(where, "is not above zero"); }
+    return number;
+}
+
+std::string JsonKeys::text_in(const Json& value, const std::string& where) {
+    if (value.is_string()) { return value.get<std::string>(); }
+    fail(where, "is not text");
+    return {};
+}
+
+void JsonKeys::fail(const std::string& where, const std::string& what) {
+    if (!*problem_) { *problem_ = where + " " + what; }
+}
+
+Json JsonKeys::left_over() const {
+    Json rest = Json::object();
+    if (!object_->is_object()) { return rest; }
+    for (const auto& item : object_->items()) {
+        if (!known_.contains(item.key())) { rest[item.key()] = item.value(); }
+    }
+    return rest;
+}
+
+void JsonKeys::refuse_left_over() {
+    const Json rest = left_over();
+    if (!rest.empty()) { fail(name(rest.begin().key()), "is no key of this schema"); }
+}
+
+}  // namespace gyrolog
