@@ -1,0 +1,366 @@
+// The effects on noise over many seeds: each has the spectrum, distribution and correlation of its
+// definition.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/students_t.hpp>
+
+#include "tests/analysis/simulate/periodogram.hpp"
+#include "tests/analysis/simulate/simulated.hpp"
+
+namespace gyrolog {
+namespace {
+
+using Samples = std::vector<double>;
+
+// In deg/s, and only the rates.
+std::array<Samples, 3> rates_dps(const SensorModel& model, double rate_hz, std::uint64_t seed,
+                                 std::size_t blocks, std::shared_ptr<const World> world = nullptr) {
+    std::array<Samples, 3> axes;
+    SensorSimulator simulator(model, rate_hz, seed, std::move(world));
+    for (std::size_t i = 0; i < blocks; ++i) {
+        const SampleBlock& block = simulator.next_block();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (const double rate_rad_s : block.rate_rad_s[axis]) {
+                axes[axis].push_back(rate_rad_s * deg_per_rad);
+            }
+        }
+    }
+    return axes;
+}
+
+// expected(nu): two-sided, at nu cycles a sample, dps^2 per (cycle/sample). From bin `from_bin` on.
+template <typename Expected>
+void expect_spectrum(const SensorModel& model, double rate_hz, std::size_t from_bin, double model_error,
+                     Expected expected) {
+    constexpr unsigned seeds = 20;
+    SpectrumAverage spectrum(16 * block_samples);
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+        for (const Samples& axis : rates_dps(model, rate_hz, seed, 16)) { spectrum.add(axis); }
+    }
+    for (const OctaveRatio& octave : octave_ratios(spectrum, expected)) {
+        if (octave.from_nu * static_cast<double>(spectrum.length()) < static_cast<double>(from_bin)) {
+            continue;
+        }
+        EXPECT_NEAR(octave.ratio, 1.0, model_error + 4.0 * octave.sd)
+            << "from " << octave.from_nu * rate_hz << " Hz";
+    }
+}
+
+double lagged_product(const Samples& x, std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i + lag < x.size(); ++i) { sum += x[i] * x[i + lag]; }
+    return sum / static_cast<double>(x.size() - lag);
+}
+
+// Greatest distance of the sample's distribution from cdf, in units in which 1.95 is passed once in a
+// thousand times and 2.23 once in ten thousand.
+template <typename Cdf>
+double kolmogorov_distance(Samples x, Cdf cdf) {
+    std::ranges::sort(x);
+    const auto n = static_cast<double>(x.size());
+    double distance = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double p = cdf(x[i]);
+        distance = std::max({distance, p - static_cast<double>(i) / n, static_cast<double>(i + 1) / n - p});
+    }
+    return distance * std::sqrt(n);
+}
+
+constexpr double kolmogorov_limit = 2.23;
+
+TEST(FlickerMissing, AddsItsSpectrumToTheModelsOwnAsAnotherNoise) {
+    SensorModel model = with_effect(ideal_model(), "flicker_missing", {{"B_dps", 0.4}});
+    for (AxisModel& axis : model.axes) { axis.noise.B_rad_per_s = 0.3 * rad_per_deg; }
+    // Added as the same noise the two would have 0.49 in place of 0.25.
+    expect_spectrum(model, 100.0, 2, 0.037, [](double nu) { return 0.25 / (2.0 * pi * nu); });
+}
+
+TEST(RrwMissing, AddsARandomWalkWhoseStepsAreIndependentAtEveryRate) {
+    SensorModel model = with_effect(ideal_model(), "rrw_missing", {{"K_dps_sqrt_hz", 0.4}});
+    for (AxisModel& axis : model.axes) { axis.noise.K_rad_per_s_sqrt_s = 0.3 * rad_per_deg; }
+    for (const double rate_hz : {10.0, 100.0, 1000.0, 8000.0}) {
+        double variance = 0.0;
+        double neighbours = 0.0;
+        for (const Samples& walk : rates_dps(model, rate_hz, 5, 100)) {
+            Samples steps(walk.size() - 1);
+            for (std::size_t i = 0; i < steps.size(); ++i) { steps[i] = walk[i + 1] - walk[i]; }
+            variance += lagged_product(steps, 0) / 3.0;
+            neighbours += lagged_product(steps, 1) / 3.0;
+        }
+        const double n = 3.0 * 100.0 * block_samples;
+        EXPECT_NEAR(variance * rate_hz, 0.25, 0.25 * 4.0 * std::sqrt(2.0 / n)) << rate_hz;
+        EXPECT_NEAR(neighbours * rate_hz, 0.0, 0.25 * 4.0 / std::sqrt(n)) << rate_hz;
+    }
+}
+
+TEST(AngleNoise, HasTheSpectrumOfADifferenceAndItsFullVarianceFromTheFirstSample) {
+    constexpr double rate_hz = 100.0;
+    constexpr double Q_dps_s = 0.01;
+    const SensorModel model = with_effect(ideal_model(), "angle_noise", {{"Q_dps_s", Q_dps_s}});
+    // The window smears the steep start: by 1 / (12 bin^2) of the spectrum's curvature, 0.5 % at bin 8.
+    expect_spectrum(model, rate_hz, 8, 0.005,
+                    [](double nu) { return std::pow(2.0 * Q_dps_s * rate_hz * std::sin(pi * nu), 2); });
+    double first = 0.0;
+    constexpr unsigned seeds = 1000;
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+        for (const Samples& axis : rates_dps(model, rate_hz, seed, 1)) {
+            first += axis[0] * axis[0] / (3.0 * seeds);
+        }
+    }
+    EXPECT_NEAR(first / (2.0 * Q_dps_s * Q_dps_s * rate_hz * rate_hz), 1.0,
+                4.0 * std::sqrt(2.0 / (3.0 * seeds)));
+}
+
+// What a telegraph's parameters say about its samples.
+struct TelegraphLaw {
+    double dwell_high_s;
+    double dwell_low_s;
+    double rate_hz;
+
+    double high_share() const { return dwell_high_s / (dwell_high_s + dwell_low_s); }
+    double forgetting_per_s() const { return 1.0 / dwell_high_s + 1.0 / dwell_low_s; }
+    // From one sample to the next.
+    double correlation() const { return std::exp(-forgetting_per_s() / rate_hz); }
+    // For a distance of 1.
+    double variance() const { return high_share() * (1.0 - high_share()); }
+
+    SensorModel model() const {
+        return with_effect(
+            ideal_model(), "rtn",
+            {{"amplitude_dps", 1.0}, {"dwell_high_s", dwell_high_s}, {"dwell_low_s", dwell_low_s}});
+    }
+};
+
+class TelegraphAt : public testing::TestWithParam<TelegraphLaw> {};
+INSTANTIATE_TEST_SUITE_P(Telegraphs, TelegraphAt,
+                         testing::Values(TelegraphLaw{0.4, 1.1, 100.0}, TelegraphLaw{2.0, 0.5, 10.0},
+                                         TelegraphLaw{0.05, 0.05, 1000.0},
+                                         TelegraphLaw{0.004, 0.012, 100.0}));
+
+TEST_P(TelegraphAt, IsInEachStateForItsShareOfTheTime) {
+    const TelegraphLaw law = GetParam();
+    double high = 0.0;
+    double n = 0.0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        for (const Samples& axis : rates_dps(law.model(), law.rate_hz, seed, 32)) {
+            high += static_cast<double>(std::ranges::count_if(axis, [](double x) { return x > 0.0; }));
+            n += static_cast<double>(axis.size());
+        }
+    }
+    const double independent = n * (1.0 - law.correlation()) / (1.0 + law.correlation());
+    EXPECT_NEAR(high / n, law.high_share(), 4.0 * std::sqrt(law.variance() / independent));
+}
+
+TEST_P(TelegraphAt, StartsInEitherStateAsOftenAsItIsThere) {
+    const TelegraphLaw law = GetParam();
+    constexpr double seeds = 2000.0;
+    double first = 0.0;
+    double last = 0.0;
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+        const auto axes = rates_dps(law.model(), law.rate_hz, seed, 1);
+        for (const Samples& axis : axes) {
+            first += static_cast<double>(axis.front() > 0.0) / (3.0 * seeds);
+            last += static_cast<double>(axis.back() > 0.0) / (3.0 * seeds);
+        }
+    }
+    const double sd = std::sqrt(law.variance() / (3.0 * seeds));
+    EXPECT_NEAR(first, law.high_share(), 4.0 * sd);
+    EXPECT_NEAR(last, law.high_share(), 4.0 * sd);
+}
+
+TEST_P(TelegraphAt, DwellsForExponentialTimes) {
+    const TelegraphLaw law = GetParam();
+    // Sampled, an exponential dwell lasts a geometric number of samples. P(leaves within one sample):
+    const double forgotten = 1.0 - law.correlation();
+    const double leave_high = (1.0 - law.high_share()) * forgotten;
+    const double leave_low = law.high_share() * forgotten;
+    std::array<Samples, 2> dwells;  // high, low
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        for (const Samples& axis : rates_dps(law.model(), law.rate_hz, seed, 32)) {
+            std::size_t since = 0;  // the first dwell and the last one are cut: left out
+            for (std::size_t i = 1; i < axis.size(); ++i) {
+                if (axis[i] == axis[i - 1]) { continue; }
+                if (since != 0) {
+                    dwells[axis[i - 1] > 0.0 ? 0 : 1].push_back(static_cast<double>(i - since));
+                }
+                since = i;
+            }
+        }
+    }
+    for (const auto& [lengths, leave] : {std::pair(dwells[0], leave_high), std::pair(dwells[1], leave_low)}) {
+        const auto n = static_cast<double>(lengths.size());
+        ASSERT_GT(n, 400.0);
+        const double mean = std::accumulate(lengths.begin(), lengths.end(), 0.0) / n;
+        EXPECT_NEAR(mean * leave, 1.0, 4.0 * std::sqrt((1.0 - leave) / n));
+        // Chi-square over classes of at least an eighth of the probability each.
+        double chi_square = 0.0;
+        double degrees = -1.0;
+        double from = 0.0;
+        while (std::pow(1.0 - leave, from) * n > 20.0) {
+            double to = from + 1.0;
+            const double at_from = std::pow(1.0 - leave, from);
+            while (at_from - std::pow(1.0 - leave, to) < 0.125 && std::pow(1.0 - leave, to) * n > 20.0) {
+                to += 1.0;
+            }
+            const bool last = std::pow(1.0 - leave, to) * n <= 20.0;
+            const double expected = n * (last ? at_from : at_from - std::pow(1.0 - leave, to));
+            const auto seen = static_cast<double>(std::ranges::count_if(
+                lengths, [&](double length) { return length > from && (last || length <= to); }));
+            chi_square += (seen - expected) * (seen - expected) / expected;
+            degrees += 1.0;
+            from = to;
+        }
+        ASSERT_GT(degrees, 0.0);
+        EXPECT_LT(chi_square, chi_square_limit(degrees)) << degrees << " degrees of freedom";
+    }
+}
+
+TEST_P(TelegraphAt, HasALorentzianSpectrumFoldedAtHalfTheRate) {
+    const TelegraphLaw law = GetParam();
+    const double r = law.correlation();
+    // Two levels are not Gaussian: slow telegraphs' periodograms scatter a little more.
+    expect_spectrum(law.model(), law.rate_hz, 2, 0.03, [&](double nu) {
+        return law.variance() * (1.0 - r * r) / (1.0 - 2.0 * r * std::cos(2.0 * pi * nu) + r * r);
+    });
+}
+
+TEST(Telegraph, AxesSwitchIndependently) {
+    const TelegraphLaw law{0.05, 0.05, 100.0};
+    double product = 0.0;
+    double n = 0.0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const auto axes = rates_dps(law.model(), law.rate_hz, seed, 16);
+        for (std::size_t i = 0; i < axes[0].size(); ++i) {
+            product += axes[0][i] * axes[1][i] + axes[1][i] * axes[2][i] + axes[2][i] * axes[0][i];
+            n += 3.0;
+        }
+    }
+    const double r2 = law.correlation() * law.correlation();
+    const double independent = n * (1.0 - r2) / (1.0 + r2);
+    EXPECT_NEAR(product / n, 0.0, 4.0 * law.variance() / std::sqrt(independent));
+}
+
+class HeavyTailOf : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Degrees, HeavyTailOf, testing::Values(2.5, 3.5, 5.0, 12.0, 150.0));
+
+TEST_P(HeavyTailOf, IsStudentsTOfTheModelsVariance) {
+    const double nu = GetParam();
+    constexpr double rate_hz = 100.0;
+    constexpr double N_dps = 0.01;
+    const SensorModel model = with_effect(white_model(N_dps * rad_per_deg), "heavy_tail", {{"nu", nu}});
+    const double unit_dps = N_dps * std::sqrt(rate_hz) * std::sqrt((nu - 2.0) / nu);
+    const boost::math::students_t student(nu);
+    for (const Samples& axis : rates_dps(model, rate_hz, 11, 30)) {
+        EXPECT_LT(
+            kolmogorov_distance(axis, [&](double x) { return boost::math::cdf(student, x / unit_dps); }),
+            kolmogorov_limit);
+        // The tails, where that distance sees nothing.
+        for (const double p : {1e-3, 1e-4}) {
+            const double beyond = unit_dps * boost::math::quantile(boost::math::complement(student, 0.5 * p));
+            const auto seen = static_cast<double>(
+                std::ranges::count_if(axis, [&](double x) { return std::fabs(x) > beyond; }));
+            const double expected = p * static_cast<double>(axis.size());
+            EXPECT_NEAR(seen, expected, 4.0 * std::sqrt(expected)) << "p = " << p;
+        }
+    }
+}
+
+TEST(HeavyTail, HasTheVarianceAndTheKurtosisOfItsDegreesOfFreedom) {
+    constexpr double nu = 12.0;
+    constexpr double rate_hz = 100.0;
+    const SensorModel model = with_effect(white_model(0.1 * rad_per_deg), "heavy_tail", {{"nu", nu}});
+    double second = 0.0;
+    double fourth = 0.0;
+    double n = 0.0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        for (const Samples& axis : rates_dps(model, rate_hz, seed, 100)) {
+            for (const double x : axis) {
+                second += x * x;
+                fourth += x * x * x * x;
+            }
+            n += static_cast<double>(axis.size());
+        }
+    }
+    // Moments of t about zero, in units of its variance: E4 = 3 (nu-2)/(nu-4) and
+    // E8 = 105 (nu-2)^3/((nu-4)(nu-6)(nu-8)).
+    constexpr double E4 = 3.0 * 10.0 / 8.0;
+    constexpr double E8 = 105.0 * 1000.0 / (8.0 * 6.0 * 4.0);
+    EXPECT_NEAR(second / n, 1.0, 4.0 * std::sqrt((E4 - 1.0) / n));
+    EXPECT_NEAR(fourth / n, 3.0 + 6.0 / (nu - 4.0), 4.0 * std::sqrt((E8 - E4 * E4) / n));
+}
+
+TEST(HeavyTail, IsWhite) {
+    const SensorModel model = with_effect(white_model(0.1 * rad_per_deg), "heavy_tail", {{"nu", 6.0}});
+    expect_spectrum(model, 100.0, 2, 0.0, [](double) { return 1.0; });
+    const Samples x = rates_dps(model, 100.0, 1, 200)[0];
+    for (const std::size_t lag : {1U, 2U, 3U, 4U, 1024U}) {
+        EXPECT_NEAR(lagged_product(x, lag), 0.0, 4.0 / std::sqrt(static_cast<double>(x.size() - lag))) << lag;
+    }
+}
+
+TEST(CommonMode, CorrelatesTheAxesByItsShareOfTheirNoise) {
+    constexpr double rate_hz = 100.0;
+    SensorModel model = with_effect(white_model(0.006 * rad_per_deg), "common_mode",
+                                    {{"N_dps_per_sqrt_hz", 0.005}, {"gain_y", 0.6}, {"gain_z", -0.8}});
+    const Vector3 gains = {1.0, 0.6, -0.8};
+    const auto axes = rates_dps(model, rate_hz, 2, 200);
+    const auto n = static_cast<double>(axes[0].size());
+    for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t b = a; b < 3; ++b) {
+            double product = 0.0;
+            for (std::size_t i = 0; i < axes[a].size(); ++i) { product += axes[a][i] * axes[b][i] / n; }
+            const double common = 25e-6 * gains[a] * gains[b] * rate_hz;
+            const auto variance = [&](std::size_t axis) {
+                return (36e-6 + 25e-6 * gains[axis] * gains[axis]) * rate_hz;
+            };
+            const double expected = a == b ? variance(a) : common;
+            // Isserlis: var(xy) = var(x) var(y) + cov(x, y)^2.
+            const double sd = std::sqrt((variance(a) * variance(b) + expected * expected) / n);
+            EXPECT_NEAR(product, expected, 4.0 * sd) << a << " " << b;
+        }
+    }
+}
+
+TEST(TemperatureEffects, ARegressionFindsTheSlopeWithinItsStandardError) {
+    constexpr double rate_hz = 10.0;
+    constexpr double slope_dps_per_C = 0.002;
+    constexpr double N_dps = 0.02;
+    const auto world = std::make_shared<FormulaWorld>();
+    world->temperature_C = [](double t_s) { return 25.0 + 10.0 * triangle(t_s / 50.0); };
+    const SensorModel model =
+        with_effect(white_model(N_dps * rad_per_deg), "temp_linear", {{"c1_dps_per_C", slope_dps_per_C}});
+    double chi_square = 0.0;
+    constexpr unsigned seeds = 100;
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+        const Simulated out = simulate(model, rate_hz, seed, 1, world);
+        for (const Samples& rate_rad_s : out.rate_rad_s) {
+            double C = 0.0;
+            double CC = 0.0;
+            double y = 0.0;
+            double Cy = 0.0;
+            const auto n = static_cast<double>(out.size());
+            for (std::size_t i = 0; i < out.size(); ++i) {
+                const double above_C = out.die_C[i] - 25.0;
+                C += above_C;
+                CC += above_C * above_C;
+                y += rate_rad_s[i] * deg_per_rad;
+                Cy += above_C * rate_rad_s[i] * deg_per_rad;
+            }
+            const double spread = CC - C * C / n;
+            const double found = (Cy - C * y / n) / spread;
+            const double standard_error = N_dps * std::sqrt(rate_hz / spread);
+            chi_square += std::pow((found - slope_dps_per_C) / standard_error, 2);
+        }
+    }
+    EXPECT_LT(chi_square, chi_square_limit(3.0 * seeds));
+    EXPECT_GT(chi_square, 3.0 * seeds - 4.0 * std::sqrt(2.0 * 3.0 * seeds));
+}
+
+}  // namespace
+}  // namespace gyrolog
