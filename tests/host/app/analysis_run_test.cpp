@@ -1,4 +1,6 @@
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -77,6 +79,55 @@ TEST_F(AnalyzeCommand, TimingNamesEveryStageOnStandardErrorOnRequest) {
         EXPECT_NE(every_m_.err.find(std::string("\n") + stage), std::string::npos) << stage << every_m_.err;
     }
     EXPECT_EQ(usual_.err.find("together"), std::string::npos) << usual_.err;
+}
+
+std::string write_text_recording(const TemporaryFolder& folder, const std::string& gyro_columns) {
+    std::string path = folder.path("run.csv");
+    std::ofstream text(path);
+    text << "t_s," << gyro_columns << '\n';
+    unsigned state = 1;
+    for (int i = 0; i < 500; ++i) {
+        state = state * 1664525U + 1013904223U;
+        text << i / 100.0 << ',' << (state >> 16) % 1000 << ',' << (state >> 20) % 1000 << '\n';
+    }
+    return path;
+}
+
+struct CommandResult {
+    ExitCode exit_code = ExitCode::ok;
+    std::string out;
+    std::string err;
+};
+
+CommandResult run(std::vector<std::string> arguments) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const ExitCode exit_code = run_command_line(std::move(arguments), {out, err});
+    return {exit_code, out.str(), err.str()};
+}
+
+TEST(AnalyzeFiles, AModelOfAnArrayOfGyrosIsRefused) {
+    const TemporaryFolder folder;
+    const std::string model = folder.path("model.json");
+    const CommandResult result =
+        run({"analyze", write_text_recording(folder, "gx2_dps,gx3_dps"), "--model", model});
+    EXPECT_EQ(result.exit_code, ExitCode::usage);
+    EXPECT_NE(result.err.find("a model is of one sensor with axes x, y and z"), std::string::npos)
+        << result.err;
+    EXPECT_FALSE(std::filesystem::exists(model));
+}
+
+TEST(AnalyzeFiles, TheReportIsShownBeforeAFileThatCannotBeWritten) {
+    const TemporaryFolder folder;
+    const std::string recording = write_text_recording(folder, "gx_dps,gy_dps");
+    for (const char* option : {"--json", "--plot", "--histogram", "--model"}) {
+        const std::string path = folder.path(std::string("missing/out") +
+                                             (option[2] == 'p' || option[2] == 'h' ? ".png" : ".json"));
+        const CommandResult result = run({"analyze", recording, option, path});
+        EXPECT_NE(result.exit_code, ExitCode::ok) << option;
+        EXPECT_NE(result.out.find("angle random walk"), std::string::npos) << option;
+        EXPECT_NE(result.err.find(path), std::string::npos) << option << result.err;
+    }
 }
 
 TEST(StageClock, CountsAStageThatIsEnteredAgainAsOne) {
