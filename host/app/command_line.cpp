@@ -16,6 +16,8 @@ constexpr std::array commands{
     Command{"check", "Account for every byte, frame and sample of a capture", setup_check},
     Command{"recover", "Save the intact part of a damaged capture", setup_recover},
     Command{"analyze", "Work out Allan deviation, noise coefficients and bias", setup_analyze},
+    Command{"compare", "Hold a recording against a model's simulations, or against another one",
+            setup_compare},
     Command{"simulate", "Make a recording of a simulated sensor", setup_simulate},
     Command{"export", "Write a recording or its noise for other programs", setup_export},
 };

@@ -1,0 +1,156 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "analysis/compare/comparison.hpp"
+#include "analysis/plot/comparison_figure.hpp"
+#include "analysis/simulate/sensor_simulator.hpp"
+#include "host/app/command.hpp"
+#include "host/app/option_check.hpp"
+#include "host/app/quantity.hpp"
+#include "host/app/recording_input.hpp"
+#include "host/app/result_output.hpp"
+#include "host/base/file_output.hpp"
+#include "host/formats/comparison_json.hpp"
+#include "host/formats/comparison_text.hpp"
+#include "host/formats/model_json.hpp"
+
+namespace gyrolog {
+namespace {
+
+struct CompareRequest {
+    std::string recording_path;
+    std::string other_path;
+    std::string json_path;  // "-" is standard output; empty: not wanted
+    std::string plot_path;
+    std::string duration;  // of the recording's beginning; empty: all
+    std::optional<double> lsb_dps;
+    ModelComparisonOptions simulations;
+};
+
+void cut_to(Recording& recording, double duration_s) {
+    const std::int64_t end =
+        recording.segments.front().first_index + std::llround(duration_s * recording.rate_hz);
+    std::size_t rows = 0;
+    std::vector<Segment> kept;
+    for (Segment segment : recording.segments) {
+        if (segment.first_index >= end) { break; }
+        segment.count = std::min(segment.count, static_cast<std::size_t>(end - segment.first_index));
+        rows = segment.first + segment.count;
+        kept.push_back(segment);
+    }
+    recording.segments = std::move(kept);
+    for (Column& column : recording.columns) {
+        std::visit([&](auto& data) { data.resize(std::min(data.size(), rows)); }, column.data);
+    }
+    recording.t_s.resize(std::min(recording.t_s.size(), rows));
+    std::erase_if(recording.dropouts, [&](const Dropout& dropout) { return dropout.at_s > duration_s; });
+}
+
+Result<Recording> comparable_recording(const CompareRequest& request, const std::string& path) {
+    GYROLOG_TRY(Recording recording, read_recording({path, std::nullopt, request.lsb_dps, {}}));
+    if (!request.duration.empty() && !recording.segments.empty()) {
+        GYROLOG_TRY(const double duration_s, parse_duration_s(request.duration));
+        cut_to(recording, duration_s);
+    }
+    if (const auto refusal = comparison_refusal(recording)) {
+        return Error{ErrorCode::failed, "compare '" + path + "': " + *refusal};
+    }
+    return recording;
+}
+
+Result<Comparison> with_model(Console& console, const CompareRequest& request) {
+    GYROLOG_TRY(const SensorModel model, read_model(request.other_path));
+    if (const auto refusal = simulation_refusal(model)) {
+        return Error{ErrorCode::failed, "simulate '" + request.other_path + "': " + *refusal};
+    }
+    GYROLOG_TRY(Recording recording, comparable_recording(request, request.recording_path));
+    ModelComparisonOptions options = request.simulations;
+    options.on_progress = [&](std::size_t done) {
+        if (console.progress) {
+            console.err << fmt::format("\r  simulation {} of {}", done, options.simulations) << std::flush;
+        }
+        return !console.stop_wanted();
+    };
+    auto comparison =
+        compare_with_model(std::make_shared<const Recording>(std::move(recording)), model,
+                           std::filesystem::path(request.other_path).filename().string(), options);
+    if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
+    if (!comparison) { return Error{ErrorCode::failed, "interrupted; nothing is written"}; }
+    return *std::move(comparison);
+}
+
+Result<Comparison> with_recording(const CompareRequest& request) {
+    GYROLOG_TRY(const Recording recording, comparable_recording(request, request.recording_path));
+    GYROLOG_TRY(const Recording other, comparable_recording(request, request.other_path));
+    Comparison comparison = compare_recordings(recording, other);
+    if (comparison.axes.empty()) {
+        return Error{ErrorCode::failed, "the two recordings have no axis in common"};
+    }
+    return comparison;
+}
+
+Status write_plot(const Comparison& comparison, const std::string& path) {
+    const Rendering rendering = render(ComparisonFigure{
+        comparison,
+        {fmt::format("{:.6g} Hz", comparison.rate_hz), format_duration(comparison.duration_s),
+         format_count(comparison.samples) + " samples"}});
+    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
+    return write_file(path, rendering.png);
+}
+
+Status write_results(Console& console, const CompareRequest& request, const Comparison& comparison) {
+    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", comparison_text(comparison))); }
+    if (!request.json_path.empty()) {
+        GYROLOG_CHECK(write_text(console, request.json_path, comparison_json(comparison)));
+    }
+    if (!request.plot_path.empty()) { GYROLOG_CHECK(write_plot(comparison, request.plot_path)); }
+    for (const std::string* path : {&request.json_path, &request.plot_path}) {
+        if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
+    }
+    return {};
+}
+
+ExitCode compare(Console& console, const CompareRequest& request) {
+    const bool is_model = std::filesystem::path(request.other_path).extension() == ".json";
+    const Result<Comparison> comparison = is_model ? with_model(console, request) : with_recording(request);
+    if (!comparison.ok()) { return report_error(console, "compare", comparison.error()); }
+    const Status written = write_results(console, request, *comparison);
+    return written.ok() ? ExitCode::ok : report_error(console, "compare", written.error());
+}
+
+}  // namespace
+
+Action setup_compare(CLI::App& app) {
+    auto request = std::make_shared<CompareRequest>();
+    app.add_option("RECORDING", request->recording_path,
+                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)")
+        ->required();
+    app.add_option("WITH", request->other_path,
+                   "A sensor model (.json), which is simulated, or another recording")
+        ->required();
+    app.add_option("--plot", request->plot_path, "Draw both side by side")
+        ->type_name("FILE.png")
+        ->check(png_file());
+    app.add_option("--json", request->json_path, "Write the comparison as JSON (- for standard output)")
+        ->type_name("FILE");
+    app.add_option("--simulations", request->simulations.simulations,
+                   "How many simulations make the band: of 39 their extremes hold 95 %, more are smoother")
+        ->check(CLI::Range(simulations_min, std::size_t{10'000}))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--seed", request->simulations.seed, "Other simulations of the same kind")
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--duration", request->duration, "Compare the first part of a recording only")
+        ->type_name("T");
+    app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
+        ->type_name("DPS")
+        ->check(positive_number());
+    return [request](Console& console) { return compare(console, *request); };
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,143 @@
+#include "host/formats/comparison_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "analysis/noise/noise_model.hpp"
+#include "host/formats/text_table.hpp"
+#include "host/formats/uncertain_number.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::size_t ranges_listed = 6;
+
+std::string frequency_text(double f_hz) {
+    if (f_hz < 0.1) { return fmt::format("{:.3g} mHz", f_hz * 1e3); }
+    return f_hz < 1000.0 ? fmt::format("{:.3g} Hz", f_hz) : fmt::format("{:.3g} kHz", f_hz / 1000.0);
+}
+
+using PlaceText = std::string (*)(double);
+
+// What the other side is in fault of, or how the recording differs.
+std::string difference_text(const Comparison& comparison, double recording_over_other_dB) {
+    const double size_dB = std::fabs(recording_over_other_dB);
+    const bool noisier = recording_over_other_dB > 0.0;
+    if (comparison.simulations > 0) {
+        return fmt::format("too {} by {:.2g} dB", noisier ? "quiet" : "noisy", size_dB);
+    }
+    return fmt::format("{} by {:.2g} dB", noisier ? "noisier" : "quieter", size_dB);
+}
+
+std::string range_text(const Comparison& comparison, const OutsideRange& range, PlaceText place) {
+    const std::string difference = difference_text(comparison, range.worst_dB);
+    if (range.points == 1) { return fmt::format("    at {}: {}\n", place(range.from), difference); }
+    return fmt::format("    {} to {}: {} at worst, at {} ({} points)\n", place(range.from), place(range.to),
+                       difference, place(range.worst_at), range.points);
+}
+
+// The widest in dB, in order of their place.
+std::string ranges_text(const Comparison& comparison, const ComparedCurve& curve, PlaceText place) {
+    std::vector<OutsideRange> listed = curve.outside;
+    std::ranges::stable_sort(listed, std::ranges::greater(),
+                             [](const OutsideRange& range) { return std::fabs(range.worst_dB); });
+    listed.resize(std::min(listed.size(), ranges_listed));
+    std::ranges::sort(listed, {}, &OutsideRange::from);
+    std::string text;
+    for (const OutsideRange& range : listed) { text += range_text(comparison, range, place); }
+    if (listed.size() < curve.outside.size()) {
+        text += fmt::format("    and {} smaller ones\n", curve.outside.size() - listed.size());
+    }
+    return text;
+}
+
+std::string curve_text(const Comparison& comparison, const char* name, const ComparedCurve& curve,
+                       PlaceText place) {
+    if (curve.at.empty()) { return fmt::format("  {}: no values above zero to compare\n", name); }
+    std::string text = fmt::format("  {}: {} of {} points outside, {:.1f} by chance", name,
+                                   curve.points_outside(), curve.at.size(), curve.points_by_chance);
+    if (curve.simulations_outside_as_often && curve.points_outside() > 0) {
+        text += fmt::format("; {} of {} simulations have as many against the others",
+                            *curve.simulations_outside_as_often, comparison.simulations);
+    }
+    return text + '\n' + ranges_text(comparison, curve, place);
+}
+
+TextRow number_row(const char* label, const char* unit, const ComparedNumber& number, double per_unit) {
+    TextRow row{
+        label,
+        unit,
+        {fmt::format("{:.4g}", number.recording * per_unit), fmt::format("{:.4g}", number.other * per_unit)}};
+    if (number.lo) {
+        row.cells.push_back(fmt::format("{:.4g} to {:.4g}", *number.lo * per_unit, *number.hi * per_unit));
+        row.cells.emplace_back(number.outside() ? "outside" : "");
+    }
+    return row;
+}
+
+std::string distribution_text(const Comparison& comparison, const AxisComparison& axis) {
+    std::vector<std::string> heads{"recording"};
+    if (comparison.simulations > 0) {
+        heads.insert(heads.end(), {"simulations", "band", ""});
+    } else {
+        heads.emplace_back("other");
+    }
+    const std::array rows{number_row("  standard deviation", "dps", axis.standard_deviation, deg_per_rad),
+                          number_row("  skewness", "", axis.skewness, 1.0),
+                          number_row("  excess kurtosis", "", axis.excess_kurtosis, 1.0)};
+    return text_table(heads, rows);
+}
+
+std::string heading_text(const Comparison& comparison) {
+    std::string text;
+    if (comparison.simulations > 0) {
+        const std::size_t rank = band_rank(comparison.simulations);
+        text = fmt::format("{} against {} simulations of {} (seed {})\n", comparison.recording_name,
+                           comparison.simulations, comparison.other_name, comparison.seed);
+        text += fmt::format(
+            "band: from the {} to the {} of the simulations at each point; one more simulation lies\n"
+            "within it with probability {:.2f} % at each point. Neighbouring points vary together.\n",
+            rank == 1 ? "smallest" : fmt::format("{}. smallest", rank),
+            rank == 1 ? "largest" : fmt::format("{}. largest", rank), comparison.band_probability * 100.0);
+    } else {
+        text = fmt::format("{} against {}\n", comparison.recording_name, comparison.other_name);
+        text += "outside: the 68.3 % intervals of the two do not meet\n";
+    }
+    if (comparison.less_reference) { text += "curves are of the gyro less the reference rate\n"; }
+    return text;
+}
+
+}  // namespace
+
+std::string outcome_sentence(const Comparison& comparison, const AxisComparison& axis) {
+    const ComparedCurve* worst = axis.worst();
+    if (worst == nullptr) {
+        if (axis.allan.at.empty()) { return axis.axis + ": there is no noise to compare"; }
+        return axis.axis + (comparison.simulations > 0
+                                ? ": the recording differs no more than simulations do among themselves"
+                                : ": the recordings differ no more than their uncertainty allows");
+    }
+    const PlaceText place = worst == &axis.allan ? &duration_text : &frequency_text;
+    return fmt::format("{}: {} is {} at {}", axis.axis,
+                       comparison.simulations > 0 ? "the simulation" : "the first recording",
+                       difference_text(comparison, worst->gap.dB), place(worst->gap.at));
+}
+
+std::string comparison_text(const Comparison& comparison) {
+    std::string text = heading_text(comparison);
+    for (const std::string& warning : comparison.warnings) { text += fmt::format("warning: {}\n", warning); }
+    for (const AxisComparison& axis : comparison.axes) {
+        text += fmt::format("\n{}\n", axis.axis);
+        text += curve_text(comparison, "Allan deviation", axis.allan, &duration_text);
+        text += curve_text(comparison, "spectrum", axis.spectrum, &frequency_text);
+        text += distribution_text(comparison, axis);
+    }
+    text += '\n';
+    for (const AxisComparison& axis : comparison.axes) { text += outcome_sentence(comparison, axis) + '\n'; }
+    return text;
+}
+
+}  // namespace gyrolog
