@@ -1,5 +1,6 @@
 #include "analysis/noise/analyze.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -12,6 +13,7 @@ namespace gyrolog {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
@@ -66,6 +68,32 @@ TEST(Analyze, WarnsOfAClockThatIsOffItsNominalRate) {
     EXPECT_THAT(analyze(recording).warnings, Contains(HasSubstr("-0.7 % off the nominal 100 Hz")));
     recording.rate_hz = 99.95;
     EXPECT_THAT(analyze(recording).warnings, testing::IsEmpty());
+}
+
+TEST(Analyze, NamesAxesThatAreClippedHeavyTailedOrStuck) {
+    const auto noise = test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, 2000, 100.0, 1);
+    auto clipped = noise;
+    for (double& x : clipped) { x = std::min(x, 0.1); }
+    auto spiky = noise;
+    for (std::size_t i = 0; i < spiky.size(); i += 200) { spiky[i] += 1.0; }
+    const AnalysisReport report = analyze(test::recording_of({clipped, spiky, noise}, 100.0));
+    EXPECT_THAT(report.warnings, Contains(HasSubstr("axis x: the samples are clipped")));
+    EXPECT_THAT(report.warnings, Contains(testing::ContainsRegex("axis y \\(excess kurtosis .*heavy tails")));
+    const AnalysisReport still =
+        analyze(test::recording_of({noise, std::vector<double>(2000, 0.5), noise}, 100.0));
+    EXPECT_THAT(still.warnings, ElementsAre(HasSubstr("axis y: all samples are equal")));
+}
+
+TEST(Analyze, OfOutliersHasOneLineForAllAxes) {
+    std::vector<std::vector<double>> axes;
+    for (const std::size_t spikes : {3U, 5U}) {
+        axes.push_back(test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, 2000, 100.0, spikes));
+        for (std::size_t i = 0; i < spikes; ++i) { axes.back()[100 + 300 * i] += 5.0; }
+    }
+    AnalysisOptions robust;
+    robust.robust = true;
+    EXPECT_THAT(analyze(test::recording_of(axes, 100.0), robust).warnings,
+                ElementsAre(HasSubstr("axes x (3), y (5): outliers")));
 }
 
 TEST(Analyze, OfNothingSaysSo) {

@@ -81,6 +81,20 @@ TEST(LikelihoodFit, FindsARampBesideARandomWalk) {
     EXPECT_LT(fit[NoiseTerm::K].upper, 3e-4);
 }
 
+// Before the ramp is in the model, so steep a one asks for angle noise to make up for what leaks from it.
+TEST(LikelihoodFit, KeepsNoAngleNoiseThatOnlyStoodInForARamp) {
+    constexpr std::size_t count = 20'000;
+    constexpr double R_rad_per_s2 = 5.6e-3;
+    auto samples = test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, count, 10.0, 15);
+    for (std::size_t i = 0; i < count; ++i) { samples[i] += R_rad_per_s2 * static_cast<double>(i) / 10.0; }
+    const NoiseFit fit = fit_of(samples, 10.0);
+    EXPECT_TRUE(within(fit[NoiseTerm::R], R_rad_per_s2, 4.0)) << fit[NoiseTerm::R].value;
+    EXPECT_EQ(fit[NoiseTerm::Q].state, State::not_identifiable);
+    EXPECT_EQ(fit.model_error, 0.0);
+    // White noise alone is known to 1 / sqrt(2 n).
+    EXPECT_NEAR(fit[NoiseTerm::N].sd, 0.01 / std::sqrt(2.0 * count), 0.1 * fit[NoiseTerm::N].sd);
+}
+
 TEST(LikelihoodFit, FindsGaussMarkovNoiseAndItsCorrelationTime) {
     constexpr GaussMarkov truth = {0.01, 20.0};
     auto samples = test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, 100'000, 10.0, 6);
@@ -93,6 +107,21 @@ TEST(LikelihoodFit, FindsGaussMarkovNoiseAndItsCorrelationTime) {
     EXPECT_NEAR(found.value.correlation_s, truth.correlation_s, 4.0 * found.correlation_sd_s);
     EXPECT_LT(found.correlation_sd_s, 0.3 * truth.correlation_s);
     EXPECT_TRUE(within(fit[NoiseTerm::N], 0.01, 4.0)) << fit[NoiseTerm::N].value;
+}
+
+// Nothing in fast contrasts tells it from a random walk.
+TEST(LikelihoodFit, FindsSlowGaussMarkovNoiseInSixHours) {
+    constexpr GaussMarkov truth = {0.002, 100.0};
+    auto samples = test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, 216'000, 10.0, 16);
+    const auto slow = gauss_markov(truth, samples.size(), 10.0, 61);
+    for (std::size_t i = 0; i < samples.size(); ++i) { samples[i] += slow[i]; }
+    const NoiseFit fit = fit_of(samples, 10.0);
+    ASSERT_EQ(fit.gauss_markov.size(), 1U);
+    const FittedGaussMarkov& found = fit.gauss_markov.front();
+    EXPECT_NEAR(found.value.sigma_rad_per_s, truth.sigma_rad_per_s, 4.0 * found.sigma_sd);
+    EXPECT_NEAR(found.value.correlation_s, truth.correlation_s, 4.0 * found.correlation_sd_s);
+    EXPECT_LT(found.correlation_sd_s, 0.3 * truth.correlation_s);
+    EXPECT_EQ(fit[NoiseTerm::K].state, State::not_identifiable);
 }
 
 TEST(LikelihoodFit, TakesASinusoidOutOfTheOtherTerms) {
@@ -123,6 +152,25 @@ TEST(LikelihoodFit, LeavesAFilteredUpperEndOut) {
     EXPECT_NEAR(fit[NoiseTerm::N].value, 0.01, 0.001);
     EXPECT_NEAR(fit[NoiseTerm::B].value, 0.003, 0.0012);
     EXPECT_FALSE(report.warnings.empty());
+}
+
+// Coloured noise that is none of the model's terms. Intervals are profiles of the likelihood, standard
+// deviations its curvature: where both belong to the same departure they are alike.
+TEST(LikelihoodFit, HasIntervalsAsWideAsItsStandardDeviationsWhereTheSpectrumDeparts) {
+    for (const std::uint64_t seed : {1U, 2U}) {
+        auto samples = test::sensor_noise({0.0, 0.01, 0.004, 1e-4, 0.0}, 20'000, 10.0, seed);
+        const auto fast = gauss_markov({0.025, 0.2}, samples.size(), 10.0, seed + 100);
+        for (std::size_t i = 0; i < samples.size(); ++i) { samples[i] += fast[i]; }
+        const NoiseFit fit = fit_of(samples, 10.0);
+        EXPECT_GT(fit.model_error, 0.02) << seed;
+        for (const NoiseTerm term : {NoiseTerm::N, NoiseTerm::B}) {
+            const FittedCoefficient& c = fit[term];
+            ASSERT_EQ(c.state, State::identified) << name_of(term) << ' ' << seed;
+            EXPECT_LT(c.lo, c.value);
+            EXPECT_GT(c.hi, c.value);
+            EXPECT_NEAR((c.hi - c.lo) / (2.0 * c.sd), 1.0, 0.3) << name_of(term) << ' ' << seed;
+        }
+    }
 }
 
 TEST(LikelihoodFit, DoesNotCountTheConvertersErrorAsNoise) {

@@ -29,6 +29,16 @@ TEST(StaticBias, OfAHundredWhiteSamplesHasThePublishedUncertainty) {
     EXPECT_NEAR(mean_uncertainty, 0.0279, 0.1 * 0.0279);
 }
 
+// JCGM 100:2008, table G.2: Student's t for 95.45 %.
+TEST(StaticBias, OfAFewSamplesHasStudentsFactor) {
+    const auto factor = [](std::vector<double> samples) {
+        return analyze(test::recording_of({std::move(samples)}, 1.0)).axes.at(0).bias.coverage_factor;
+    };
+    EXPECT_NEAR(factor({1.0, 2.0}), 13.97, 0.005);
+    EXPECT_NEAR(factor({1.0, 3.0, 2.0}), 4.53, 0.005);
+    EXPECT_NEAR(factor({1.0, 3.0, 2.0, 5.0}), 3.31, 0.005);
+}
+
 TEST(StaticBias, CoversTheBiasOfTheNextRecordAtCoverageTwo) {
     int covered = 0;
     constexpr int records = 60;
