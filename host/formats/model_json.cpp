@@ -246,6 +246,10 @@ Result<ModelFile> parse_model_file(std::string_view text, const std::string& nam
                      fmt::format("model '{}': schema is '{}', not '{}' (or '{}', '{}')", name, schema,
                                  schema_name, datasheet_schema, gyroparams_schema)};
     }
+    // Numbers that are each fine can make one that is not finite.
+    if (!problem && schema != schema_name && !parse_model(format_model(file.model), name).ok()) {
+        problem = "holds a number too large or too small to work with";
+    }
     if (!problem && !document.plain) { problem = "holds a number that is not finite"; }
     if (problem) { return Error{ErrorCode::malformed, "model '" + name + "': " + *problem}; }
     return file;

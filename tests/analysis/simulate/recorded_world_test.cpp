@@ -1,0 +1,238 @@
+#include "analysis/simulate/recorded_world.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "analysis/noise/noise_model.hpp"
+#include "analysis/simulate/orientation_rate.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Column reals(const std::string& name, const std::string& unit, std::vector<double> values) {
+    return {name, unit, std::move(values), 1.0, 0.0, {}};
+}
+
+// With rows at these slots; each column is a function of the slot.
+struct Maker {
+    std::vector<std::int64_t> slots;
+    double rate_hz = 100.0;
+
+    template <typename F>
+    std::vector<double> column(F f) const {
+        std::vector<double> values;
+        for (const std::int64_t slot : slots) { values.push_back(f(static_cast<double>(slot) / rate_hz)); }
+        return values;
+    }
+    std::shared_ptr<const Recording> recording(std::vector<Column> columns) const {
+        auto recording = std::make_shared<Recording>();
+        recording->rate_hz = rate_hz;
+        recording->columns = std::move(columns);
+        for (std::size_t row = 0; row < slots.size(); ++row) {
+            if (row == 0 || slots[row] != slots[row - 1] + 1) {
+                recording->segments.push_back({row, 0, slots[row]});
+            }
+            ++recording->segments.back().count;
+        }
+        return recording;
+    }
+};
+
+Maker unbroken(std::int64_t rows, double rate_hz = 100.0) {
+    Maker maker{{}, rate_hz};
+    for (std::int64_t slot = 0; slot < rows; ++slot) { maker.slots.push_back(slot); }
+    return maker;
+}
+
+struct Motion {
+    std::array<double, 3> rate_rad_s{};
+    std::array<double, 3> force_m_s2{};
+};
+
+Motion motion_at(const World& world, double world_s) {
+    Motion motion;
+    world.motion({&world_s, 1},
+                 {std::span(&motion.rate_rad_s[0], 1), std::span(&motion.rate_rad_s[1], 1),
+                  std::span(&motion.rate_rad_s[2], 1)},
+                 {std::span(&motion.force_m_s2[0], 1), std::span(&motion.force_m_s2[1], 1),
+                  std::span(&motion.force_m_s2[2], 1)});
+    return motion;
+}
+
+double temperature_at(const World& world, double world_s) {
+    double temperature_C = 0.0;
+    world.temperature({&world_s, 1}, {&temperature_C, 1});
+    return temperature_C;
+}
+
+TEST(RecordedWorld, OfRatesAloneIsAtRestWithoutTemperature) {
+    const RecordedWorld world(unbroken(10).recording({reals("gx", "rad/s", std::vector<double>(10))}));
+    EXPECT_FALSE(world.moves());
+    EXPECT_FALSE(world.is_measured());
+    EXPECT_FALSE(world.has_temperature());
+    EXPECT_TRUE(world.warnings().empty());
+}
+
+TEST(RecordedWorld, BetweenSamplesACubicIsMetExactly) {
+    const Maker maker = unbroken(50);
+    const auto cubic = [](double t_s) {
+        return 1.0 + 20.0 * t_s - 300.0 * t_s * t_s + 500.0 * t_s * t_s * t_s;
+    };
+    const RecordedWorld world(
+        maker.recording({reals("ref_x", "rad/s", maker.column(cubic)),
+                         reals("ref_y", "rad/s", maker.column([](double) { return 2.0; })),
+                         reals("ref_z", "rad/s", maker.column([](double) { return 3.0; }))}));
+    EXPECT_TRUE(world.moves());
+    EXPECT_TRUE(world.is_measured());
+    for (double world_s = 0.01; world_s <= 0.48; world_s += 0.0037) {
+        const Motion motion = motion_at(world, world_s);
+        EXPECT_NEAR(motion.rate_rad_s[0], cubic(world_s), 1e-12);
+        EXPECT_EQ(motion.rate_rad_s[1], 2.0);
+        EXPECT_EQ(motion.force_m_s2[2], 9.80665);
+    }
+}
+
+TEST(RecordedWorld, HoldsTheEndsAndJoinsAHoleByAStraightLine) {
+    const Maker maker{{0, 1, 2, 3, 10, 11, 12}};
+    const auto square = [](double t_s) { return t_s * t_s; };
+    const RecordedWorld world(maker.recording({reals("ref_x", "rad/s", maker.column(square)),
+                                               reals("ref_y", "rad/s", maker.column(square)),
+                                               reals("ref_z", "rad/s", maker.column(square))}));
+    const auto at = [&](double slot) { return motion_at(world, slot / 100.0).rate_rad_s[0]; };
+    EXPECT_NEAR(at(1.5), 1.5e-2 * 1.5e-2, 1e-15);
+    EXPECT_NEAR(at(2.5), (4e-4 + 9e-4) / 2.0, 1e-15);    // at the hole's edge: no fourth neighbour
+    EXPECT_NEAR(at(6.5), (9e-4 + 100e-4) / 2.0, 1e-15);  // within
+    EXPECT_NEAR(at(10.5), (100e-4 + 121e-4) / 2.0, 1e-15);
+    EXPECT_EQ(at(-5.0), 0.0);
+    EXPECT_NEAR(at(50.0), 144e-4, 1e-15);
+}
+
+TEST(RecordedWorld, WhatIsNotKnownIsJoinedAndSaid) {
+    const Maker maker = unbroken(6);
+    const RecordedWorld world(maker.recording({reals("ref_x", "rad/s", {nan, 1.0, nan, nan, 4.0, nan}),
+                                               reals("ref_y", "rad/s", std::vector<double>(6, nan))}));
+    const double expected[] = {1.0, 1.0, 2.0, 3.0, 4.0, 4.0};
+    for (int slot = 0; slot < 6; ++slot) {
+        const Motion motion = motion_at(world, slot / 100.0);
+        EXPECT_NEAR(motion.rate_rad_s[0], expected[slot], 1e-12);
+        EXPECT_EQ(motion.rate_rad_s[1], 0.0);
+    }
+    ASSERT_EQ(world.warnings().size(), 3U);
+    EXPECT_EQ(world.warnings()[0], "no reference rate of axis z: taken as not turning");
+    EXPECT_EQ(world.warnings()[1], "the reference rate of axis y is known nowhere: taken as not recorded");
+    EXPECT_EQ(
+        world.warnings()[2],
+        "the reference rate is not known in 4 of 6 samples: joined by straight lines there, held at the "
+        "ends");
+}
+
+TEST(RecordedWorld, AnAccelerometerWithoutReferenceIsASensorThatDoesNotTurn) {
+    const Maker maker = unbroken(8);
+    const RecordedWorld world(maker.recording({reals("ax", "m/s^2", std::vector<double>(8, 1.0)),
+                                               reals("ay", "m/s^2", std::vector<double>(8, 2.0)),
+                                               reals("az", "m/s^2", std::vector<double>(8, 9.0))}));
+    EXPECT_TRUE(world.moves());
+    EXPECT_FALSE(world.is_measured());  // nothing of a reference's noise is in a rate of zero
+    EXPECT_EQ(motion_at(world, 0.03).rate_rad_s[2], 0.0);
+    EXPECT_EQ(motion_at(world, 0.03).force_m_s2[0], 1.0);
+}
+
+// A turn at a constant rate about a fixed axis: q(t) = (cos(w t / 2), n sin(w t / 2)).
+Quaternion turned(const std::array<double, 3>& rate_rad_s, double t_s) {
+    const double speed = std::hypot(rate_rad_s[0], rate_rad_s[1], rate_rad_s[2]);
+    const double sine = std::sin(speed * t_s / 2.0) / speed;
+    return {std::cos(speed * t_s / 2.0), rate_rad_s[0] * sine, rate_rad_s[1] * sine, rate_rad_s[2] * sine};
+}
+
+TEST(OrientationRate, OfASteadyTurnIsItsRateInTheSensorsAxes) {
+    // First turned away from the world by 90 degrees about z, then turning about its own x, y and z.
+    const Quaternion away = {std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)};
+    const std::array<double, 3> rate_rad_s = {8.0, -11.0, 23.0};
+    std::vector<Quaternion> orientation;
+    for (int k = 0; k < 200; ++k) {
+        const Quaternion q = turned(rate_rad_s, k * 0.01);
+        Quaternion total = {away[0] * q[0] - away[3] * q[3], away[0] * q[1] - away[3] * q[2],
+                            away[0] * q[2] + away[3] * q[1], away[0] * q[3] + away[3] * q[0]};
+        if (k % 3 == 1) {
+            for (double& part : total) { part = -part; }  // the same orientation
+        }
+        orientation.push_back(total);
+    }
+    for (const auto& rate : orientation_rate(orientation, 100.0)) {
+        for (std::size_t axis = 0; axis < 3; ++axis) { EXPECT_NEAR(rate[axis], rate_rad_s[axis], 1e-10); }
+    }
+}
+
+TEST(OrientationRate, OfLargeAndTinyTurnsIsExact) {
+    for (const double angle_rad : {1e-12, 1e-3, 0.5, 1.5707963, 2.0, 3.0, 3.14159}) {
+        const auto phi = rotation_vector({std::cos(angle_rad / 2.0), 0.0, std::sin(angle_rad / 2.0), 0.0});
+        EXPECT_NEAR(phi[1] / angle_rad, 1.0, 1e-12) << angle_rad;
+        EXPECT_EQ(phi[0], 0.0);
+    }
+    EXPECT_EQ(rotation_vector({1.0, 0.0, 0.0, 0.0})[0], 0.0);
+}
+
+TEST(OrientationRate, IsUnknownOnlyWhereNoNeighbourIsKnown) {
+    std::vector<Quaternion> orientation;
+    for (int k = 0; k < 6; ++k) { orientation.push_back(turned({0.0, 0.0, 1.0}, k * 0.01)); }
+    orientation[2][1] = nan;
+    const auto rates = orientation_rate(orientation, 100.0);
+    for (const std::size_t k : {0U, 1U, 3U, 4U, 5U}) { EXPECT_NEAR(rates[k][2], 1.0, 1e-10) << k; }
+    EXPECT_TRUE(std::isnan(rates[2][2]));
+}
+
+TEST(RecordedWorld, TakesTheRateOfAnOrientationWhereThereIsNoReferenceRate) {
+    const Maker maker = unbroken(100);
+    std::vector<Column> columns;
+    for (std::size_t part = 0; part < 4; ++part) {
+        columns.push_back(reals(std::string("ref_q") + "wxyz"[part], "", maker.column([&](double t_s) {
+            return turned({0.0, 2.0, 0.0}, t_s)[part];
+        })));
+    }
+    const RecordedWorld world(maker.recording(std::move(columns)));
+    EXPECT_TRUE(world.is_measured());
+    EXPECT_NEAR(motion_at(world, 0.5).rate_rad_s[1], 2.0, 1e-10);
+    EXPECT_NEAR(motion_at(world, 0.5).rate_rad_s[0], 0.0, 1e-10);
+}
+
+TEST(RecordedWorld, TheThermometersNoiseDoesNotReachTheDie) {
+    const Maker maker = unbroken(60'000);
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> noise_C(0.0, 0.03);
+    const auto truth_C = [](double t_s) { return 25.0 + 5.0 * (1.0 - std::exp(-t_s / 60.0)); };
+    const RecordedWorld world(maker.recording(
+        {reals("temp", "degC", maker.column([&](double t_s) { return truth_C(t_s) + noise_C(random); }))}));
+    ASSERT_TRUE(world.has_temperature());
+    double squares = 0.0;
+    int count = 0;
+    for (double t_s = 300.0; t_s < 590.0; t_s += 1.0) {
+        const double off_C = temperature_at(world, t_s) - truth_C(t_s);
+        squares += off_C * off_C;
+        ++count;
+    }
+    // A line through 1001 samples: 1/sqrt(1001) of the noise at its middle. 29 windows are independent.
+    EXPECT_NEAR(std::sqrt(squares / count) / (0.03 / std::sqrt(1001.0)), 1.0, 4.0 / std::sqrt(2.0 * 29.0));
+    // The settling is followed to 1e-3 of its excursion where it has a window on either side.
+    for (double t_s = 5.0; t_s < 100.0; t_s += 0.7) {
+        EXPECT_NEAR(temperature_at(world, t_s), truth_C(t_s), 5.0 * 1e-3 + 4.0 * 0.03 / std::sqrt(1001.0));
+    }
+}
+
+TEST(RecordedWorld, TheTemperatureIsStraightAcrossAHole) {
+    Maker maker{{}};
+    for (std::int64_t slot = 0; slot < 100'000'000'000; slot += slot == 2999 ? 99'999'996'001 : 1) {
+        maker.slots.push_back(slot);
+    }
+    const RecordedWorld world(
+        maker.recording({reals("temp", "degC", maker.column([](double t_s) { return 20.0 + 1e-8 * t_s; }))}));
+    EXPECT_NEAR(temperature_at(world, 5e8), 25.0, 1e-6);  // and no memory for the 30 years between
+    EXPECT_NEAR(temperature_at(world, 15.0), 20.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace gyrolog
