@@ -23,6 +23,9 @@ constexpr std::array lsb_per_dps{131.0, 65.5, 32.8, 16.4};
 constexpr double shortest_distance = 0.51;
 constexpr double longest_distance = 1.49;
 
+// A model that loses so many samples in a row has fallen silent.
+constexpr std::uint64_t slots_lost_for_ever = std::uint64_t{1} << 20U;
+
 constexpr double same_scale = 1e-3;
 
 bool about_equal(double a, double b) { return std::fabs(a - b) <= same_scale * b; }
@@ -220,15 +223,17 @@ std::int64_t SimulatedMpu9250::stamp_ns() const { return std::llround(block_->st
 
 void SimulatedMpu9250::go_to_next_slot() {
     const std::int64_t before_ns = next_instant_ns_;
-    bool neighbours = true;
-    while (true) {
+    std::uint64_t slots = 0;
+    do {
+        if (++slots == slots_lost_for_ever) {
+            next_instant_ns_ = never_ns;
+            return;
+        }
         if (++place_ == block_samples) { next_block(); }
-        if (!block_->lost[place_]) { break; }
-        neighbours = false;
-    }
+    } while (block_->lost[place_]);
     const std::int64_t earliest_ns = before_ns + std::llround(shortest_distance * period_ns_);
     next_instant_ns_ = std::max(stamps_start_ns_ + stamp_ns(), earliest_ns);
-    if (neighbours) {
+    if (slots == 1) {
         const std::int64_t latest_ns = before_ns + std::llround(longest_distance * period_ns_);
         next_instant_ns_ = std::min(next_instant_ns_, latest_ns);
     }

@@ -127,6 +127,56 @@ TEST(VirtualBoard, ItsTicksAreTheSimulatorsStamps) {
     }
 }
 
+// What was never offered cannot be counted: only the ticks tell.
+TEST(VirtualBoard, SamplesThatTheModelLosesShowAsJumpsOfTheTicksAlone) {
+    VirtualBoardOptions options = at_rate(100.0);
+    options.sensor_clock_error = 0.0;
+    options.tick_clock_error = 0.0;
+    options.model.effects = {{"dropped", {}, {{"per_hour", 600.0}, {"longest", 12.0}}, ""}};
+    const BoardStream stream = stream_samples(*board_with(options), 30'000);
+    EXPECT_EQ(stream.indices.size(), 30'000U);
+    EXPECT_TRUE(stream.indices_consecutive());
+    EXPECT_EQ(stream.lost_samples, 0U);
+
+    SensorSimulator simulator(options.model, 100.0, options.seed);
+    std::vector<double> stamps_s;  // of what is not lost
+    std::vector<std::array<std::int16_t, 3>> counts;
+    std::size_t gaps = 0;
+    bool lost = false;
+    while (stamps_s.size() < 30'000) {
+        const SampleBlock& block = simulator.next_block();
+        for (std::size_t i = 0; i < block_samples; ++i) {
+            if (!block.lost[i]) {
+                stamps_s.push_back(block.stamp_s[i]);
+                counts.push_back({block.counts[0][i], block.counts[1][i], block.counts[2][i]});
+                if (lost && counts.size() > 1 && counts.size() <= 30'000) { ++gaps; }
+            }
+            lost = block.lost[i];
+        }
+    }
+    counts.resize(30'000);
+    EXPECT_EQ(stream.gyro, counts);
+    EXPECT_EQ(static_cast<std::size_t>(std::count_if(
+                  stream.flags.begin(), stream.flags.end(),
+                  [](std::uint16_t flags) { return (flags & glp_flag_time_discontinuity) != 0; })),
+              gaps);
+    EXPECT_GT(gaps, 30U);
+    for (std::size_t i = 0; i < stream.first_ticks.size(); ++i) {
+        ASSERT_NEAR(static_cast<double>(stream.first_ticks[i] - stream.first_ticks[0]),
+                    (stamps_s[stream.first_indices[i]] - stamps_s[0]) * 1e6, 1.01);
+    }
+}
+
+TEST(VirtualBoard, ASensorThatLosesEverySampleFallsSilent) {
+    VirtualBoardOptions options = at_rate(1000.0);
+    options.model.effects = {{"dropped", {}, {{"per_hour", 3.6e6}, {"longest", 1e6}}, ""}};
+    const auto board = board_with(options);
+    board->on_line_state(true);
+    board->advance_to(10'000 * ms);
+    EXPECT_EQ(board->sensor().next_instant_ns(), SimulatedMpu9250::never_ns);
+    EXPECT_LT(board->sampling_instants(), 1000U);
+}
+
 TEST(VirtualBoard, TheSameOptionsGiveTheSameBytes) {
     const auto run = [](std::uint64_t seed) {
         VirtualBoardOptions options = at_rate(1000.0);
