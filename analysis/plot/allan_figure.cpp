@@ -212,8 +212,14 @@ void add_keys(Panel& panel, const AllanFigure& allan, bool has_band) {
     };
     const bool are_many = groups_of(allan.traces).size() < allan.traces.size();
     const auto has_model = [](const AllanTrace& trace) { return !trace.model.empty(); };
-    if (!are_many && std::any_of(allan.traces.begin(), allan.traces.end(), has_model)) {
-        Curve& row = key("model");
+    const auto has_model_spectrum = [](const AllanTrace& trace) {
+        return !trace.model_spectrum.empty() && !trace.spectrum.points.empty();
+    };
+    // Of other deviations than Allan's there is no model curve.
+    const bool above = std::ranges::any_of(allan.traces, has_model);
+    const bool below = std::ranges::any_of(allan.traces, has_model_spectrum);
+    if (!are_many && (above || below)) {
+        Curve& row = key(above ? "model" : "model of the spectrum");
         row.stroke = {colours::ink, 2.0, model_dash_px};
     }
     if (has_band) {

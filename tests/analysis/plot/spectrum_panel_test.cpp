@@ -11,7 +11,9 @@
 namespace gyrolog {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
+using testing::Not;
 
 constexpr double N = 0.005 / deg_per_rad;  // 0.3 °/√h
 
@@ -68,6 +70,25 @@ TEST(SpectrumPanel, IsBelowTheAllanCurvesInTheSameColours) {
     EXPECT_EQ(without.panels.size(), 1U);
     EXPECT_NEAR(rendering.panels[0].plot.height(), without.panels[0].plot.height(),
                 0.05 * without.panels[0].plot.height());
+}
+
+TEST(SpectrumPanel, HasAKeyToItsModelWhetherOrNotTheDeviationHasOne) {
+    const auto keys = [](const AllanTrace& trace) {
+        const Figure figure = figure_of(figure_with({trace}));
+        std::vector<std::string> names;
+        for (const Curve& curve : figure.panels[0].curves) {
+            if (curve.legend.size() == 1) { names.push_back(curve.legend[0]); }
+        }
+        return names;
+    };
+    AllanTrace trace = white_trace("x");
+    EXPECT_THAT(keys(trace), Contains("model of the spectrum"));
+    trace.model = {{1.0, N}};
+    EXPECT_THAT(keys(trace), Contains("model"));
+    EXPECT_THAT(keys(trace), Not(Contains("model of the spectrum")));
+    trace.model.clear();
+    trace.model_spectrum.clear();
+    EXPECT_THAT(keys(trace), Not(Contains(testing::StartsWith("model"))));
 }
 
 TEST(SpectrumPanel, MarksTheStrongestLinesWithTheirFrequency) {
