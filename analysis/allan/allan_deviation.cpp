@@ -82,7 +82,7 @@ AllanCurve allan_deviation(const Column& column, std::span<const Segment> segmen
         static_cast<std::int64_t>(std::ranges::max(segments, {}, &Segment::count).count);
     const double scale = std::abs(column.scale);
     curve.points = deviations(signal, rule, factors_of(options, longest), scale, rate_hz, options.threads);
-    if (curve.points.empty()) { return curve; }
+    if (curve.points.empty() || !options.intervals) { return curve; }
 
     const bool whole_curve =
         options.kind == DeviationKind::overlapping && options.m.empty() && !options.every_m;

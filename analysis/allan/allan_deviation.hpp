@@ -39,6 +39,8 @@ struct AllanOptions {
     bool every_m = false;           // instead of those, all from 1 to half the longest segment; the time
                                     // taken grows with the square of the record's length
     unsigned threads = 1;           // 0: all processors; the result is the same bits for any number
+    bool intervals = true;          // false: lo, hi and edf stay 0, which saves most of the time on short
+                                    // records
     StageObserver on_stage{};       // of "integrate", "deviation", "intervals"
 };
 

@@ -430,6 +430,19 @@ TEST(AllanDeviation, IsTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
+TEST(AllanDeviation, WithoutIntervalsIsTheSameCurve) {
+    const Column column{"gx", "rad/s", std::vector<double>{1, 5, 2, 8, 3, 9, 4, 7, 6, 0}};
+    const std::vector<Segment> whole{{0, 10, 0}};
+    const AllanCurve with = allan_deviation(column, whole, 10.0);
+    const AllanCurve without = allan_deviation(column, whole, 10.0, {.intervals = false});
+    ASSERT_EQ(with.points.size(), without.points.size());
+    for (std::size_t i = 0; i < with.points.size(); ++i) {
+        EXPECT_EQ(without.points[i].deviation, with.points[i].deviation);
+        EXPECT_GT(with.points[i].hi, 0.0);
+        EXPECT_EQ(without.points[i].hi, 0.0);
+    }
+}
+
 TEST(AllanDeviation, IgnoresAConstantBias) {
     auto y = test::nbs14_1000_point_frequency();
     const auto before = allan_deviation(column_of(y), whole(1000), 1.0);
