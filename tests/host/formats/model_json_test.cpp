@@ -157,7 +157,9 @@ TEST(ModelJson, WhatIsNoModelIsRefused) {
     EXPECT_EQ(refusal_of(std::string(100'000, '[')), "model 'm.json': nested more than 32 deep");
     Json json = example();
     json["schema"] = "gyrolog-model/2";
-    EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': schema is 'gyrolog-model/2', not 'gyrolog-model/1'");
+    EXPECT_EQ(refusal_of(json.dump()),
+              "model 'm.json': schema is 'gyrolog-model/2', not 'gyrolog-model/1' (or 'gyrolog-datasheet/1', "
+              "'gyrolog-gyroparams/1')");
 }
 
 TEST(ModelJson, AOneSidedDensityIsTwiceTheTwoSidedOne) {

@@ -1,0 +1,148 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/noise/noise_model.hpp"
+#include "analysis/simulate/recording_simulator.hpp"
+#include "host/formats/effect_catalogue.hpp"
+#include "host/formats/recording_csv.hpp"
+
+namespace gyrolog {
+namespace {
+
+std::string temporary(const char* name) { return testing::TempDir() + "recording_csv_write_" + name; }
+
+std::string contents(const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+constexpr CsvWriteOptions resolved = {.rate_unit = {}, .digits = CsvWriteOptions::Digits::resolved};
+
+SensorModel lossy_model() {
+    SensorModel model = typical_mpu9250();
+    model.effects = {{.effect = "dropped", .axes = {}, .params = {{"per_hour", 500.0}}, .carried_json = {}}};
+    return model;
+}
+
+TEST(SimulatedText, ReadBackHasTheSameCountsStampsAndGrid) {
+    const SensorModel model = lossy_model();
+    const Recording made = simulate_recording(model, {.samples = 50'000, .seed = 2});
+    const std::string path = temporary("counts.csv.gz");
+    ASSERT_TRUE(write_recording_csv(made, path, resolved).ok());
+    const auto read = read_recording_csv(path);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->t_s, made.t_s);
+    EXPECT_EQ(read->rate_hz, made.rate_hz);
+    EXPECT_EQ(read->stamp_jitter_s, made.stamp_jitter_s);
+    ASSERT_EQ(read->segments.size(), made.segments.size());
+    EXPECT_GT(made.segments.size(), 20U);
+    for (std::size_t s = 0; s < made.segments.size(); ++s) {
+        EXPECT_EQ(read->segments[s].first_index, made.segments[s].first_index);
+        EXPECT_EQ(read->segments[s].count, made.segments[s].count);
+    }
+    for (const char* name : {"gx", "gy", "gz"}) {
+        const auto& counts = std::get<std::vector<std::int16_t>>(made.find(name)->data);
+        for (std::size_t row = 0; row < made.rows(); ++row) {
+            const double in_counts = read->find(name)->value(row) / model.lsb_rad_s;
+            ASSERT_EQ(std::lround(in_counts), counts[row]);
+            ASSERT_NEAR(in_counts, counts[row], 1e-3);
+        }
+    }
+    std::filesystem::remove(path);
+}
+
+TEST(SimulatedText, WithoutAnLsbKeepsNineDigits) {
+    SensorModel model = typical_mpu9250();
+    model.lsb_rad_s = 0.0;
+    const Recording made = simulate_recording(model, {.samples = 3000, .seed = 2});
+    const std::string path = temporary("reals.csv");
+    ASSERT_TRUE(write_recording_csv(made, path, resolved).ok());
+    const auto read = read_recording_csv(path);
+    ASSERT_TRUE(read.ok());
+    for (std::size_t row = 0; row < made.rows(); ++row) {
+        const double truth = made.find("gy")->value(row);
+        ASSERT_NEAR(read->find("gy")->value(row), truth, 1e-8 * std::fabs(truth));
+    }
+    std::filesystem::remove(path);
+}
+
+Recording small() {
+    Recording recording;
+    recording.rate_hz = 10.0;
+    recording.segments = {{0, 4, 0}};
+    recording.t_s = {-2e-6, 0.1, 0.2, 1234567.000000001};
+    recording.columns = {
+        {"gx", "rad/s", std::vector<std::int16_t>{-1, 0, 1, -32768}, 0.0152671 * rad_per_deg, 0.0, {}},
+        {"temp", "degC", std::vector<double>{25.123456, -0.00001, 25.0, 99.99996}, 1.0, 0.0, {}},
+        {"ref_x", "rad/s", std::vector<double>{0.1, 1e-9, -2.5, 1e12}, 1.0, 0.0, "rad_s"}};
+    return recording;
+}
+
+TEST(SimulatedText, HasAsManyDigitsAsAStepResolvesAndNoExponentInStamps) {
+    const std::string path = temporary("small.csv");
+    ASSERT_TRUE(write_recording_csv(small(), path, resolved).ok());
+    EXPECT_EQ(contents(path),
+              "t_s,gx_dps,temp_C,ref_x_rad_s\n"
+              "-0.000002,-0.01527,25.1235,0.1\n"
+              "0.1,0.00000,0.0000,1e-09\n"
+              "0.2,0.01527,25.0000,-2.5\n"
+              "1234567.000000001,-500.27233,100.0000,1e+12\n");
+    std::filesystem::remove(path);
+}
+
+TEST(SimulatedText, OfPiecesIsThatOfTheWhole) {
+    const SensorModel model = lossy_model();
+    const SimulationRequest request = {.samples = 20'000, .seed = 6};
+    const std::string whole_path = temporary("whole.csv");
+    const std::string pieces_path = temporary("pieces.csv");
+    ASSERT_TRUE(write_recording_csv(simulate_recording(model, request), whole_path, resolved).ok());
+    auto writer = RecordingCsvWriter::create(pieces_path, resolved);
+    ASSERT_TRUE(writer.ok());
+    RecordingSimulator simulator(model, request);
+    Recording piece;
+    while (simulator.next(piece)) { ASSERT_TRUE(writer->append(piece).ok()); }
+    EXPECT_FALSE(std::filesystem::exists(pieces_path));  // not before it is whole
+    ASSERT_TRUE(writer->close().ok());
+    EXPECT_EQ(contents(pieces_path), contents(whole_path));
+    std::filesystem::remove(whole_path);
+    std::filesystem::remove(pieces_path);
+}
+
+TEST(SimulatedText, ThatIsNotClosedLeavesWhatWasThere) {
+    const std::string path = temporary("kept.csv");
+    std::ofstream(path) << "precious";
+    {
+        auto writer = RecordingCsvWriter::create(path, resolved);
+        ASSERT_TRUE(writer.ok());
+        ASSERT_TRUE(writer->append(small()).ok());
+    }
+    EXPECT_EQ(contents(path), "precious");
+    EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+    std::filesystem::remove(path);
+}
+
+TEST(EffectCatalogue, TellsEveryEffectWithItsFormulaAndParameters) {
+    const std::string text = effect_catalogue_text();
+    const auto json = effect_catalogue_json();
+    EXPECT_EQ(json["schema"], "gyrolog-effects/1");
+    EXPECT_GE(json["effects"].size(), 30U);
+    for (const auto& effect : json["effects"]) {
+        const auto name = effect["effect"].get<std::string>();
+        EXPECT_NE(text.find(std::string(1, '\n').append(name).append("\n")), std::string::npos) << name;
+        EXPECT_FALSE(effect["model"].get<std::string>().empty());
+        for (const auto& param : effect["params"]) {
+            EXPECT_FALSE(param["meaning"].get<std::string>().empty()) << effect["effect"];
+            EXPECT_NE(text.find(param["name"].get<std::string>()), std::string::npos);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gyrolog

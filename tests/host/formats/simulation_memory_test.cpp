@@ -1,0 +1,75 @@
+// What a long simulation takes of memory, by counting what is allocated. GYROLOG_LONG_HOURS: built once for
+// the default tier and once, with 20, for the slow one.
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include "analysis/simulate/recording_simulator.hpp"
+#include "host/formats/recording_csv.hpp"
+
+namespace {
+
+std::atomic<std::size_t> bytes_now = 0;
+std::atomic<std::size_t> bytes_most = 0;
+
+void release(void* memory) {
+    bytes_now -= malloc_usable_size(memory);
+    std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    void* const memory = std::malloc(size);
+    if (memory == nullptr) { throw std::bad_alloc(); }
+    const std::size_t now = bytes_now += malloc_usable_size(memory);
+    std::size_t most = bytes_most;
+    while (now > most && !bytes_most.compare_exchange_weak(most, now)) {}
+    return memory;
+}
+
+void operator delete(void* memory) noexcept { release(memory); }
+void operator delete(void* memory, std::size_t) noexcept { release(memory); }
+
+namespace gyrolog {
+namespace {
+
+std::size_t most_bytes_of(double hours) {
+    SensorModel model = typical_mpu9250();
+    model.effects = {{.effect = "dropped", .axes = {}, .params = {{"per_hour", 100.0}}, .carried_json = {}},
+                     {.effect = "rtn",
+                      .axes = {},
+                      .params = {{"amplitude_dps", 0.01}, {"dwell_high_s", 5.0}, {"dwell_low_s", 5.0}},
+                      .carried_json = {}},
+                     {.effect = "lowpass", .axes = {}, .params = {{"fc_hz", 92.0}}, .carried_json = {}},
+                     {.effect = "spikes",
+                      .axes = {},
+                      .params = {{"per_hour", 100.0}, {"smallest_dps", 1.0}, {"largest_dps", 2.0}},
+                      .carried_json = {}}};
+    EXPECT_EQ(simulation_refusal(model), std::nullopt);
+    const std::size_t before = bytes_now;
+    bytes_most = before;
+    auto writer = RecordingCsvWriter::create("/dev/null",
+                                             {.rate_unit = {}, .digits = CsvWriteOptions::Digits::resolved});
+    EXPECT_TRUE(writer.ok());
+    RecordingSimulator simulator(
+        model, {.samples = static_cast<std::uint64_t>(hours * 3.6e6), .seed = 1, .rate_hz = 1000.0});
+    Recording piece;
+    while (simulator.next(piece)) { EXPECT_TRUE(writer->append(piece).ok()); }
+    EXPECT_TRUE(writer->close().ok());
+    return bytes_most - before;
+}
+
+TEST(SimulationMemory, DoesNotGrowWithTheLengthOfTheRecording) {
+    const std::size_t some = most_bytes_of(GYROLOG_LONG_HOURS / 20.0);
+    const std::size_t twenty_times = most_bytes_of(GYROLOG_LONG_HOURS);
+    EXPECT_LT(twenty_times, some + 100'000) << some << " bytes";
+    EXPECT_LT(twenty_times, 8'000'000U);
+}
+
+}  // namespace
+}  // namespace gyrolog
