@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -24,11 +25,21 @@ void parallel_for(std::size_t count, unsigned threads, const std::function<void(
     if (count == 0) { return; }
     const std::size_t all = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
     std::atomic<std::size_t> next = 0;
+    std::atomic_flag failed;
+    std::exception_ptr failure;
     const auto work = [&]() noexcept {
-        for (std::size_t i = next++; i < count; i = next++) { task(i); }
+        try {
+            for (std::size_t i = next++; i < count; i = next++) { task(i); }
+        } catch (...) {
+            if (!failed.test_and_set()) { failure = std::current_exception(); }
+            next = count;
+        }
     };
-    const auto others = started(std::min(all, count) - 1, work);
-    work();
+    {
+        const auto others = started(std::min(all, count) - 1, work);
+        work();
+    }
+    if (failure) { std::rethrow_exception(failure); }
 }
 
 }  // namespace gyrolog

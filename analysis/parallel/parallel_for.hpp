@@ -13,7 +13,8 @@ namespace gyrolog {
 // own, and sums are taken afterwards in the order of the pieces, the result is the same bits for any number
 // of threads.
 //
-// A task does not throw. Where the system gives fewer threads, the work is done by those that there are.
+// Where the system gives fewer threads, the work is done by those that there are. What a task throws, when
+// memory is out, reaches the caller after the others have returned, and pieces may be left undone.
 void parallel_for(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& task);
 
 }  // namespace gyrolog

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <latch>
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -36,6 +37,18 @@ TEST(ParallelFor, RunsPiecesAtTheSameTime) {
     std::latch both(2);
     parallel_for(2, 2, [&](std::size_t) { both.arrive_and_wait(); });
     EXPECT_TRUE(both.try_wait());
+}
+
+TEST(ParallelFor, HandsOnWhatATaskThrows) {
+    for (const unsigned threads : {1U, 4U}) {
+        std::atomic<int> begun = 0;
+        const auto fails = [&](std::size_t) {
+            ++begun;
+            throw std::bad_alloc();
+        };
+        EXPECT_THROW(parallel_for(1000, threads, fails), std::bad_alloc);
+        EXPECT_LE(begun, static_cast<int>(threads));
+    }
 }
 
 TEST(ParallelFor, RunsNoMoreThanItMay) {
