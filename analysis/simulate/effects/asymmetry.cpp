@@ -25,7 +25,7 @@ constexpr EffectParam params[] = {
 constinit const EffectDefinition asymmetry_effect = {
     .name = "asymmetry",
     .model = "w + gain |w|",
-    .source = "IEEE 528-2001 (scale factor asymmetry)",
+    .source = "IEEE 528-2019 (scale factor asymmetry)",
     .params = params,
     .make = make,
 };

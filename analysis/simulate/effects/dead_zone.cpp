@@ -35,7 +35,7 @@ constexpr EffectParam params[] = {
 constinit const EffectDefinition dead_zone_effect = {
     .name = "dead_zone",
     .model = "0 for |w| <= width_dps, else w - (1 - jump) width_dps sign(w)",
-    .source = "IEEE 528-2001 (dead band)",
+    .source = "IEEE 528-2019 (dead band)",
     .params = params,
     .make = make,
 };

@@ -49,7 +49,7 @@ constinit const EffectDefinition g_sensitivity_effect = {
     .model =
         "w + x_dps_per_g f_x + y_dps_per_g f_y + z_dps_per_g f_z, f the specific force in g "
         "(9.80665 m/s^2), gravity's own included",
-    .source = "IEEE 1431-2004, model equation (acceleration-sensitive bias)",
+    .source = "IEEE 528-2019 (acceleration-sensitive drift rate)",
     .params = params,
     .make = make,
 };

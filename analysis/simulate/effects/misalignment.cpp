@@ -45,7 +45,7 @@ constexpr EffectParam params[] = {
 constinit const EffectDefinition misalignment_effect = {
     .name = "misalignment",
     .model = "w_i + sum over j != i of from_j W_j, W the true rate",
-    .source = "IEEE 952-1997, model equation (input-axis misalignment)",
+    .source = "IEEE 528-2019 (input-axis misalignment)",
     .params = params,
     .make = make,
 };

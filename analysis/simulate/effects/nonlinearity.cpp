@@ -31,7 +31,7 @@ constexpr EffectParam params[] = {
 constinit const EffectDefinition nonlinearity_effect = {
     .name = "nonlinearity",
     .model = "w + FS (quadratic (w/FS)^2 + cubic (w/FS)^3), FS the model's full scale",
-    .source = "IEEE 952-1997, model equation (scale-factor nonlinearity)",
+    .source = "IEEE 528-2019 (nonlinearity)",
     .params = params,
     .make = make,
 };

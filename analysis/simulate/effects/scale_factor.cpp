@@ -19,7 +19,7 @@ constexpr EffectParam params[] = {
 constinit const EffectDefinition scale_factor_effect = {
     .name = "scale_factor",
     .model = "(1 + eps) w, w the answer to the motion before bias and noise",
-    .source = "IEEE 1293-1998 and 952-1997, model equation (scale-factor error)",
+    .source = "IEEE 528-2019 (scale factor error)",
     .params = params,
     .make = make,
 };

@@ -58,7 +58,7 @@ constinit const EffectDefinition vibration_rectification_effect = {
     .model =
         "w + sum over j of j_dps_per_g2 (f_j^2 - u_j^2), f the specific force in g, u what it is at "
         "rest with the body's z upward; of a vibration, what the world's samples show",
-    .source = "IEEE 1431-2004, model equation (acceleration-squared-sensitive bias)",
+    .source = "IEEE 528-2019 (acceleration-squared-sensitive drift rate)",
     .params = params,
     .make = make,
 };
