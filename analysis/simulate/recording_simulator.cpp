@@ -189,6 +189,17 @@ bool RecordingSimulator::is_simulated_temperature(const Column& column) const {
     return column.name == "temp" && simulates_temperature();
 }
 
+std::vector<std::string> RecordingSimulator::simulated_columns() const {
+    std::vector<std::string> names;
+    Recording empty;
+    make_columns(empty);
+    for (const Column& column : empty.columns) {
+        const bool simulated = !like_ || is_gyro(column) || is_simulated_temperature(column);
+        if (simulated) { names.push_back(column.name); }
+    }
+    return names;
+}
+
 void RecordingSimulator::make_columns(Recording& piece) const {
     if (!piece.columns.empty()) { return; }
     piece.rate_hz = rate_hz_;

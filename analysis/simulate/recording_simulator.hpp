@@ -42,6 +42,9 @@ public:
     // these, as they are, and the simulated temperature only if it has none.
     bool next(Recording& piece);
 
+    // Of those: what is simulated, not taken over.
+    std::vector<std::string> simulated_columns() const;
+
     std::uint64_t samples() const { return samples_; }
     std::uint64_t samples_done() const { return done_; }
     double rate_hz() const { return rate_hz_; }

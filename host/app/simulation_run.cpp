@@ -63,10 +63,10 @@ private:
 
 Result<SimulationOutcome> simulate_to_text(Console& console, const SensorModel& model,
                                            const SimulationRequest& request, const std::string& path) {
-    CsvWriteOptions options;
-    options.digits = CsvWriteOptions::Digits::resolved;
-    GYROLOG_TRY(RecordingCsvWriter file, RecordingCsvWriter::create(path, options));
     RecordingSimulator simulator(model, request);
+    CsvWriteOptions options;
+    options.resolved = simulator.simulated_columns();
+    GYROLOG_TRY(RecordingCsvWriter file, RecordingCsvWriter::create(path, options));
     SimulationOutcome outcome;
     outcome.rate_hz = simulator.rate_hz();
     HoleCount holes;

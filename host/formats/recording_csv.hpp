@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "analysis/recording/recording.hpp"
 #include "host/base/result.hpp"
@@ -35,15 +36,12 @@ Result<Recording> parse_recording_csv(std::string_view text, std::string name,
                                       const CsvReadOptions& options = {});
 
 struct CsvWriteOptions {
-    enum class Digits {
-        exact,     // the shortest number that reads back as the same
-        resolved,  // counts to a thousandth of their step or finer, temperatures to 0.0001 degC, else 9
-                   // digits
-    };
-
     std::string rate_unit{};  // "dps" or "rad_s" for gyro and reference rates; empty: as the source had them,
                               // else dps
-    Digits digits = Digits::exact;  // of numbers that are not in their source's unit; those are exact always
+    // Columns whose digits beyond what the sensor resolves mean nothing: counts to a thousandth of their step
+    // or finer, temperatures to 0.0001 degC, else 9 digits. All others are exact: the shortest number that
+    // reads back as the same.
+    std::vector<std::string> resolved{};
 };
 
 // Time stamps as they came, or index / rate where none did. Compressed by the name's ending. What was at

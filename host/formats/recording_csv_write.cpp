@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -102,8 +103,7 @@ private:
 // Writes one column's numbers.
 class Formatter {
 public:
-    Formatter(OutputColumn column, CsvWriteOptions::Digits digits) : column_(std::move(column)) {
-        exact_ = digits == CsvWriteOptions::Digits::exact || column_.as_source;
+    Formatter(OutputColumn column, bool exact) : column_(std::move(column)), exact_(exact) {
         if (exact_) { return; }
         constexpr double thermometer_step_C = 0.1;
         if (column_.column->is_counts()) { fixed_.emplace(column_.column->scale * column_.per_si); }
@@ -124,7 +124,7 @@ public:
 
 private:
     OutputColumn column_;
-    bool exact_ = true;
+    bool exact_;
     std::optional<FixedPoint> fixed_;
 };
 
@@ -161,7 +161,8 @@ Result<RecordingCsvWriter> RecordingCsvWriter::create(const std::string& path, C
 Status RecordingCsvWriter::append(const Recording& piece) {
     std::vector<Formatter> columns;
     for (const Column& column : piece.columns) {
-        columns.emplace_back(output_column(column, options_), options_.digits);
+        const bool exact = std::ranges::count(options_.resolved, column.name) == 0;
+        columns.emplace_back(output_column(column, options_), exact);
     }
     if (!headed_) {
         text_ = "t_s";

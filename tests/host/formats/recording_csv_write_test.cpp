@@ -23,7 +23,9 @@ std::string contents(const std::string& path) {
     return text.str();
 }
 
-constexpr CsvWriteOptions resolved = {.rate_unit = {}, .digits = CsvWriteOptions::Digits::resolved};
+CsvWriteOptions resolved(std::vector<std::string> columns = {"gx", "gy", "gz", "temp"}) {
+    return {.rate_unit = {}, .resolved = std::move(columns)};
+}
 
 SensorModel lossy_model() {
     SensorModel model = typical_mpu9250();
@@ -35,7 +37,7 @@ TEST(SimulatedText, ReadBackHasTheSameCountsStampsAndGrid) {
     const SensorModel model = lossy_model();
     const Recording made = simulate_recording(model, {.samples = 50'000, .seed = 2});
     const std::string path = temporary("counts.csv.gz");
-    ASSERT_TRUE(write_recording_csv(made, path, resolved).ok());
+    ASSERT_TRUE(write_recording_csv(made, path, resolved()).ok());
     const auto read = read_recording_csv(path);
     ASSERT_TRUE(read.ok()) << read.error().message;
     EXPECT_EQ(read->t_s, made.t_s);
@@ -63,7 +65,7 @@ TEST(SimulatedText, WithoutAnLsbKeepsNineDigits) {
     model.lsb_rad_s = 0.0;
     const Recording made = simulate_recording(model, {.samples = 3000, .seed = 2});
     const std::string path = temporary("reals.csv");
-    ASSERT_TRUE(write_recording_csv(made, path, resolved).ok());
+    ASSERT_TRUE(write_recording_csv(made, path, resolved()).ok());
     const auto read = read_recording_csv(path);
     ASSERT_TRUE(read.ok());
     for (std::size_t row = 0; row < made.rows(); ++row) {
@@ -87,7 +89,7 @@ Recording small() {
 
 TEST(SimulatedText, HasAsManyDigitsAsAStepResolvesAndNoExponentInStamps) {
     const std::string path = temporary("small.csv");
-    ASSERT_TRUE(write_recording_csv(small(), path, resolved).ok());
+    ASSERT_TRUE(write_recording_csv(small(), path, resolved({"gx", "temp", "ref_x"})).ok());
     EXPECT_EQ(contents(path),
               "t_s,gx_dps,temp_C,ref_x_rad_s\n"
               "-0.000002,-0.01527,25.1235,0.1\n"
@@ -97,13 +99,27 @@ TEST(SimulatedText, HasAsManyDigitsAsAStepResolvesAndNoExponentInStamps) {
     std::filesystem::remove(path);
 }
 
+TEST(SimulatedText, WhatWasTakenOverIsExact) {
+    const std::string path = temporary("exact.csv");
+    Recording recording = small();
+    recording.columns[2].source_unit.clear();
+    ASSERT_TRUE(write_recording_csv(recording, path, resolved({"gx"})).ok());
+    const auto read = read_recording_csv(path, {.rate_hz = 10.0});
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->find("temp")->data, recording.columns[1].data);
+    for (std::size_t row = 0; row < 4; ++row) {
+        EXPECT_DOUBLE_EQ(read->find("ref_x")->value(row), recording.columns[2].value(row));
+    }
+    std::filesystem::remove(path);
+}
+
 TEST(SimulatedText, OfPiecesIsThatOfTheWhole) {
     const SensorModel model = lossy_model();
     const SimulationRequest request = {.samples = 20'000, .seed = 6};
     const std::string whole_path = temporary("whole.csv");
     const std::string pieces_path = temporary("pieces.csv");
-    ASSERT_TRUE(write_recording_csv(simulate_recording(model, request), whole_path, resolved).ok());
-    auto writer = RecordingCsvWriter::create(pieces_path, resolved);
+    ASSERT_TRUE(write_recording_csv(simulate_recording(model, request), whole_path, resolved()).ok());
+    auto writer = RecordingCsvWriter::create(pieces_path, resolved());
     ASSERT_TRUE(writer.ok());
     RecordingSimulator simulator(model, request);
     Recording piece;
@@ -119,7 +135,7 @@ TEST(SimulatedText, ThatIsNotClosedLeavesWhatWasThere) {
     const std::string path = temporary("kept.csv");
     std::ofstream(path) << "precious";
     {
-        auto writer = RecordingCsvWriter::create(path, resolved);
+        auto writer = RecordingCsvWriter::create(path, resolved());
         ASSERT_TRUE(writer.ok());
         ASSERT_TRUE(writer->append(small()).ok());
     }

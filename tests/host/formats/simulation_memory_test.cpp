@@ -53,11 +53,11 @@ std::size_t most_bytes_of(double hours) {
     EXPECT_EQ(simulation_refusal(model), std::nullopt);
     const std::size_t before = bytes_now;
     bytes_most = before;
-    auto writer = RecordingCsvWriter::create("/dev/null",
-                                             {.rate_unit = {}, .digits = CsvWriteOptions::Digits::resolved});
-    EXPECT_TRUE(writer.ok());
     RecordingSimulator simulator(
         model, {.samples = static_cast<std::uint64_t>(hours * 3.6e6), .seed = 1, .rate_hz = 1000.0});
+    auto writer =
+        RecordingCsvWriter::create("/dev/null", {.rate_unit = {}, .resolved = simulator.simulated_columns()});
+    EXPECT_TRUE(writer.ok());
     Recording piece;
     while (simulator.next(piece)) { EXPECT_TRUE(writer->append(piece).ok()); }
     EXPECT_TRUE(writer->close().ok());
