@@ -24,10 +24,10 @@ struct EffectParam {
     std::string_view name;  // its unit at the end
     std::string_view meaning;
     Range range = Range::any;
+    bool from_model = false;      // not needed: what takes its place is another part of the model
     double plausible_from = 0.0;  // for an MPU-9250
     double plausible_to = 0.0;
     std::optional<double> otherwise{};  // where the model says nothing; without it the parameter is needed
-    bool from_model = false;            // not needed: what takes its place is another part of the model
     // Only whole numbers from 1 to this, unless zero.
     double whole_up_to = 0.0;
 };

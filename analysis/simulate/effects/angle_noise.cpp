@@ -27,7 +27,7 @@ constinit const EffectDefinition angle_noise_effect = {
     .name = "angle_noise",
     .model =
         "rate of an angle with independent errors of standard deviation Q_dps_s, independent on each axis",
-    .source = "IEEE 952-1997, C.1.1",
+    .source = "IEEE 952-1997, annex C (quantization noise)",
     .params = params,
     .make = make,
 };

@@ -25,7 +25,7 @@ constexpr EffectParam params[] = {
 constinit const EffectDefinition flicker_missing_effect = {
     .name = "flicker_missing",
     .model = "noise of two-sided density B_dps^2 / (2 pi f), independent on each axis",
-    .source = "IEEE 952-1997, C.1.3; made as M. S. Keshner, Proc. IEEE 70 (1982) 212",
+    .source = "IEEE 952-1997, annex C (bias instability); made as M. S. Keshner, Proc. IEEE 70 (1982) 212",
     .params = params,
     .make = make,
 };

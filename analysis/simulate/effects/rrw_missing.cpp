@@ -28,7 +28,7 @@ constexpr EffectParam params[] = {
 constinit const EffectDefinition rrw_missing_effect = {
     .name = "rrw_missing",
     .model = "random walk from zero, variance K_dps_sqrt_hz^2 t, independent on each axis",
-    .source = "IEEE 952-1997, C.1.4",
+    .source = "IEEE 952-1997, annex C (rate random walk)",
     .params = params,
     .make = make,
 };

@@ -86,7 +86,7 @@ constinit const EffectDefinition temp_lag_effect = {
     .model =
         "rate + c1_dps_per_C (y - reference_C), y the play of u with tau_s du/dt = T - u, both settled at "
         "first",
-    .source = "play operator: M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, 1996, chapter 2",
+    .source = "play operator: M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, Springer 1996",
     .params = params,
     .make = make,
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <ostream>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -134,6 +135,10 @@ struct TelegraphLaw {
         return with_effect(
             ideal_model(), "rtn",
             {{"amplitude_dps", 1.0}, {"dwell_high_s", dwell_high_s}, {"dwell_low_s", dwell_low_s}});
+    }
+
+    friend void PrintTo(const TelegraphLaw& law, std::ostream* out) {
+        *out << law.dwell_high_s << " s high, " << law.dwell_low_s << " s low, at " << law.rate_hz << " Hz";
     }
 };
 

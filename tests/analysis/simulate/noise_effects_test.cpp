@@ -26,20 +26,17 @@ std::shared_ptr<FormulaWorld> waving_world() {
 
 using Gain = std::function<double(std::size_t)>;
 
-// The effect multiplies what the model gives without it.
-void expect_gain(const SensorModel& with, SensorModel without, const Gain& gain,
-                 std::shared_ptr<const World> world = nullptr) {
+// The model's last effect multiplies what the model gives without it.
+void expect_gain(const SensorModel& model, const Gain& gain,
+                 const std::shared_ptr<const World>& world = nullptr) {
+    SensorModel without = model;
     without.effects.pop_back();
-    const Simulated changed = simulate(with, rate_hz, 3, 5, world);
+    const Simulated changed = simulate(model, rate_hz, 3, 5, world);
     const Simulated plain = simulate(without, rate_hz, 3, 5, world);
     for (std::size_t i = 0; i < plain.size(); ++i) {
         ASSERT_NEAR(changed.rate_rad_s[0][i], gain(i) * plain.rate_rad_s[0][i], 1e-14) << i;
         ASSERT_EQ(changed.rate_rad_s[1][i], plain.rate_rad_s[1][i]) << i;
     }
-}
-
-void expect_gain(const SensorModel& model, const Gain& gain, std::shared_ptr<const World> world = nullptr) {
-    expect_gain(model, model, gain, std::move(world));
 }
 
 TEST(WhiteNoiseEffects, ArwScaleMultipliesTheWhiteNoise) {
