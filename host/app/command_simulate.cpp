@@ -134,6 +134,24 @@ Result<std::uint64_t> samples_of(double duration_s, double rate_hz) {
     return static_cast<std::uint64_t>(samples);
 }
 
+// The model is of one gyro with three axes, whatever the recording has.
+void warn_of_axes(const Recording& recording, const std::string& name, std::vector<std::string>& warnings) {
+    std::string lacking;
+    for (const char* axis : axis_names) {
+        if (recording.find(std::string("g").append(axis)) == nullptr) {
+            lacking += (lacking.empty() ? "g" : ", g") + std::string(axis);
+        }
+    }
+    const auto numbered = [](const Column& column) {
+        return column.name.starts_with('g') && column.name.size() > 2;
+    };
+    if (std::ranges::any_of(recording.columns, numbered)) {
+        warnings.push_back(name + " is of several gyros; one is simulated");
+    } else if (!lacking.empty()) {
+        warnings.push_back(name + " has no " + lacking + "; simulated all the same");
+    }
+}
+
 Result<std::shared_ptr<const RecordedWorld>> read_like(const Options& options, Story& story) {
     auto read = read_recording({options.like, options.rate_hz, std::nullopt});
     if (!read.ok()) { return in_context("--like", std::move(read).error()); }
@@ -142,12 +160,7 @@ Result<std::shared_ptr<const RecordedWorld>> read_like(const Options& options, S
     for (const std::string& warning : recording->warnings) {
         story.warnings.push_back(options.like + ": " + warning);
     }
-    for (const Column& column : recording->columns) {
-        if (column.name.size() > 2 && column.name.starts_with('g')) {
-            story.warnings.emplace_back(options.like + " is of several gyros; one is simulated");
-            break;
-        }
-    }
+    warn_of_axes(*recording, options.like, story.warnings);
     auto world = std::make_shared<const RecordedWorld>(recording);
     for (const std::string& warning : world->warnings()) {
         story.warnings.push_back(options.like + ": " + warning);

@@ -133,6 +133,33 @@ TEST(Simulate, LikeACaptureHasItsTimesAndTemperature) {
     ASSERT_NE(like.find("temp"), nullptr);
 }
 
+TEST(Simulate, LikeAnArrayOrASingleAxisIsOneGyroOfThreeAxesAndIsSaidToBe) {
+    const TemporaryFolder folder;
+    const std::string model = write(typical_mpu9250(), folder);
+    std::ofstream array(folder.path("array.csv"));
+    std::ofstream single(folder.path("single.csv"));
+    array << "t_s,gx1_dps,gx2_dps\n";
+    single << "t_s,gz_dps\n";
+    for (int row = 0; row < 500; ++row) {
+        array << row << ",0,0\n";
+        single << row << ",0\n";
+    }
+    array.close();
+    single.close();
+    const auto like = [&](const char* name) {
+        const ProgramResult made =
+            run_gyrolog({"simulate", model, "-o", folder.path("like.csv"), "--like", folder.path(name)});
+        EXPECT_EQ(made.exit_code, 0) << made.err;
+        const Recording recording = read(folder.path("like.csv"));
+        for (const char* column : {"gx", "gy", "gz", "temp"}) { EXPECT_NE(recording.find(column), nullptr); }
+        EXPECT_EQ(recording.rows(), 500U);
+        EXPECT_THAT(made.err, HasSubstr("time stamps; not in it, so simulated: temperature, rest"));
+        return made.err;
+    };
+    EXPECT_THAT(like("array.csv"), HasSubstr("array.csv is of several gyros; one is simulated"));
+    EXPECT_THAT(like("single.csv"), HasSubstr("single.csv has no gx, gy; simulated all the same"));
+}
+
 TEST(Simulate, LikeAMotionTurnsAsItsOrientationReferenceDoes) {
     const std::filesystem::path real =
         std::filesystem::path(std::getenv("GYROLOG_SOURCE_DIR")) /
