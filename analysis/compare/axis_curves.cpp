@@ -50,6 +50,7 @@ AxisCurves axis_curves(const Column& column, std::span<const Segment> segments, 
     AllanOptions allan;
     allan.m = options.m;
     allan.threads = options.threads;
+    allan.intervals = options.intervals;
     curves.allan = allan_deviation(column, segments, rate_hz, allan);
     curves.spectrum =
         power_spectrum(column, segments, rate_hz, {.points_per_decade = spectrum_points_per_decade});

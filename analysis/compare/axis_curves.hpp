@@ -38,6 +38,7 @@ struct AxisCurves {
 
 struct AxisCurvesOptions {
     std::vector<std::int64_t> m{};  // averaging factors; empty: the usual ones
+    bool intervals = true;          // of the Allan deviation
     std::size_t blocks = 400;
     unsigned threads = 1;
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include "analysis/allan/confidence.hpp"
 #include "analysis/compare/axis_curves.hpp"
 
@@ -12,7 +14,6 @@ namespace gyrolog {
 namespace {
 
 constexpr double tail_probability = 0.025;
-constexpr double gap_probability = 0.05;
 
 // Squares of the amplitudes are about chi-square, whose cube root is nearly normal from two degrees of
 // freedom on (Wilson and Hilferty 1931): distances mean the same at every point.
@@ -44,58 +45,21 @@ void collect_ranges(ComparedCurve& curve, std::span<const int> sides) {
     }
 }
 
-// Sums over the simulations at one point, from which each can be taken out again.
-struct Scatter {
-    double n = 0.0;
+// How far a value lies from the simulations at one point, in standard deviations of one more value like them.
+double distance(double value, std::span<const double> simulated) {
+    const auto n = static_cast<double>(simulated.size());
     double mean = 0.0;
-    double square = 0.0;  // sum of squares about the mean
-
-    explicit Scatter(std::span<const double> values) : n(static_cast<double>(values.size())) {
-        for (const double x : values) { mean += x / n; }
-        for (const double x : values) { square += (x - mean) * (x - mean); }
-    }
-
-    // Of one more value.
-    double distance(double x) const { return ratio(std::fabs(x - mean), n, square); }
-    // Of one that is among them, from the others.
-    double distance_of_own(double x) const {
-        const double d = x - mean;
-        return ratio(std::fabs(d) * n / (n - 1.0), n - 1.0, square - d * d * n / (n - 1.0));
-    }
-
-private:
-    static double ratio(double d, double count, double sum_of_squares) {
-        const double variance = std::max(sum_of_squares, 0.0) / (count - 1.0) * (1.0 + 1.0 / count);
-        if (d == 0.0) { return 0.0; }
-        return variance > 0.0 ? d / std::sqrt(variance) : std::numeric_limits<double>::infinity();
-    }
-};
+    double square = 0.0;
+    for (const double x : simulated) { mean += x / n; }
+    for (const double x : simulated) { square += (x - mean) * (x - mean); }
+    const double d = std::fabs(value - mean);
+    if (d == 0.0) { return 0.0; }
+    return square > 0.0 ? d / std::sqrt(square / (n - 1.0) * (1.0 + 1.0 / n))
+                        : std::numeric_limits<double>::infinity();
+}
 
 bool all_positive(std::span<const double> values) {
     return std::ranges::all_of(values, [](double value) { return value > 0.0 && std::isfinite(value); });
-}
-
-// What the simulations show against each other.
-struct AmongSimulations {
-    std::vector<std::size_t> points_outside;  // of each
-    std::vector<double> largest_distance;
-
-    explicit AmongSimulations(std::size_t count) : points_outside(count, 0), largest_distance(count, 0.0) {}
-
-    void add_point(std::span<const double> values, std::span<const double> even, const Scatter& scatter,
-                   double lo, double hi) {
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            // The k outermost on either side lie outside the band of the others.
-            if (values[i] <= lo || values[i] >= hi) { ++points_outside[i]; }
-            largest_distance[i] = std::max(largest_distance[i], scatter.distance_of_own(even[i]));
-        }
-    }
-};
-
-template <typename Number>
-std::size_t count_at_least(std::span<const Number> values, Number least) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(values, [&](Number value) { return value >= least; }));
 }
 
 }  // namespace
@@ -119,18 +83,18 @@ double band_probability(std::size_t simulations) {
 }
 
 ComparedCurve compare_with_simulations(std::span<const double> at, std::span<const double> recording,
-                                       const std::vector<std::vector<double>>& simulations) {
+                                       const std::vector<std::vector<double>>& simulations,
+                                       double false_alarms) {
     const std::size_t count = simulations.size();
     const std::size_t rank = band_rank(count);
     ComparedCurve curve;
-    AmongSimulations among(count);
     std::vector<int> sides;
+    std::vector<std::size_t> outside_of_others(count, 0);  // points, of each simulation
     std::vector<double> values(count);
     std::vector<double> even(count);
     for (std::size_t point = 0; point < at.size(); ++point) {
         for (std::size_t i = 0; i < count; ++i) { values[i] = simulations[i][point]; }
         if (!all_positive(values) || !all_positive(recording.subspan(point, 1))) { continue; }
-        std::ranges::transform(values, even.begin(), evenly_scattered);
         std::vector<double> sorted = values;
         std::ranges::sort(sorted);
         const double lo = sorted[rank - 1];
@@ -141,30 +105,28 @@ ComparedCurve compare_with_simulations(std::span<const double> at, std::span<con
         curve.other.push_back(0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]));
         curve.hi.push_back(hi);
         sides.push_back(side_of(recording[point], lo, hi));
-
-        const Scatter scatter(even);
-        among.add_point(values, even, scatter, lo, hi);
-        const double distance = scatter.distance(evenly_scattered(recording[point]));
-        if (distance > curve.gap.distance) {
-            curve.gap = {at[point], curve.ratio_dB(curve.at.size() - 1), distance, false};
+        for (std::size_t i = 0; i < count; ++i) {
+            if (values[i] <= lo || values[i] >= hi) { ++outside_of_others[i]; }
+        }
+        std::ranges::transform(values, even.begin(), evenly_scattered);
+        const double here = distance(evenly_scattered(recording[point]), even);
+        if (here > curve.gap.distance) {
+            curve.gap = {at[point], curve.ratio_dB(curve.at.size() - 1), here, false};
         }
     }
+    if (curve.at.empty()) { return curve; }
     collect_ranges(curve, sides);
-    curve.points_by_chance = (1.0 - band_probability(count)) * static_cast<double>(curve.at.size());
-    const std::size_t as_often =
-        count_at_least(std::span<const std::size_t>(among.points_outside), curve.points_outside());
-    const std::size_t as_far =
-        count_at_least(std::span<const double>(among.largest_distance), curve.gap.distance);
-    curve.simulations_outside_as_often = as_often;
-    const auto is_rare = [&](std::size_t as_much) {
-        return static_cast<double>(as_much + 1) <= gap_probability * static_cast<double>(count + 1);
-    };
-    curve.gap.stands_out =
-        curve.gap.distance > 0.0 && (is_rare(as_far) || (curve.points_outside() > 0 && is_rare(as_often)));
+    const auto points = static_cast<double>(curve.at.size());
+    curve.points_by_chance = (1.0 - band_probability(count)) * points;
+    curve.simulations_outside_as_often = static_cast<std::size_t>(std::ranges::count_if(
+        outside_of_others, [&](std::size_t other) { return other >= curve.points_outside(); }));
+    const boost::math::students_t student(static_cast<double>(count) - 1.0);
+    curve.gap.stands_out = curve.gap.distance > quantile(complement(student, 0.5 * false_alarms / points));
     return curve;
 }
 
-ComparedCurve compare_with_intervals(const CurveWithInterval& recording, const CurveWithInterval& other) {
+ComparedCurve compare_with_intervals(const CurveWithInterval& recording, const CurveWithInterval& other,
+                                     double false_alarms) {
     ComparedCurve curve;
     std::vector<int> sides;
     for (std::size_t i = 0; i < recording.at.size(); ++i) {
@@ -193,11 +155,11 @@ ComparedCurve compare_with_intervals(const CurveWithInterval& recording, const C
             curve.gap = {at, in_dB(values[0] / values[3]), distance, false};
         }
     }
+    if (curve.at.empty()) { return curve; }
     collect_ranges(curve, sides);
     const auto points = static_cast<double>(curve.at.size());
     curve.points_by_chance = std::erfc(1.0) * points;  // P(|z| > sqrt 2)
-    curve.gap.stands_out =
-        points > 0.0 && curve.gap.distance > normal_quantile(1.0 - 0.5 * gap_probability / points);
+    curve.gap.stands_out = curve.gap.distance > normal_quantile(1.0 - 0.5 * false_alarms / points);
     return curve;
 }
 

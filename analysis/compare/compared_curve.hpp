@@ -52,11 +52,12 @@ double band_probability(std::size_t simulations);
 // `simulations`: each as long as `at`, at least three of them.
 //
 // The largest gap is where the recording's amplitude to the power 2/3 lies farthest from the mean of the
-// simulations', in units of their scatter (as for one more value). It stands out when at most one in twenty
-// simulations, each against the others, shows one as large or has as many points outside: not a calibrated
-// test.
+// simulations', in units of their scatter (as for one more value). It stands out when Student's t is as large
+// with a probability below `false_alarms` over the number of points: on the safe side, for neighbouring
+// points vary together. A guide to the eye, not a calibrated test.
 ComparedCurve compare_with_simulations(std::span<const double> at, std::span<const double> recording,
-                                       const std::vector<std::vector<double>>& simulations);
+                                       const std::vector<std::vector<double>>& simulations,
+                                       double false_alarms = 0.05);
 
 // A curve with its 68 % interval.
 struct CurveWithInterval {
@@ -65,8 +66,8 @@ struct CurveWithInterval {
 
 // At the points of `recording`, with `other` interpolated. Outside: the intervals do not meet, which by
 // chance, for errors of equal size, happens with probability P(|z| > sqrt 2) = 0.157 to 68.3 % intervals. The
-// gap stands out when it is larger than the largest of as many independent normal errors is with probability
-// 0.95.
-ComparedCurve compare_with_intervals(const CurveWithInterval& recording, const CurveWithInterval& other);
+// gap stands out likewise, by the normal distribution.
+ComparedCurve compare_with_intervals(const CurveWithInterval& recording, const CurveWithInterval& other,
+                                     double false_alarms = 0.05);
 
 }  // namespace gyrolog

@@ -16,6 +16,10 @@ namespace {
 // For the simulations that are in memory at a time.
 constexpr double memory_bytes = 3e9;
 
+// Of the sentences about all axes together, when there is no gap.
+constexpr double false_alarms = 0.05;
+double false_alarms_a_curve(std::size_t axes) { return false_alarms / (2.0 * static_cast<double>(axes)); }
+
 // An odd multiplier: seeds that differ by one have no simulation in common.
 constexpr std::uint64_t seed_step = 0x9E3779B97F4A7C15U;
 
@@ -109,8 +113,9 @@ public:
 
     bool simulate_all() {
         for (std::size_t i = 0; i < axes_.size(); ++i) {
-            own_[i] = axis_curves(compared_column(*recording_, axes_[i]), recording_->segments,
-                                  recording_->rate_hz, {.m = {}, .threads = options_.threads});
+            own_[i] =
+                axis_curves(compared_column(*recording_, axes_[i]), recording_->segments, recording_->rate_hz,
+                            {.m = {}, .intervals = false, .threads = options_.threads});
         }
         const unsigned wanted =
             options_.threads > 0 ? options_.threads : std::max(1U, std::thread::hardware_concurrency());
@@ -157,7 +162,7 @@ private:
         request.like = world_;
         const Recording simulated = simulate_recording(draw_within_uncertainty(model_, seed), request);
         for (std::size_t i = 0; i < axes_.size(); ++i) {
-            AxisCurvesOptions options;
+            AxisCurvesOptions options{.m = {}, .intervals = false};
             for (const AllanPoint& point : own_[i].allan.points) { options.m.push_back(point.m); }
             const AxisCurves curves = axis_curves(compared_column(simulated, axes_[i]), simulated.segments,
                                                   simulated.rate_hz, options);
@@ -186,9 +191,11 @@ private:
         AxisComparison axis;
         axis.axis = axes_[i];
         axis.allan = compare_with_simulations(taus_of(own.allan), deviations_of(own.allan),
-                                              collected(i, &SimulatedAxis::deviations));
+                                              collected(i, &SimulatedAxis::deviations),
+                                              false_alarms_a_curve(axes_.size()));
         axis.spectrum = compare_with_simulations(frequencies_of(own.spectrum), amplitudes_of(own.spectrum),
-                                                 collected(i, &SimulatedAxis::amplitudes));
+                                                 collected(i, &SimulatedAxis::amplitudes),
+                                                 false_alarms_a_curve(axes_.size()));
         axis.standard_deviation = compared_number(own.histogram.standard_deviation,
                                                   collected(i, &SimulatedAxis::standard_deviation));
         axis.skewness = compared_number(own.histogram.skewness, collected(i, &SimulatedAxis::skewness));
@@ -287,7 +294,9 @@ Comparison compare_recordings(const Recording& recording, const Recording& other
     describe(recording, comparison);
     comparison.other_name = other.name;
     comparison.less_reference = has_reference(recording) || has_reference(other);
-    for (const std::string& axis : axes_of(recording)) {
+    const std::vector<std::string> axes = axes_of(recording);
+    const double alarms = false_alarms_a_curve(axes.size());
+    for (const std::string& axis : axes) {
         if (other.find("g" + axis) == nullptr) {
             comparison.warnings.push_back(axis + " is left out: '" + other.name + "' does not have it");
             continue;
@@ -299,8 +308,9 @@ Comparison compare_recordings(const Recording& recording, const Recording& other
             axis_curves(compared_column(other, axis), other.segments, other.rate_hz, options);
         AxisComparison& one = comparison.axes.emplace_back();
         one.axis = axis;
-        one.allan = compare_with_intervals(with_interval(own.allan), with_interval(others.allan));
-        one.spectrum = compare_with_intervals(with_interval(own.spectrum), with_interval(others.spectrum));
+        one.allan = compare_with_intervals(with_interval(own.allan), with_interval(others.allan), alarms);
+        one.spectrum =
+            compare_with_intervals(with_interval(own.spectrum), with_interval(others.spectrum), alarms);
         one.standard_deviation = {
             own.histogram.standard_deviation, others.histogram.standard_deviation, {}, {}};
         one.skewness = {own.histogram.skewness, others.histogram.skewness, {}, {}};

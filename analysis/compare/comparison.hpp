@@ -2,7 +2,8 @@
 //
 // A simulation follows the recording: its time stamps and holes, its temperature, its reference motion
 // (RecordedWorld), with a sensor drawn within the model's stated uncertainties (model_draw.hpp). What lies
-// outside the band of the simulations is seen here and not explained, and no calibrated p-value is given.
+// outside the band of the simulations is seen here and not explained, and no calibrated p-value is given;
+// what is said to stand out does so on some axis of a recording without a gap with probability 5 % at most.
 //
 // In a recording with a reference rate, curves are of the gyro less the reference, in which the sensor's
 // faults are not hidden by the motion; where the reference is not known, its last value is held. Both sides

@@ -126,7 +126,7 @@ private:
         return panel;
     }
 
-    // With a third more of room above the curves, where the legend is to lie.
+    // With room above the curves, where the legend is to lie.
     void add_legend(Panel& panel) const {
         panel.curves[0].legend = other_legend();
         panel.curves[1].legend = {"recording"};
@@ -137,7 +137,7 @@ private:
             }
         }
         const Range shown = finder.padded(0.05, 1.0);
-        panel.y.range = Range{shown.lo, shown.hi * std::cbrt(shown.hi / shown.lo)};
+        panel.y.range = Range{shown.lo, shown.hi * std::pow(shown.hi / shown.lo, 0.6)};
     }
 
     Panel ratios() const {
