@@ -223,6 +223,15 @@ TEST(RecordedWorld, TheThermometersNoiseDoesNotReachTheDie) {
     }
 }
 
+TEST(RecordedWorld, ASteadyDriftOfTheTemperatureIsMetToTheEnds) {
+    const Maker maker = unbroken(3000);
+    const auto drift_C = [](double t_s) { return 20.0 + 0.1 * t_s; };
+    const RecordedWorld world(maker.recording({reals("temp", "degC", maker.column(drift_C))}));
+    for (const double t_s : {0.0, 0.3, 2.0, 15.5, 28.0, 29.9}) {
+        EXPECT_NEAR(temperature_at(world, t_s), drift_C(t_s), 1e-9);
+    }
+}
+
 TEST(RecordedWorld, TheTemperatureIsStraightAcrossAHole) {
     Maker maker{{}};
     for (std::int64_t slot = 0; slot < 100'000'000'000; slot += slot == 2999 ? 99'999'996'001 : 1) {
