@@ -14,7 +14,8 @@ namespace {
 constexpr double filter_side = 0.093882;  // weights: side, 1 - 2 side, side
 constexpr std::size_t ratio = 4;          // of the grids
 constexpr std::size_t chunk = 1024;
-constexpr std::uint64_t offset_draw = std::uint64_t{1} << 62U;  // of a stream; no sample reaches it
+constexpr std::size_t knots_max = (chunk + ratio - 1) / ratio + 2;  // two known, the rest passed in a chunk
+constexpr std::uint64_t offset_draw = std::uint64_t{1} << 62U;      // of a stream; no sample reaches it
 
 }  // namespace
 
@@ -87,8 +88,7 @@ void FlickerNoise::add_slower(std::size_t level, std::uint64_t first, std::span<
     Level& self = levels_[level];
     auto phase = static_cast<std::size_t>(first % ratio);
     const std::size_t passed = (phase + out.size()) / ratio;  // knots up to the end of `out`
-    std::array<double, (chunk + ratio - 1) / ratio + 2>
-        knots;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+    std::array<double, knots_max> knots;  // NOLINT(cppcoreguidelines-pro-type-member-init)
     knots[0] = self.knot_before;
     knots[1] = self.knot_after;
     produce(level + 1, std::span(knots).subspan(2, passed));
