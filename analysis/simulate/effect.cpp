@@ -26,8 +26,7 @@ std::optional<std::string> range_refusal(const EffectParam& param, double value)
     if (param.range == EffectParam::Range::yes_no && value != 0.0 && value != 1.0) { return "is not 0 or 1"; }
     if (param.whole_up_to != 0.0 &&
         (value < 1.0 || value > param.whole_up_to || value != std::floor(value))) {
-        return "is not a whole number from 1 to " +
-               std::to_string(static_cast<long long>(param.whole_up_to));
+        return "is not a whole number from 1 to " + std::to_string(static_cast<long long>(param.whole_up_to));
     }
     return std::nullopt;
 }
@@ -59,7 +58,9 @@ std::optional<std::string> effect_refusal(const EffectModel& effect) {
     for (const EffectParam& param : definition->params) {
         const auto given = effect.params.find(std::string(param.name));
         if (given == effect.params.end()) {
-            if (!param.otherwise && !param.from_model) { return name + " lacks its parameter " + quoted(param.name); }
+            if (!param.otherwise && !param.from_model) {
+                return name + " lacks its parameter " + quoted(param.name);
+            }
         } else if (const auto refusal = range_refusal(param, given->second)) {
             return name + ": " + std::string(param.name) + " " + *refusal;
         }
