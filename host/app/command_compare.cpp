@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -103,7 +105,13 @@ Status write_plot(const Comparison& comparison, const std::string& path) {
 }
 
 Status write_results(Console& console, const CompareRequest& request, const Comparison& comparison) {
-    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", comparison_text(comparison))); }
+    if (request.json_path != "-") {
+        GYROLOG_CHECK(write_text(console, "-", comparison_text(comparison)));
+    } else {
+        for (const std::string& warning : comparison.warnings) {
+            console.err << "gyrolog compare: warning: " << warning << '\n';
+        }
+    }
     if (!request.json_path.empty()) {
         GYROLOG_CHECK(write_text(console, request.json_path, comparison_json(comparison)));
     }

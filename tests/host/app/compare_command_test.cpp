@@ -1,0 +1,111 @@
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/simulate/recording_simulator.hpp"
+#include "host/app/command_line.hpp"
+#include "host/formats/model_json.hpp"
+#include "host/formats/recording_csv.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class CompareCommand : public testing::Test {
+protected:
+    void SetUp() override {
+        ASSERT_TRUE(write_model(typical_mpu9250(), model).ok());
+        ASSERT_TRUE(write_recording_csv(simulated(3000, 1), recording).ok());
+    }
+
+    static Recording simulated(std::uint64_t samples, std::uint64_t seed) {
+        SimulationRequest request;
+        request.samples = samples;
+        request.seed = seed;
+        return simulate_recording(typical_mpu9250(), request);
+    }
+
+    ExitCode compare(std::vector<std::string> arguments) {
+        out.str("");
+        err.str("");
+        arguments.insert(arguments.begin(), "compare");
+        return run_command_line(std::move(arguments), {out, err});
+    }
+
+    TemporaryFolder folder;
+    std::string model = folder.path("model.json");
+    std::string recording = folder.path("night.csv");
+    std::ostringstream out;
+    std::ostringstream err;
+};
+
+TEST_F(CompareCommand, WithAModelWritesTextJsonAndFigure) {
+    EXPECT_EQ(compare({recording, model, "--simulations", "12", "--plot", folder.path("c.png"), "--json",
+                       folder.path("c.json")}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_THAT(out.str(), HasSubstr("night.csv against 12 simulations of model.json"));
+    EXPECT_EQ(read_whole_file(folder.path("c.png")).substr(1, 3), "PNG");
+    const json answer = json::parse(read_whole_file(folder.path("c.json")));
+    EXPECT_EQ(answer["schema"], "gyrolog-compare/1");
+    EXPECT_EQ(answer["samples"], 3000);
+    EXPECT_EQ(answer["axes"].size(), 3U);
+    EXPECT_EQ(err.str(), "written: " + folder.path("c.json") + "\nwritten: " + folder.path("c.png") + "\n");
+}
+
+TEST_F(CompareCommand, WithARecordingTakesNoModel) {
+    ASSERT_TRUE(write_recording_csv(simulated(2000, 2), folder.path("day.csv")).ok());
+    EXPECT_EQ(compare({recording, folder.path("day.csv"), "--json", "-"}), ExitCode::ok) << err.str();
+    const json answer = json::parse(out.str());
+    EXPECT_EQ(answer["with"], "recording");
+    EXPECT_EQ(answer["other"], "day.csv");
+    EXPECT_TRUE(answer["axes"]["x"]["allan"].contains("recording_lo"));
+}
+
+TEST_F(CompareCommand, ComparesAsMuchAsTheDurationSays) {
+    EXPECT_EQ(compare({recording, model, "--simulations", "9", "--duration", "10s", "--json", "-"}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_EQ(json::parse(out.str())["samples"], 1000);
+    EXPECT_EQ(compare({recording, model, "--duration", "soon"}), ExitCode::usage);
+    EXPECT_EQ(compare({recording, model, "--duration", "0.1s"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("10 samples; 64 are needed"));
+}
+
+TEST_F(CompareCommand, SaysWhichFileCannotBeUsedAndWhy) {
+    EXPECT_EQ(compare({folder.path("none.csv"), model}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("none.csv"));
+    EXPECT_EQ(compare({recording, folder.path("none.json")}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("none.json"));
+
+    std::ofstream(folder.path("broken.json")) << R"({"schema": "gyrolog-model/1")";
+    EXPECT_EQ(compare({recording, folder.path("broken.json")}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("broken.json"));
+
+    json unknown = json::parse(read_whole_file(model));
+    unknown["effects"] = {{{"effect", "gremlins"}, {"axes", {"x"}}, {"params", json::object()}}};
+    std::ofstream(folder.path("unknown.json")) << unknown;
+    EXPECT_EQ(compare({recording, folder.path("unknown.json")}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("gremlins"));
+
+    std::ofstream(folder.path("no_rates.csv")) << "t_s,temp_C\n0,20\n0.01,20\n0.02,21\n";
+    EXPECT_EQ(compare({folder.path("no_rates.csv"), model}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("no_rates.csv"));
+    EXPECT_EQ(out.str(), "");
+}
+
+TEST_F(CompareCommand, RefusesTooFewSimulationsAndOtherPictures) {
+    EXPECT_EQ(compare({recording, model, "--simulations", "8"}), ExitCode::usage);
+    EXPECT_EQ(compare({recording, model, "--plot", "c.svg"}), ExitCode::usage);
+    EXPECT_EQ(compare({recording}), ExitCode::usage);
+}
+
+}  // namespace
+}  // namespace gyrolog
