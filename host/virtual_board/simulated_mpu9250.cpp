@@ -123,9 +123,7 @@ void SimulatedMpu9250::write(std::uint8_t address, std::uint8_t value, std::int6
     const double rate_before_hz = nominal_rate_hz();
     const bool wanted_before = samples_wanted();
     registers_[address] = value;
-    if ((address == glp_mpu_gyro_config || address == glp_mpu_accel_config) && simulator_) {
-        convert();
-    }
+    if ((address == glp_mpu_gyro_config || address == glp_mpu_accel_config) && simulator_) { convert(); }
     if (nominal_rate_hz() != rate_before_hz) {
         restart_clock(now_ns);
     } else if (samples_wanted() != wanted_before) {
