@@ -39,7 +39,7 @@ struct AxisCurves {
 struct AxisCurvesOptions {
     std::vector<std::int64_t> m{};  // averaging factors; empty: the usual ones
     bool intervals = true;          // of the Allan deviation
-    std::size_t blocks = 400;
+    std::size_t blocks = 400;       // of the averages; 0: none
     unsigned threads = 1;
 };
 

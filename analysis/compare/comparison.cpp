@@ -162,7 +162,10 @@ private:
         request.like = world_;
         const Recording simulated = simulate_recording(draw_within_uncertainty(model_, seed), request);
         for (std::size_t i = 0; i < axes_.size(); ++i) {
-            AxisCurvesOptions options{.m = {}, .intervals = false};
+            // Only the first is drawn over time.
+            AxisCurvesOptions options;
+            options.intervals = false;
+            if (simulation > 0) { options.blocks = 0; }
             for (const AllanPoint& point : own_[i].allan.points) { options.m.push_back(point.m); }
             const AxisCurves curves = axis_curves(compared_column(simulated, axes_[i]), simulated.segments,
                                                   simulated.rate_hz, options);
