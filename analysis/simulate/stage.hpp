@@ -2,8 +2,7 @@
 //
 // Invariants that every stage keeps:
 //   - Sample k of a stream is a function of the model, the rate, the world, the seed and k. Blocks follow
-//   each
-//     other without a hole from index 0; how they are asked for, and on which thread, changes nothing.
+//     each other without a hole from index 0; how they are asked for, and on which thread, changes nothing.
 //   - Memory does not grow with the number of samples.
 //   - Only portable arithmetic (portable_math.hpp) decides a sample: the same bits on every machine.
 #pragma once

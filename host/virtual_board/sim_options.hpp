@@ -14,8 +14,8 @@
 namespace gyrolog {
 
 //   model=FILE       a gyrolog-model/1 file; without it a typical MPU-9250. The capture is then the signal
-//   that
-//                    a simulation of the model with this seed gives, and both clocks of the board are true
+//                    that a simulation of the model with this seed gives, and both clocks of the board are
+//                    true
 //   rate=HZ          start-up output rate; without it the model's
 //   full_scale=DPS   start-up range: 250 500 1000 2000; without it the smallest that holds the model's
 //   dlpf=HZ|off      start-up low-pass; without it one that has the rate
@@ -24,8 +24,7 @@ namespace gyrolog {
 //   board=N          which of them this one is, from 1
 //   realtime=1       keep to the clock
 //   clock_ppm=X      the sensor's clock against nominal, within 10000; without it 0 for a given model,
-//   otherwise
-//                    drawn from the seed
+//                    otherwise drawn from the seed
 //   first_tick=N, first_sequence=N, boot_id=N, ring=BYTES
 //   fault=KIND@SECONDS[+KIND@SECONDS...]   of device time since the start; link_stall@FROM..TO
 //                    kinds: fifo_overflow bus_error link_stall drop_packet duplicate_packet corrupt_byte

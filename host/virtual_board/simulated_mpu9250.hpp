@@ -2,17 +2,15 @@
 //
 // Its samples are those of SensorSimulator with the same model and seed, at the rate that is set:
 //   when      A sample is there at its slot's time stamp, counted from the first one. The model's clock
-//   effects
-//             and its timestamp_jitter_s act through the stamps. Instants keep their order and, between slots
-//             that follow each other, a distance of 0.51 to 1.49 periods, so that no firmware takes jitter
-//             for a lost interrupt.
+//             effects and its timestamp_jitter_s act through the stamps. Instants keep their order and,
+//             between slots that follow each other, a distance of 0.51 to 1.49 periods, so that no firmware
+//             takes jitter for a lost interrupt.
 //   lost      A slot that the model marks as lost brings no interrupt and nothing into the FIFO. The firmware
 //             cannot count it: the next sample is flagged as a discontinuity of time, the host's accounts
 //             miss nothing, and the recording has a hole by the ticks.
 //   gyro      The counts are SensorSimulator's own, bit for bit, where the registers set the model's full
-//   scale
-//             and the model's step is the register's to 0.1 % (files round it). Otherwise the registers' step
-//             and range convert the same rates.
+//             scale and the model's step is the register's to 0.1 % (files round it). Otherwise the
+//             registers' step and range convert the same rates.
 //   accel     The specific force in the sensor's axes, with acc_noise_m_s2.
 //   DLPF_CFG  Chooses the rates only. The model's noise holds at the output; what filters is the model's own
 //             `lowpass` effect.

@@ -13,9 +13,12 @@
 // folded spectrum included. Order 1: phi_1 = exp(-w T), m = 0. Order 2, with q = a T:
 //   phi_1 = 2 exp(-q) cos q, phi_2 = -exp(-2 q). The remainder v_k = y_k - phi_1 y_{k-1} - phi_2 y_{k-2} is
 //   the filter's impulse response 2 a exp(-a t) sin a t over the last interval, and over the one before what
-//   the recursion has left of it, 2 a exp(-q - a t) sin(q - a t). So, in units of N^2 / T, var v        = 4 q
-//   (I(sin^2 x) + exp(-2 q) I(sin^2(q - x))), cov v, v_-1  = 4 q exp(-q) I(sin x sin(q - x)),         I(g) =
-//   integral of exp(-2 x) g from x = 0 to q,
+//   the recursion has left of it, 2 a exp(-q - a t) sin(q - a t). So, in units of N^2 / T,
+//
+//     var v_k         = 4 q (I(sin^2 x) + exp(-2 q) I(sin^2(q - x))),
+//     cov v_k, v_k-1  = 4 q exp(-q) I(sin x sin(q - x)),
+//     I(g)            = integral of exp(-2 x) g from x = 0 to q,
+//
 // and the spectral factor with |m| < 1 follows from their ratio.
 //
 // All else in the signal passes the filter as straight lines between the samples, solved exactly; it starts
