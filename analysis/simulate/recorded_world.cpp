@@ -12,7 +12,6 @@ namespace gyrolog {
 namespace {
 
 constexpr double standard_gravity_m_s2 = 9.80665;
-constexpr double knot_s = 1.0;
 constexpr double window_half_s = 5.0;
 constexpr double window_rows = 30.0;
 
@@ -184,13 +183,15 @@ void RecordedWorld::read_temperature() {
 
 void RecordedWorld::smooth_temperature(std::span<const Knot> known) {
     const double half_s = std::max(window_half_s, 0.5 * window_rows / recording_->rate_hz);
+    const double knot_s = half_s / 5.0;
     std::size_t begin = 0;
-    for (double centre_s = 0.0; centre_s < known.back().at_s + knot_s; centre_s += knot_s) {
+    for (std::int64_t knot = 0;; ++knot) {
+        double centre_s = static_cast<double>(knot) * knot_s;
         while (begin < known.size() && known[begin].at_s < centre_s - half_s) { ++begin; }
-        if (begin == known.size()) { break; }
+        if (begin == known.size() || centre_s >= known.back().at_s + knot_s) { break; }
         if (known[begin].at_s > centre_s + half_s) {  // a hole: on to the first window that reaches its end
-            centre_s = std::max(centre_s, std::floor((known[begin].at_s - half_s) / knot_s) * knot_s);
-            continue;
+            knot = static_cast<std::int64_t>(std::ceil((known[begin].at_s - half_s) / knot_s));
+            centre_s = static_cast<double>(knot) * knot_s;
         }
         LineSums sums;
         const double reference_C = known[begin].value_C;

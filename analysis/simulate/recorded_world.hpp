@@ -22,9 +22,9 @@ namespace gyrolog {
 // Specific force: ax ay az, likewise; without them gravity on z. The accelerometer's noise is in it.
 //
 // Temperature: the recorded one has the thermometer's noise, which the die has not. What acts is a straight
-// line fitted to the samples within 5 s on either side (at least 30 rows), once a second, joined by straight
-// lines. At 100 Hz that leaves 1/30 of the noise; a settling with a time constant of 60 s, the fastest of
-// interest, is followed to 0.1 % of its excursion.
+// line fitted to the samples within 5 s on either side (at least 30 rows), a fifth of that apart, joined by
+// straight lines. At 100 Hz that leaves 1/30 of the noise; a settling with a time constant of 60 s, the
+// fastest of interest, is followed to 0.1 % of its excursion.
 class RecordedWorld final : public World {
 public:
     explicit RecordedWorld(std::shared_ptr<const Recording> recording);

@@ -116,6 +116,7 @@ std::vector<std::string> effect_names(const SensorModel& model) {
         }
     }
     std::vector<std::string> names;
+    names.reserve(found.size());
     for (const auto& [name, axes] : found) {
         names.push_back(axes.empty() ? name : fmt::format("{} ({})", name, fmt::join(axes, ", ")));
     }
