@@ -40,18 +40,18 @@ void read_noise(JsonKeys& keys, SensorModel& model) {
     const Vector3 density = vector_or_zero(keys, "NoiseDensity", Range::not_negative);
     const Vector3 instability = vector_or_zero(keys, "BiasInstability", Range::not_negative);
     const Vector3 walk = vector_or_zero(keys, "RandomWalk", Range::not_negative);
-    double factor = 1.0;
+    double sides = 1.0;
     if (keys.find("NoiseType") != nullptr || is_any(density) || is_any(instability) || is_any(walk)) {
         const std::string type = keys.text("NoiseType");
-        if (type == "single-sided") { factor = std::sqrt(2.0); }
+        if (type == "double-sided") { sides = std::sqrt(2.0); }
         if (type != "single-sided" && type != "double-sided") {
             keys.fail("NoiseType", "is neither single-sided nor double-sided");
         }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        model.axes[axis].noise.N_rad_per_sqrt_s = density[axis] / factor;
-        model.axes[axis].noise.B_rad_per_s = instability[axis] / factor;
-        model.axes[axis].noise.K_rad_per_s_sqrt_s = walk[axis] / factor;
+        model.axes[axis].noise.N_rad_per_sqrt_s = density[axis] / sides;
+        model.axes[axis].noise.B_rad_per_s = instability[axis];
+        model.axes[axis].noise.K_rad_per_s_sqrt_s = walk[axis] * sides;
     }
 }
 

@@ -78,9 +78,10 @@ std::string gyroparams_script(const ExportSource& source) {
     if (source.temperature) { script += temperature_lines(*source.temperature); }
     script +=
         "if isprop(params, 'NoiseType')\n"
-        "    params.NoiseType = 'double-sided';  % the densities above are two-sided\n"
-        "else\n"
-        "    warning('this release takes densities as one-sided: white noise comes out 3 dB low');\n"
+        "    params.NoiseType = 'single-sided';  % white noise of NoiseDensity*sqrt(SampleRate) a sample\n"
+        "else  % this release takes sqrt(SampleRate/2)\n"
+        "    params.NoiseDensity = params.NoiseDensity*sqrt(2);\n"
+        "    params.RandomWalk = params.RandomWalk/sqrt(2);\n"
         "end\n"
         "% Not measured: AxesMisalignment, AccelerationBias";
     script += source.temperature ? ".\n" : ", TemperatureBias, TemperatureScaleFactor.\n";

@@ -2,7 +2,7 @@
 //
 // MathWorks' names: NoiseDensity is N, BiasInstability is B (their flat Allan deviation is 0.664 B, as in
 // IEEE Std 952-1997), RandomWalk is the rate random walk K, not the angle random walk of data sheets.
-// NoiseType "double-sided" takes them as two-sided densities, which these are.
+// NoiseType "single-sided" is the one that simulates such an N and K (gyroparams_json.hpp says why).
 #pragma once
 
 #include <string>

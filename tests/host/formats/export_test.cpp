@@ -80,7 +80,9 @@ TEST(GyroparamsScript, NeverTakesOneCoefficientForAnother) {
     EXPECT_THAT(script, HasSubstr("params.RandomWalk = [0 0 3e-06];"));
     EXPECT_THAT(script, HasSubstr("0 of x: not identified, at most 4e-06 (at 68.3 %), y: not measured"));
     EXPECT_THAT(script, HasSubstr("params.ConstantBias = [0.01 0 -0.02];"));
-    EXPECT_THAT(script, HasSubstr("'double-sided'"));
+    EXPECT_THAT(script, HasSubstr("params.NoiseType = 'single-sided';"));
+    EXPECT_THAT(script, HasSubstr("    params.NoiseDensity = params.NoiseDensity*sqrt(2);"));
+    EXPECT_THAT(script, HasSubstr("    params.RandomWalk = params.RandomWalk/sqrt(2);"));
     EXPECT_THAT(script, Not(HasSubstr("MeasurementRange")));
 }
 
