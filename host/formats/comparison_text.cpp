@@ -54,6 +54,15 @@ std::string ranges_text(const Comparison& comparison, const ComparedCurve& curve
     return text;
 }
 
+// Where chance does as much, places are noise, and a list of them would only mislead.
+bool places_say_something(const Comparison& comparison, const ComparedCurve& curve) {
+    if (curve.gap.stands_out) { return true; }
+    if (curve.simulations_outside_as_often) {
+        return *curve.simulations_outside_as_often * 20 < comparison.simulations;
+    }
+    return static_cast<double>(curve.points_outside()) > 2.0 * curve.points_by_chance;
+}
+
 std::string curve_text(const Comparison& comparison, const char* name, const ComparedCurve& curve,
                        PlaceText place) {
     if (curve.at.empty()) { return fmt::format("  {}: no values above zero to compare\n", name); }
@@ -63,7 +72,8 @@ std::string curve_text(const Comparison& comparison, const char* name, const Com
         text += fmt::format("; {} of {} simulations have as many against the others",
                             *curve.simulations_outside_as_often, comparison.simulations);
     }
-    return text + '\n' + ranges_text(comparison, curve, place);
+    text += '\n';
+    return places_say_something(comparison, curve) ? text + ranges_text(comparison, curve, place) : text;
 }
 
 TextRow number_row(const char* label, const char* unit, const ComparedNumber& number, double per_unit) {

@@ -92,6 +92,15 @@ TEST(ComparisonText, ListsTheLargestRangesOnly) {
     EXPECT_THAT(text, Not(HasSubstr("at 3 s")));
 }
 
+TEST(ComparisonText, ListsNoPlacesWhereChanceDoesAsMuch) {
+    Comparison comparison = against_a_model();
+    comparison.axes[0].spectrum.simulations_outside_as_often = 2;
+    const std::string text = comparison_text(comparison);
+    EXPECT_THAT(text, Not(HasSubstr("13 mHz to 0.1 Hz")));
+    EXPECT_THAT(text, HasSubstr("2 of 40 simulations have as many against the others\n                "));
+    EXPECT_THAT(text, HasSubstr("13 ms to 100 ms")) << "this one stands out";
+}
+
 TEST(ComparisonText, OfTwoRecordingsSpeaksOfTheFirst) {
     Comparison comparison = against_a_model();
     comparison.simulations = 0;
