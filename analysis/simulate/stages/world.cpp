@@ -11,36 +11,68 @@ namespace {
 
 constexpr double wander_sd_C = 0.5;
 constexpr double wander_tau_s = 1800.0;
+constexpr double wander_knot_s = 16.0;
 constexpr double standard_gravity_m_s2 = 9.80665;
 
-// A first-order Gauss-Markov process sampled at the block boundaries, exact at any rate, with straight lines
-// between.
+// A first-order Gauss-Markov process at knots a fixed time apart, exact at the knots; between them the cubic
+// whose slope at each knot is that from the one before to the one after (Catmull and Rom 1974). No sampling
+// rate is in it: a slow one reads the same curve as a fast one.
 class WanderingTemperature {
 public:
     explicit WanderingTemperature(const StageContext& context)
         : wander_(context.stream({'T', 'w'}, 0)),
           reference_C_(context.model.temperature ? context.model.temperature->reference_C
                                                  : TemperatureModel{}.reference_C),
-          correlation_(portable_exp(-static_cast<double>(block_samples) / (context.rate_hz * wander_tau_s))),
-          next_C_(wander_sd_C * wander_.normal(0)) {}
+          samples_per_knot_(wander_knot_s * context.rate_hz),
+          correlation_(portable_exp(-wander_knot_s / wander_tau_s)),
+          innovation_C_(wander_sd_C * std::sqrt(1.0 - correlation_ * correlation_)) {
+        knots_C_[3] = wander_sd_C * wander_.normal(draws_++);
+        for (int more = 0; more < 3; ++more) { draw_knot(); }
+    }
 
     void fill(std::uint64_t first_index, BlockValues& die_C) {
-        const double now_C = next_C_;
-        const double innovation_C = wander_sd_C * std::sqrt(1.0 - correlation_ * correlation_);
-        next_C_ = correlation_ * now_C + innovation_C * wander_.normal(first_index / block_samples + 1);
-        const double step_C = (next_C_ - now_C) / static_cast<double>(block_samples);
-        double place = 0.0;
-        for (double& temperature_C : die_C) {
-            temperature_C = reference_C_ + now_C + step_C * place;
-            place += 1.0;
+        std::size_t i = 0;
+        while (i < block_samples) {
+            const double begin = static_cast<double>(knot_) * samples_per_knot_;
+            const double end = static_cast<double>(knot_ + 1) * samples_per_knot_;
+            const double first = static_cast<double>(first_index + i);
+            if (first >= end) {
+                ++knot_;
+                draw_knot();
+                continue;
+            }
+            const double samples_left = std::ceil(end - first);
+            const std::size_t stop = samples_left < static_cast<double>(block_samples - i)
+                                         ? i + static_cast<std::size_t>(samples_left)
+                                         : block_samples;
+            const auto [before_C, here_C, next_C, after_C] = knots_C_;
+            const double slope = (next_C - before_C) / 2.0;
+            const double next_slope = (after_C - here_C) / 2.0;
+            const double rise = next_C - here_C;
+            const double bend = 3.0 * rise - 2.0 * slope - next_slope;
+            const double twist = slope + next_slope - 2.0 * rise;
+            const double start_C = reference_C_ + here_C;
+            for (; i < stop; ++i) {
+                const double part = (static_cast<double>(first_index + i) - begin) / samples_per_knot_;
+                die_C[i] = start_C + part * (slope + part * (bend + part * twist));
+            }
         }
     }
 
 private:
+    void draw_knot() {
+        for (std::size_t k = 0; k < 3; ++k) { knots_C_[k] = knots_C_[k + 1]; }
+        knots_C_[3] = correlation_ * knots_C_[2] + innovation_C_ * wander_.normal(draws_++);
+    }
+
     RandomStream wander_;
     double reference_C_;
+    double samples_per_knot_;
     double correlation_;
-    double next_C_;
+    double innovation_C_;
+    std::uint64_t draws_ = 0;
+    std::uint64_t knot_ = 0;           // the one at or before the sample
+    std::array<double, 4> knots_C_{};  // knot_ - 1 to knot_ + 2, less the reference
 };
 
 std::array<std::span<double>, 3> spans_of(BlockVectors& vectors) {

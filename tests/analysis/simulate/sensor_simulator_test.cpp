@@ -102,6 +102,43 @@ TEST(SensorSimulator, TheTemperatureWandersSlowlyAboutTheModelsReference) {
     }
 }
 
+std::vector<double> temperatures_C(double rate_hz, int blocks) {
+    SensorSimulator simulator(quiet_model(), rate_hz, 3);
+    std::vector<double> all_C;
+    for (int i = 0; i < blocks; ++i) {
+        const SampleBlock& block = simulator.next_block();
+        all_C.insert(all_C.end(), block.die_C.begin(), block.die_C.end());
+    }
+    return all_C;
+}
+
+TEST(SensorSimulator, TheTemperatureIsTheSameCurveAtEverySamplingRate) {
+    const std::vector<double> fast_C = temperatures_C(1000.0, 98);  // 100 s
+    const std::vector<double> usual_C = temperatures_C(10.0, 5);    // 512 s
+    const std::vector<double> slow_C = temperatures_C(0.5, 1);
+    const std::vector<double> slowest_C = temperatures_C(0.025, 1);  // knots between samples
+    for (std::size_t k = 0; k < 1000; ++k) { ASSERT_NEAR(fast_C[100 * k], usual_C[k], 1e-12) << k; }
+    for (std::size_t k = 0; k < 256; ++k) { ASSERT_NEAR(slow_C[k], usual_C[20 * k], 1e-12) << k; }
+    for (std::size_t k = 0; k < 51; ++k) { ASSERT_NEAR(slowest_C[k], slow_C[20 * k], 1e-12) << k; }
+    EXPECT_GT(std::fabs(usual_C[0] - usual_C[5000]), 1e-3);
+}
+
+TEST(SensorSimulator, TheTemperaturesWanderHasItsStandardDeviationAndHalfAnHoursMemory) {
+    const std::vector<double> all_C = temperatures_C(1.0 / 1800.0, 10);
+    const auto count = static_cast<double>(all_C.size());
+    const double reference_C = TemperatureModel{}.reference_C;
+    double squares = 0.0;
+    double products = 0.0;
+    for (std::size_t k = 1; k < all_C.size(); ++k) {
+        squares += std::pow(all_C[k] - reference_C, 2.0);
+        products += (all_C[k] - reference_C) * (all_C[k - 1] - reference_C);
+    }
+    // With a correlation r from one to the next: Bartlett's variances, (1 + r^2) / (1 - r^2) and 1 - r^2.
+    const double r = std::exp(-1.0);
+    EXPECT_NEAR(squares / count / 0.25, 1.0, 4.0 * std::sqrt(2.0 * (1.0 + r * r) / (1.0 - r * r) / count));
+    EXPECT_NEAR(products / squares, r, 4.0 * std::sqrt((1.0 - r * r) / count));
+}
+
 TEST(SensorSimulator, RatesAreWholeCountsClippedAtTheSaturation) {
     SensorModel model = quiet_model();
     model.lsb_rad_s = 0.01;
