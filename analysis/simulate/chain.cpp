@@ -82,7 +82,19 @@ const EffectDefinition* find_effect(std::string_view name) {
     return nullptr;
 }
 
-std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& context) {
+double true_rate_hz(const SensorModel& model, double nominal_hz) {
+    double rate_hz = nominal_hz;
+    for (const EffectModel& entry : model.effects) {
+        const EffectDefinition* definition = find_effect(entry.effect);
+        if (definition->rate_error.empty()) { continue; }
+        rate_hz *= 1.0 + entry.params.at(std::string(definition->rate_error));
+    }
+    return rate_hz;
+}
+
+std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& nominal) {
+    const StageContext context{nominal.model, true_rate_hz(nominal.model, nominal.rate_hz), nominal.seed,
+                               nominal.world};
     std::vector<std::unique_ptr<Stage>> stages;
     const auto take = [&](std::unique_ptr<Stage> stage) {
         if (stage) { stages.push_back(std::move(stage)); }

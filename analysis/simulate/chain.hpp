@@ -22,7 +22,11 @@ std::span<const ChainLink> signal_chain();
 // Null for an unknown name.
 const EffectDefinition* find_effect(std::string_view name);
 
-// The stages that the context's model needs; it has no simulation_refusal().
-std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& context);
+// The rate at which a sensor really samples that is set to `nominal_hz`.
+double true_rate_hz(const SensorModel& model, double nominal_hz);
+
+// The stages that the context's model needs; it has no simulation_refusal(). They run at the true rate:
+// sample k of all of them is that of the time k / rate.
+std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& nominal);
 
 }  // namespace gyrolog

@@ -24,6 +24,9 @@ std::optional<std::string> range_refusal(const EffectParam& param, double value)
         return "is not between 0 and 1";
     }
     if (param.range == EffectParam::Range::yes_no && value != 0.0 && value != 1.0) { return "is not 0 or 1"; }
+    if (param.most && std::fabs(value) > *param.most) {
+        return "is beyond " + std::to_string(*param.most) + " in size";
+    }
     if (param.whole_up_to != 0.0 &&
         (value < 1.0 || value > param.whole_up_to || value != std::floor(value))) {
         return "is not a whole number from 1 to " + std::to_string(static_cast<long long>(param.whole_up_to));

@@ -30,6 +30,7 @@ struct EffectParam {
     std::optional<double> otherwise{};  // where the model says nothing; without it the parameter is needed
     // Only whole numbers from 1 to this, unless zero.
     double whole_up_to = 0.0;
+    std::optional<double> most{};  // of its size, either sign
 };
 
 class EffectUse;
@@ -40,6 +41,10 @@ struct EffectDefinition {
     std::string_view source;  // of the formula, with equation or section; for what is plain: ""
     std::span<const EffectParam> params;
     std::unique_ptr<Stage> (*make)(const EffectUse&);
+    // The parameter, if any, by which the sensor's true rate exceeds the nominal one, relative.
+    std::string_view rate_error{};
+    // It changes the temperature itself: a recorded one has it already.
+    bool warms = false;
 };
 
 // One entry of a model's list, as its stage is made from it.

@@ -108,24 +108,52 @@ void place_like(Recording& whole, const Recording& like) {
 
 }  // namespace
 
+namespace {
+
+double value_of(const EffectModel& effect, const EffectParam& param) {
+    const auto given = effect.params.find(std::string(param.name));
+    return given == effect.params.end() ? param.otherwise.value_or(0.0) : given->second;
+}
+
+bool shows_in_stamps(const EffectModel& effect, const EffectDefinition& definition) {
+    const auto param = std::ranges::find(definition.params, "in_stamps", &EffectParam::name);
+    return param != definition.params.end() && value_of(effect, *param) != 0.0;
+}
+
+// What a recording's stamps and temperature have in them already does not act a second time.
+SensorModel without_what_is_recorded(SensorModel model, const RecordedWorld& like) {
+    std::erase_if(model.effects, [&](const EffectModel& effect) {
+        const EffectDefinition* definition = find_effect(effect.effect);
+        const bool in_rate = !definition->rate_error.empty() && shows_in_stamps(effect, *definition);
+        return in_rate || (definition->warms && like.has_temperature());
+    });
+    return model;
+}
+
+}  // namespace
+
+std::vector<std::string> terms_of_temperature(const SensorModel& model) {
+    std::vector<std::string> terms;
+    for (const EffectModel& effect : model.effects) {
+        const EffectDefinition* definition = find_effect(effect.effect);
+        if (definition != nullptr && definition->warms) { terms.push_back(effect.effect); }
+    }
+    return terms;
+}
+
 std::vector<std::string> terms_of_stamps(const SensorModel& model) {
     std::vector<std::string> terms;
     if (model.timestamp_jitter_s != 0.0) { terms.emplace_back("timestamp_jitter_s"); }
     for (const EffectModel& effect : model.effects) {
         const EffectDefinition* definition = find_effect(effect.effect);
         if (definition == nullptr || effect.effect == "dropped") { continue; }  // what is lost has no row
-        const auto param = std::ranges::find(definition->params, "in_stamps", &EffectParam::name);
-        if (param == definition->params.end()) { continue; }
-        const auto given = effect.params.find("in_stamps");
-        const double in_stamps =
-            given == effect.params.end() ? param->otherwise.value_or(0.0) : given->second;
-        if (in_stamps != 0.0) { terms.push_back(effect.effect); }
+        if (shows_in_stamps(effect, *definition)) { terms.push_back(effect.effect); }
     }
     return terms;
 }
 
 RecordingSimulator::RecordingSimulator(const SensorModel& model, const SimulationRequest& request)
-    : simulator_(model,
+    : simulator_(request.like ? without_what_is_recorded(model, *request.like) : model,
                  request.like ? request.like->recording().rate_hz : request.rate_hz.value_or(model.rate_hz),
                  request.seed, request.like ? std::shared_ptr<const World>(request.like) : request.world),
       world_(request.world),

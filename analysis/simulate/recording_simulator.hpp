@@ -27,6 +27,8 @@ struct SimulationRequest {
 
 // What of the model has no effect on time stamps that are copied: the model's keys and effects by name.
 std::vector<std::string> terms_of_stamps(const SensorModel& model);
+// The same of a temperature that is copied.
+std::vector<std::string> terms_of_temperature(const SensorModel& model);
 
 class RecordingSimulator {
 public:

@@ -14,11 +14,12 @@ using Json = nlohmann::ordered_json;
 
 std::string allowed(const EffectParam& param) {
     if (param.whole_up_to != 0.0) { return fmt::format("a whole number from 1 to {:g}", param.whole_up_to); }
+    const std::string most = param.most ? fmt::format(", at most {:g}", *param.most) : "";
     switch (param.range) {
         case EffectParam::Range::positive:
-            return "above 0";
+            return "above 0" + most;
         case EffectParam::Range::not_negative:
-            return "0 or above";
+            return "0 or above" + most;
         case EffectParam::Range::above_two:
             return "above 2";
         case EffectParam::Range::share:
@@ -28,7 +29,7 @@ std::string allowed(const EffectParam& param) {
         case EffectParam::Range::any:
             break;
     }
-    return "any number";
+    return param.most ? fmt::format("from {:g} to {:g}", -*param.most, *param.most) : "any number";
 }
 
 bool has_plausible(const EffectParam& param) {

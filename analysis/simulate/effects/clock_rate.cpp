@@ -4,37 +4,33 @@ namespace gyrolog {
 
 namespace {
 
-class ClockRate final : public Stage {
+// The chain runs at the true rate already (EffectDefinition::rate_error); what is left are stamps that do not
+// know of it.
+class NominalStamps final : public Stage {
 public:
-    explicit ClockRate(const EffectUse& use)
-        : stretch_(1.0 / (1.0 + use["rel"]) - 1.0),
-          period_s_(1.0 / use.context().rate_hz),
-          model_latency_s_(use.context().model.latency_s),
-          in_stamps_(use["in_stamps"] != 0.0) {}
+    NominalStamps(double rel, double period_s) : late_per_sample_s_(rel * period_s) {}
 
     void apply(SampleBlock& block) override {
         for (std::size_t i = 0; i < block_samples; ++i) {
-            block.world_s[i] += stretch_ * (block.world_s[i] + model_latency_s_);
-            if (in_stamps_) {
-                block.stamp_s[i] += stretch_ * period_s_ * static_cast<double>(block.first_index + i);
-            }
+            block.stamp_s[i] += late_per_sample_s_ * static_cast<double>(block.first_index + i);
         }
     }
 
 private:
-    double stretch_;
-    double period_s_;
-    double model_latency_s_;
-    bool in_stamps_;
+    double late_per_sample_s_;
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<ClockRate>(use); }
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    if (use["in_stamps"] != 0.0) { return nullptr; }
+    return std::make_unique<NominalStamps>(use["rel"], 1.0 / use.context().rate_hz);
+}
 
 constexpr EffectParam params[] = {
     {.name = "rel",
      .meaning = "relative error of the sample rate; positive: samples come too fast",
      .plausible_from = -0.01,
-     .plausible_to = 0.01},
+     .plausible_to = 0.01,
+     .most = 0.5},
     {.name = "in_stamps",
      .meaning = "1: the time stamps are true and show it; 0: they are nominal, and the world runs away from "
                 "them",
@@ -52,6 +48,7 @@ constinit const EffectDefinition clock_rate_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .rate_error = "rel",
 };
 
 }  // namespace gyrolog

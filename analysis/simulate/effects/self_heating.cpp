@@ -43,6 +43,7 @@ constinit const EffectDefinition self_heating_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .warms = true,
 };
 
 }  // namespace gyrolog

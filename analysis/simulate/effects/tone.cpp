@@ -1,34 +1,35 @@
-#include <algorithm>
-#include <cmath>
-
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/portable_math.hpp"
-#include "analysis/simulate/stages/per_axis.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-struct Tone {
-    double amplitude_rad_s;
-    double turns_per_sample;
-    double phase_turns;
-
-    void add(std::uint64_t first_index, std::span<double> rate_rad_s) const {
-        for (std::size_t i = 0; i < rate_rad_s.size(); ++i) {
-            const double turns = turns_per_sample * static_cast<double>(first_index + i) + phase_turns;
-            rate_rad_s[i] += amplitude_rad_s * portable_sine_of_turns(turns);
+// Vibration and mains come from outside: a sample shows them as of the moment of the world that it shows.
+class Tone final : public Stage {
+public:
+    explicit Tone(const EffectUse& use) : f_hz_(use["f_hz"]), phase_turns_(use["phase_rad"] / (2.0 * pi)) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (use.acts_on(axis)) { amplitude_rad_s_[axis] = use["amplitude_dps"] * rad_per_deg; }
         }
     }
+
+    void apply(SampleBlock& block) override {
+        for (std::size_t i = 0; i < block_samples; ++i) {
+            const double sine = portable_sine_of_turns(f_hz_ * block.world_s[i] + phase_turns_);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                block.rate_rad_s[axis][i] += amplitude_rad_s_[axis] * sine;
+            }
+        }
+    }
+
+private:
+    double f_hz_;
+    double phase_turns_;
+    Vector3 amplitude_rad_s_{};
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
-    return PerAxis<Tone>::make([&](std::size_t axis) -> std::optional<Tone> {
-        if (!use.acts_on(axis)) { return std::nullopt; }
-        return Tone{use["amplitude_dps"] * rad_per_deg, use["f_hz"] / use.context().rate_hz,
-                    use["phase_rad"] / (2.0 * pi)};
-    });
-}
+std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<Tone>(use); }
 
 constexpr EffectParam params[] = {
     {.name = "f_hz",
@@ -38,7 +39,7 @@ constexpr EffectParam params[] = {
      .plausible_to = 200.0},
     {.name = "amplitude_dps", .meaning = "amplitude", .plausible_from = 0.001, .plausible_to = 0.5},
     {.name = "phase_rad",
-     .meaning = "phase at the first sample",
+     .meaning = "phase when the nominal first sample is taken",
      .plausible_from = -pi,
      .plausible_to = pi,
      .otherwise = 0.0},
@@ -48,7 +49,7 @@ constexpr EffectParam params[] = {
 
 constinit const EffectDefinition tone_effect = {
     .name = "tone",
-    .model = "rate + amplitude_dps sin(2 pi f_hz t + phase_rad)",
+    .model = "rate + amplitude_dps sin(2 pi f_hz t + phase_rad), t the moment that the sample shows",
     .source = "IEEE 952-1997, C.1.6 (sinusoidal noise)",
     .params = params,
     .make = make,

@@ -235,5 +235,18 @@ TEST(RecordingLike, TermsThatActOnStampsAreNamed) {
     EXPECT_EQ(terms_of_stamps(model), (std::vector<std::string>{"timestamp_jitter_s", "clock_rate"}));
 }
 
+// The stamps and the temperature of the recording have it already.
+TEST(RecordingLike, WhatIsRecordedDoesNotActTwice) {
+    const auto world = std::make_shared<const RecordedWorld>(real_recording());
+    SensorModel model = typical_mpu9250();
+    model.effects = {effect_of("temp_linear", {{"c1_dps_per_C", 0.3}})};
+    const Recording plain = simulate_recording(model, {.seed = 4, .like = world});
+    model.effects.push_back(effect_of("clock_rate", {{"rel", 0.01}}));
+    model.effects.push_back(effect_of("self_heating", {{"rise_C", 10.0}, {"tau_s", 5.0}}));
+    EXPECT_EQ(terms_of_temperature(model), (std::vector<std::string>{"self_heating"}));
+    const Recording again = simulate_recording(model, {.seed = 4, .like = world});
+    EXPECT_EQ(counts_of(again, "gx"), counts_of(plain, "gx"));
+}
+
 }  // namespace
 }  // namespace gyrolog

@@ -42,9 +42,48 @@ TEST(ClockRate, NominalStampsHideItAndTheWorldRunsAway) {
     const SensorModel model = with_effect(ideal_model(), "clock_rate", {{"rel", 0.01}, {"in_stamps", 0.0}});
     const Simulated run = simulate(model, rate_hz, 1, 2, clock_world());
     for (std::size_t i = 0; i < run.size(); ++i) {
-        ASSERT_EQ(run.stamp_s[i], static_cast<double>(i) * (1.0 / rate_hz));
+        ASSERT_NEAR(run.stamp_s[i], static_cast<double>(i) / rate_hz, 1e-12);
         ASSERT_NEAR(run.rate_rad_s[0][i], run.stamp_s[i] / 1.01, 1e-12);
     }
+}
+
+// Whatever happens in time happens at the true time, and noise has its density at the true rate.
+TEST(ClockRate, IsTheRateOfTheWholeSensor) {
+    for (const double in_stamps : {0.0, 1.0}) {
+        SensorModel model =
+            with_effect(ideal_model(), "clock_rate", {{"rel", 0.01}, {"in_stamps", in_stamps}});
+        model.effects.push_back(effect_entry("tone", {{"f_hz", 5.0}, {"amplitude_dps", deg_per_rad}}));
+        model.effects.push_back(
+            effect_entry("bias_step", {{"step_dps", 100.0 * deg_per_rad}, {"at_s", 10.0}}));
+        const Simulated run = simulate(model, rate_hz, 1, 2);
+        for (std::size_t i = 0; i < run.size(); ++i) {
+            const double t_s = static_cast<double>(i) / (rate_hz * 1.01);
+            const double step = t_s >= 10.0 ? 100.0 : 0.0;
+            ASSERT_NEAR(run.rate_rad_s[0][i], std::sin(10.0 * pi * t_s) + step, 1e-9) << i;
+        }
+    }
+    SensorModel noisy = with_effect(ideal_model(), "clock_rate", {{"rel", 0.21}});
+    noisy.axes[0].noise.N_rad_per_sqrt_s = 1.0;
+    SensorModel plain = noisy;
+    plain.effects.clear();
+    const Simulated fast = simulate(noisy, rate_hz, 1, 1);
+    const Simulated nominal = simulate(plain, rate_hz, 1, 1);
+    for (std::size_t i = 0; i < fast.size(); ++i) {
+        ASSERT_NEAR(fast.rate_rad_s[0][i], 1.1 * nominal.rate_rad_s[0][i], 1e-9);
+    }
+}
+
+TEST(ClockJitter, OfTheSamplesShowsInATone) {
+    SensorModel model = with_effect(ideal_model(), "clock_jitter", {{"sd_s", 0.002}, {"in_stamps", 0.0}});
+    model.effects.push_back(effect_entry("tone", {{"f_hz", 1.0}, {"amplitude_dps", deg_per_rad}}));
+    const Simulated run = simulate(model, rate_hz, 1, 20);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < run.size(); ++i) {
+        const double off = run.rate_rad_s[0][i] - std::sin(2.0 * pi * static_cast<double>(i) / rate_hz);
+        sum += off * off;
+    }
+    // The slope's mean square, 2 pi^2, times the variance of the instants; 20480 samples, 4 standard errors.
+    EXPECT_NEAR(sum / static_cast<double>(run.size()) / (2.0 * pi * pi * 0.002 * 0.002), 1.0, 0.06);
 }
 
 // The scatter of what should be regular.
@@ -344,7 +383,7 @@ TEST(MotionAndSamplingEffects, TogetherGiveTheSameBitsOnEveryMachine) {
         }
         hash = fnv1a(hash, block.lost.data(), sizeof block.lost);
     }
-    EXPECT_EQ(hash, 0x0918423B9524EC91U);
+    EXPECT_EQ(hash, 0xBB50FE5256089C79U);
 }
 
 }  // namespace
