@@ -8,8 +8,9 @@
 namespace gyrolog {
 
 // Of the first gyro on each axis. A term that was not identified is 0: the simulation shall not have what the
-// record does not show. Gauss-Markov noise and lines become effects of the model. Needs a report in rad/s
-// (not counts without a scale).
+// record does not show. Gauss-Markov noise and lines become effects of the model. The stamps' scatter, where
+// they mark sampling instants, and the thermometer's noise are the recording's; the rate is known to 50 ppm
+// at best, as the clock behind the stamps is. Needs a report in rad/s (not counts without a scale).
 SensorModel fitted_model(const AnalysisReport& report, const Recording& recording);
 
 }  // namespace gyrolog

@@ -58,5 +58,25 @@ TEST(FittedModel, PlaysBackALineThatTheRecordHas) {
     EXPECT_EQ(simulation_refusal(model), std::nullopt);
 }
 
+TEST(FittedModel, HasTheScatterOfTheStampsAndOfTheThermometer) {
+    Recording recording = white_recording(20'000, 0.01, 0.0);
+    recording.stamps = StampKind::sampling;
+    recording.stamp_jitter_s = 3e-5;
+    recording.rate_sd_hz = 1e-9;
+    std::mt19937_64 random(4);
+    std::normal_distribution<double> normal(0.0, 0.03);
+    std::vector<double> temp(20'000);
+    for (std::size_t i = 0; i < temp.size(); ++i) {
+        temp[i] = 25.0 + 1e-3 * static_cast<double>(i) + normal(random);
+    }
+    recording.columns.push_back({"temp", "degC", temp, 1.0, 0.0, "C"});
+    const SensorModel model = fitted_model(analyze(recording), recording);
+    EXPECT_EQ(model.timestamp_jitter_s, 3e-5);
+    EXPECT_NEAR(model.temp_noise_C, 0.03, 0.03 * 4.0 * std::sqrt(1.5 / 20'000.0));
+    EXPECT_NEAR(model.sd_abs.at("rate_rel"), 5e-5, 1e-9);
+    recording.stamps = StampKind::arrival;
+    EXPECT_EQ(fitted_model(analyze(recording), recording).timestamp_jitter_s, 0.0);
+}
+
 }  // namespace
 }  // namespace gyrolog
