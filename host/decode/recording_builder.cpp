@@ -149,6 +149,11 @@ std::vector<RecordingBuilder::RunOrigin> RecordingBuilder::place_on_grid(const s
             std::int64_t grid = end;
             if (from && to) {
                 grid += std::llround(std::clamp(*to - *from, 0.0, longest_pause_s) * recording.rate_hz);
+                // Numbers go on where the clock jumps: the board counted no loss, only its clock tells of it.
+                if (grid > end && piece.first_index == end_index) {
+                    recording.dropouts.push_back(
+                        {static_cast<double>(end) / recording.rate_hz, grid - end, "time_stamps"});
+                }
             } else {
                 recording.warnings.emplace_back(
                     "the pause before a restart is not known: joined without one");
@@ -175,6 +180,7 @@ void RecordingBuilder::enter_dropouts(const LinkReport& link, const std::vector<
                                       static_cast<std::int64_t>(dropout.samples),
                                       std::string(dropout_cause_name(dropout.cause))});
     }
+    std::ranges::stable_sort(recording.dropouts, {}, &Dropout::at_s);
     if (link.dropouts_unlisted > 0) {
         recording.warnings.push_back(std::to_string(link.dropouts_unlisted) +
                                      " more dropouts are counted but not listed");

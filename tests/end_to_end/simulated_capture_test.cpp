@@ -96,6 +96,15 @@ TEST_F(SimulatedCapture, HasTheSimulationsHolesAndRate) {
         EXPECT_EQ(capture.segments[i].count, simulated.segments[i].count);
         EXPECT_EQ(capture.segments[i].first_index, simulated.segments[i].first_index);
     }
+    // No one counted these losses; the board's clock tells of them.
+    ASSERT_EQ(capture.dropouts.size(), capture.segments.size() - 1);
+    for (std::size_t i = 0; i < capture.dropouts.size(); ++i) {
+        EXPECT_EQ(capture.dropouts[i].cause, "time_stamps");
+        if (i < simulated.dropouts.size()) {
+            EXPECT_EQ(capture.dropouts[i].samples, simulated.dropouts[i].samples);
+            EXPECT_NEAR(capture.dropouts[i].at_s, simulated.dropouts[i].at_s, 1e-3);
+        }
+    }
 }
 
 TEST_F(SimulatedCapture, HasTheCountsThatSimulateWrites) {
