@@ -1,6 +1,7 @@
 #include "host/app/option_check.hpp"
 
 #include <charconv>
+#include <cstdint>
 #include <optional>
 
 #include <fmt/format.h>
@@ -36,6 +37,17 @@ CLI::Validator number_from_to(double lowest, double highest, const std::string& 
 
 CLI::Validator positive_number() {
     return number_where([](double x, double, double) { return x > 0.0; }, 0.0, 0.0, "must be more than 0");
+}
+
+CLI::Validator seed_number() {
+    return {[](const std::string& text) -> std::string {
+                std::uint64_t seed = 0;
+                const char* const end = text.data() + text.size();
+                const auto [read_to, error] = std::from_chars(text.data(), end, seed);
+                if (error == std::errc() && read_to == end) { return ""; }
+                return fmt::format("'{}' is no whole number from 0 to 18446744073709551615", text);
+            },
+            ""};
 }
 
 CLI::Validator png_file() {

@@ -13,6 +13,9 @@ CLI::Validator number_from_to(double lowest, double highest, const std::string& 
 // More than 0.
 CLI::Validator positive_number();
 
+// A whole number from 0 to 2^64 - 1.
+CLI::Validator seed_number();
+
 // A name that ends in .png: figures have no other form.
 CLI::Validator png_file();
 

@@ -246,6 +246,10 @@ TEST_F(Refusals, SayWhatIsWrongAndWriteNothing) {
     unknown.effects = {effect_of("gremlins", {})};
     SensorModel lacking = typical_mpu9250();
     lacking.effects = {effect_of("bias_step", {{"at_s", 1.0}})};
+    SensorModel backwards = typical_mpu9250();
+    backwards.effects = {effect_of("clock_rate", {{"rel", -2.0}})};
+    SensorModel torrent = typical_mpu9250();
+    torrent.effects = {effect_of("dropped", {{"per_hour", 1e12}})};
     std::ofstream(folder_.path("empty.csv")) << "";
     std::ofstream(folder_.path("broken.csv")) << "t_s,gx_dps\n0,1\n1,x\n";
     std::ofstream(folder_.path("headed.csv")) << "t_s,gx_dps\n";
@@ -260,6 +264,10 @@ TEST_F(Refusals, SayWhatIsWrongAndWriteNothing) {
         {{folder_.path("none.json"), "-o", output_}, 1, "none.json': no such file"},
         {{write(unknown, folder_, "u.json"), "-o", output_}, 1, "effect 'gremlins' cannot be simulated"},
         {{write(lacking, folder_, "l.json"), "-o", output_}, 1, "lacks its parameter 'step_dps'"},
+        {{write(backwards, folder_, "b.json"), "-o", output_}, 1, "rel is beyond 0.5"},
+        {{write(torrent, folder_, "t.json"), "-o", output_}, 1, "per_hour is beyond 1000000"},
+        {{model_, "-o", output_, "--seed", "-1"}, 2, "'-1' is no whole number"},
+        {{model_, "-o", output_, "--seed", "18446744073709551616"}, 2, "is no whole number"},
         {{model_, "-o", output_, "--duration", "0"}, 2, "'0' is no duration"},
         {{model_, "-o", output_, "--duration", "-5"}, 2, "is no duration"},
         {{model_, "-o", output_, "--duration", "0.001s"}, 2, "holds no sample"},
