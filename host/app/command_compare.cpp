@@ -12,6 +12,7 @@
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
@@ -123,6 +124,11 @@ Status write_results(Console& console, const CompareRequest& request, const Comp
 }
 
 ExitCode compare(Console& console, const CompareRequest& request) {
+    const NamedPath read[] = {{"RECORDING", request.recording_path}, {"WITH", request.other_path}};
+    const NamedPath outputs[] = {{"--json", request.json_path}, {"--plot", request.plot_path}};
+    if (const Status fine = check_output_paths(read, outputs); !fine.ok()) {
+        return report_error(console, "compare", fine.error());
+    }
     const bool is_model = std::filesystem::path(request.other_path).extension() == ".json";
     const Result<Comparison> comparison = is_model ? with_model(console, request) : with_recording(request);
     if (!comparison.ok()) { return report_error(console, "compare", comparison.error()); }
@@ -152,6 +158,7 @@ Action setup_compare(CLI::App& app) {
         ->capture_default_str();
     app.add_option("--seed", request->simulations.seed, "Other simulations of the same kind")
         ->type_name("N")
+        ->check(seed_number())
         ->capture_default_str();
     app.add_option("--duration", request->duration, "Compare the first part of a recording only")
         ->type_name("T");

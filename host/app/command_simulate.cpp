@@ -10,6 +10,7 @@
 #include "host/app/capture_run.hpp"
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
@@ -61,34 +62,6 @@ bool is_text(const std::string& path) {
            !std::filesystem::is_directory(there);
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-    if (a.empty() || b.empty()) { return false; }
-    std::error_code none;
-    return a == b ? a != "-" : std::filesystem::equivalent(a, b, none);
-}
-
-// Nothing that is read may be written over, and nothing written twice.
-Status check_paths(const Options& options) {
-    const std::pair<const char*, const std::string*> written[] = {
-        {"--output", &options.output}, {"--model-out", &options.model_out}, {"--json", &options.json}};
-    const std::pair<const char*, const std::string*> read[] = {{"MODEL", &options.model},
-                                                               {"--like", &options.like}};
-    for (const auto& [name, path] : written) {
-        for (const auto& [other, source] : read) {
-            if (same_file(*path, *source)) {
-                return wrong(fmt::format("{} and {} are the same file '{}'; give another to write", other,
-                                         name, *path));
-            }
-        }
-        for (const auto& [other, target] : written) {
-            if (name != other && same_file(*path, *target)) {
-                return wrong(fmt::format("{} and {} are the same file '{}'", name, other, *path));
-            }
-        }
-    }
-    return {};
-}
-
 Status check(const Options& options) {
     if (options.model.empty()) {
         return wrong("give the MODEL to simulate (.json), or --effects to see what a model may list");
@@ -102,7 +75,10 @@ Status check(const Options& options) {
         return wrong(
             "--like with a capture: the virtual board makes its own time stamps; write a .csv instead");
     }
-    return check_paths(options);
+    const NamedPath read[] = {{"MODEL", options.model}, {"--like", options.like}};
+    const NamedPath written[] = {
+        {"--output", options.output}, {"--model-out", options.model_out}, {"--json", options.json}};
+    return check_output_paths(read, written);
 }
 
 // "nonlinearity (x, z)", "bias_step": entries of one name together.

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -99,6 +100,26 @@ TEST_F(CompareCommand, SaysWhichFileCannotBeUsedAndWhy) {
     EXPECT_EQ(compare({folder.path("no_rates.csv"), model}), ExitCode::failed);
     EXPECT_THAT(err.str(), HasSubstr("no_rates.csv"));
     EXPECT_EQ(out.str(), "");
+}
+
+TEST_F(CompareCommand, WritesOverNothingItReadsAndNothingTwice) {
+    const auto refusal = [&](const std::vector<std::string>& outputs) {
+        std::vector<std::string> arguments{recording, model, "--simulations", "9"};
+        arguments.insert(arguments.end(), outputs.begin(), outputs.end());
+        EXPECT_EQ(compare(arguments), ExitCode::usage) << outputs[1];
+        return err.str();
+    };
+    const std::string model_before = read_whole_file(model);
+    const std::string recording_before = read_whole_file(recording);
+    EXPECT_THAT(refusal({"--json", model}), HasSubstr("WITH and --json are the same file"));
+    EXPECT_THAT(refusal({"--json", recording}), HasSubstr("RECORDING and --json are the same file"));
+    std::filesystem::create_hard_link(recording, folder.path("linked.png"));
+    EXPECT_THAT(refusal({"--plot", folder.path("linked.png")}), HasSubstr("RECORDING and --plot"));
+    EXPECT_EQ(read_whole_file(model), model_before);
+    EXPECT_EQ(read_whole_file(recording), recording_before);
+    EXPECT_THAT(refusal({"--plot", folder.path("c.png"), "--json", folder.path("./c.png")}),
+                HasSubstr("--json and --plot are the same file"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path("c.png")));
 }
 
 TEST_F(CompareCommand, RefusesTooFewSimulationsAndOtherPictures) {
