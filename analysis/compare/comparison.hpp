@@ -58,6 +58,7 @@ struct Comparison {
     double band_probability = 0.0;
     std::uint64_t seed = 0;
     std::vector<AxisComparison> axes;
+    std::vector<std::string> notes;  // on the model
     std::vector<std::string> warnings;
 };
 

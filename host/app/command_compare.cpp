@@ -66,7 +66,15 @@ Result<Recording> comparable_recording(const CompareRequest& request, const std:
 }
 
 Result<Comparison> with_model(Console& console, const CompareRequest& request) {
-    GYROLOG_TRY(const SensorModel model, read_model(request.other_path));
+    GYROLOG_TRY(const ModelFile file, read_model_file(request.other_path, 1));
+    if (file.is_drawn) {
+        return Error{
+            ErrorCode::unsupported,
+            fmt::format("'{0}': a data sheet is no single sensor; draw a unit with `gyrolog simulate "
+                        "{0} -o unit.csv --model-out unit.json` and compare with that",
+                        request.other_path)};
+    }
+    const SensorModel& model = file.model;
     if (const auto refusal = simulation_refusal(model)) {
         return Error{ErrorCode::failed, "simulate '" + request.other_path + "': " + *refusal};
     }
@@ -83,6 +91,7 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
                            std::filesystem::path(request.other_path).filename().string(), options);
     if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
     if (!comparison) { return Error{ErrorCode::failed, "interrupted; nothing is written"}; }
+    comparison->notes = file.notes;
     return *std::move(comparison);
 }
 

@@ -85,6 +85,7 @@ std::string comparison_json(const Comparison& comparison) {
         one["skewness"] = number_json(axis.skewness, 1.0);
         one["excess_kurtosis"] = number_json(axis.excess_kurtosis, 1.0);
     }
+    json["notes"] = comparison.notes;
     json["warnings"] = comparison.warnings;
     return json_text(json);
 }

@@ -12,7 +12,7 @@
 //   .simulations_outside_as_often, .largest_gap {at, dB, distance, stands_out}
 //   axes.x.standard_deviation, skewness, excess_kurtosis    {recording, other, lo, hi}
 //   axes.x.sentence          the outcome in words
-//   warnings
+//   notes (on the model), warnings
 #pragma once
 
 #include <string>

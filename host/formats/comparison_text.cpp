@@ -138,6 +138,7 @@ std::string outcome_sentence(const Comparison& comparison, const AxisComparison&
 
 std::string comparison_text(const Comparison& comparison) {
     std::string text = heading_text(comparison);
+    for (const std::string& note : comparison.notes) { text += fmt::format("model: {}\n", note); }
     for (const std::string& warning : comparison.warnings) { text += fmt::format("warning: {}\n", warning); }
     for (const AxisComparison& axis : comparison.axes) {
         text += fmt::format("\n{}\n", axis.axis);

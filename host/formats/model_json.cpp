@@ -208,7 +208,7 @@ ModelFile draw_from(const Datasheet& sheet, std::uint64_t seed) {
     std::vector<std::string> notes = {fmt::format("a unit drawn from the data sheet{}{} by seed {}",
                                                   sheet.sensor.empty() ? "" : " of ", sheet.sensor, seed)};
     notes.insert(notes.end(), unit.notes.begin(), unit.notes.end());
-    return {std::move(unit.model), std::move(notes)};
+    return {std::move(unit.model), std::move(notes), true};
 }
 
 // Puts back what was carried: objects are merged, everything else is the carried value.

@@ -19,6 +19,7 @@ namespace gyrolog {
 struct ModelFile {
     SensorModel model;
     std::vector<std::string> notes;
+    bool is_drawn = false;  // of a data sheet: another seed is another unit
 };
 
 // A gyrolog-model/1; a data sheet (datasheet_json.hpp), from which `seed` draws a unit; or gyroparams

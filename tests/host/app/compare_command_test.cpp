@@ -102,6 +102,29 @@ TEST_F(CompareCommand, SaysWhichFileCannotBeUsedAndWhy) {
     EXPECT_EQ(out.str(), "");
 }
 
+TEST_F(CompareCommand, RefusesADataSheetForItIsNoSingleSensor) {
+    const std::string sheet = folder.path("sheet.json");
+    std::ofstream(sheet) << R"({"schema": "gyrolog-datasheet/1", "rate_hz": 100, "full_scale_dps": 500,
+        "sensitivity_lsb_per_dps": 65.5, "noise_type": "one_sided", "noise_density_dps_per_sqrt_hz": 0.01})";
+    EXPECT_EQ(compare({recording, sheet}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("a data sheet is no single sensor"));
+    EXPECT_THAT(err.str(), HasSubstr("--model-out unit.json"));
+    EXPECT_EQ(out.str(), "");
+}
+
+TEST_F(CompareCommand, TellsTheNotesOfTheModelFile) {
+    const std::string parameters = folder.path("gyroparams.json");
+    std::ofstream(parameters) << R"({"schema": "gyrolog-gyroparams/1", "SampleRate": 100,
+        "NoiseDensity": 1.7e-4, "BiasInstability": 3.5e-5, "RandomWalk": 1.7e-6, "NoiseType": "single-sided",
+        "BiasInstabilityCoefficients": {"Numerator": 1}})";
+    const auto notes = read_model_file(parameters, 1)->notes;
+    ASSERT_FALSE(notes.empty());
+    EXPECT_EQ(compare({recording, parameters, "--simulations", "9"}), ExitCode::ok) << err.str();
+    EXPECT_THAT(out.str(), HasSubstr("model: " + notes[0]));
+    EXPECT_EQ(compare({recording, parameters, "--simulations", "9", "--json", "-"}), ExitCode::ok);
+    EXPECT_EQ(json::parse(out.str())["notes"], notes);
+}
+
 TEST_F(CompareCommand, WritesOverNothingItReadsAndNothingTwice) {
     const auto refusal = [&](const std::vector<std::string>& outputs) {
         std::vector<std::string> arguments{recording, model, "--simulations", "9"};

@@ -47,6 +47,7 @@ Comparison against_a_model() {
     axis.skewness = {0.001, 0.0, -0.01, 0.01};
     axis.excess_kurtosis = {0.01, 0.0, -0.02, 0.02};
     comparison.axes = {axis};
+    comparison.notes = {"a note"};
     comparison.warnings = {"a warning"};
     return comparison;
 }
@@ -75,6 +76,7 @@ TEST(ComparisonText, SaysWhatTheBandIsAndWhatChanceWouldGive) {
     EXPECT_THAT(text, HasSubstr("13 mHz to 0.1 Hz: too noisy by 1.2 dB"));
     EXPECT_THAT(text, HasSubstr("0.039 to 0.041  outside"));
     EXPECT_THAT(text, HasSubstr("warning: a warning"));
+    EXPECT_THAT(text, HasSubstr("model: a note"));
     Comparison many = against_a_model();
     many.simulations = 100;
     many.band_probability = band_probability(100);
