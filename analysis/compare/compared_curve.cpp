@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include <boost/math/distributions/students_t.hpp>
 
 #include "analysis/allan/confidence.hpp"
 #include "analysis/compare/axis_curves.hpp"
+#include "analysis/compare/compared_number.hpp"
 
 namespace gyrolog {
 
@@ -43,19 +41,6 @@ void collect_ranges(ComparedCurve& curve, std::span<const int> sides) {
         }
         before = sides[i];
     }
-}
-
-// How far a value lies from the simulations at one point, in standard deviations of one more value like them.
-double distance(double value, std::span<const double> simulated) {
-    const auto n = static_cast<double>(simulated.size());
-    double mean = 0.0;
-    double square = 0.0;
-    for (const double x : simulated) { mean += x / n; }
-    for (const double x : simulated) { square += (x - mean) * (x - mean); }
-    const double d = std::fabs(value - mean);
-    if (d == 0.0) { return 0.0; }
-    return square > 0.0 ? d / std::sqrt(square / (n - 1.0) * (1.0 + 1.0 / n))
-                        : std::numeric_limits<double>::infinity();
 }
 
 bool all_positive(std::span<const double> values) {
@@ -109,7 +94,7 @@ ComparedCurve compare_with_simulations(std::span<const double> at, std::span<con
             if (values[i] <= lo || values[i] >= hi) { ++outside_of_others[i]; }
         }
         std::ranges::transform(values, even.begin(), evenly_scattered);
-        const double here = distance(evenly_scattered(recording[point]), even);
+        const double here = distance_from(even, evenly_scattered(recording[point]));
         if (here > curve.gap.distance) {
             curve.gap = {at[point], curve.ratio_dB(curve.at.size() - 1), here, false};
         }
@@ -120,8 +105,7 @@ ComparedCurve compare_with_simulations(std::span<const double> at, std::span<con
     curve.points_by_chance = (1.0 - band_probability(count)) * points;
     curve.simulations_outside_as_often = static_cast<std::size_t>(std::ranges::count_if(
         outside_of_others, [&](std::size_t other) { return other >= curve.points_outside(); }));
-    const boost::math::students_t student(static_cast<double>(count) - 1.0);
-    curve.gap.stands_out = curve.gap.distance > quantile(complement(student, 0.5 * false_alarms / points));
+    curve.gap.stands_out = curve.gap.distance > distance_by_chance(count, false_alarms / points);
     return curve;
 }
 

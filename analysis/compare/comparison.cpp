@@ -18,7 +18,20 @@ constexpr double memory_bytes = 3e9;
 
 // Of the sentences about all axes together, when there is no gap.
 constexpr double false_alarms = 0.05;
-double false_alarms_a_curve(std::size_t axes) { return false_alarms / (2.0 * static_cast<double>(axes)); }
+// Shared evenly by an axis' parts, and by each part among its points or numbers.
+constexpr double parts_with_model = 3.0;      // two curves and the distribution
+constexpr double parts_with_recording = 2.0;  // no band for the distribution
+constexpr double numbers_of_distribution = 3.0;
+double false_alarms_a_part(double parts, std::size_t axes) {
+    return false_alarms / (parts * static_cast<double>(axes));
+}
+
+// Functions that make these numbers nearly normal, also where few samples far out make them: the standard
+// deviation as the curves (compared_curve.cpp), the excess kurtosis, which is never below -2, by its
+// logarithm.
+double even_deviation(double deviation) { return std::cbrt(deviation * deviation); }
+double even_skewness(double skewness) { return std::asinh(skewness); }
+double even_kurtosis(double excess_kurtosis) { return std::log(2.0 + excess_kurtosis); }
 
 // An odd multiplier: seeds that differ by one have no simulation in common.
 constexpr std::uint64_t seed_step = 0x9E3779B97F4A7C15U;
@@ -88,14 +101,6 @@ struct SimulatedAxis {
     std::vector<double> amplitudes;  // at the recording's frequencies
     double standard_deviation = 0.0, skewness = 0.0, excess_kurtosis = 0.0;
 };
-
-ComparedNumber compared_number(double recording, std::vector<double> simulated) {
-    const std::size_t rank = band_rank(simulated.size());
-    std::ranges::sort(simulated);
-    const std::size_t count = simulated.size();
-    return {recording, 0.5 * (simulated[(count - 1) / 2] + simulated[count / 2]), simulated[rank - 1],
-            simulated[count - rank]};
-}
 
 // The recording's own curves and, filled in by the simulations, those it is compared with.
 class ModelComparison {
@@ -191,19 +196,21 @@ private:
 
     AxisComparison axis_comparison(std::size_t i) const {
         const AxisCurves& own = own_[i];
+        const double alarms = false_alarms_a_part(parts_with_model, axes_.size());
         AxisComparison axis;
         axis.axis = axes_[i];
         axis.allan = compare_with_simulations(taus_of(own.allan), deviations_of(own.allan),
-                                              collected(i, &SimulatedAxis::deviations),
-                                              false_alarms_a_curve(axes_.size()));
+                                              collected(i, &SimulatedAxis::deviations), alarms);
         axis.spectrum = compare_with_simulations(frequencies_of(own.spectrum), amplitudes_of(own.spectrum),
-                                                 collected(i, &SimulatedAxis::amplitudes),
-                                                 false_alarms_a_curve(axes_.size()));
-        axis.standard_deviation = compared_number(own.histogram.standard_deviation,
-                                                  collected(i, &SimulatedAxis::standard_deviation));
-        axis.skewness = compared_number(own.histogram.skewness, collected(i, &SimulatedAxis::skewness));
+                                                 collected(i, &SimulatedAxis::amplitudes), alarms);
+        const auto number = [&](double recording, double SimulatedAxis::*member, double (*even)(double)) {
+            return compare_number(recording, collected(i, member), even, alarms / numbers_of_distribution);
+        };
+        axis.standard_deviation =
+            number(own.histogram.standard_deviation, &SimulatedAxis::standard_deviation, even_deviation);
+        axis.skewness = number(own.histogram.skewness, &SimulatedAxis::skewness, even_skewness);
         axis.excess_kurtosis =
-            compared_number(own.histogram.excess_kurtosis, collected(i, &SimulatedAxis::excess_kurtosis));
+            number(own.histogram.excess_kurtosis, &SimulatedAxis::excess_kurtosis, even_kurtosis);
         axis.recording_histogram = own.histogram;
         axis.other_histogram = first_[i].histogram;
         axis.recording_averages = own.averages;
@@ -259,6 +266,17 @@ const ComparedCurve* AxisComparison::worst() const {
     return spectrum.gap.stands_out ? &spectrum : nullptr;
 }
 
+const ComparedNumber* AxisComparison::worst_number() const {
+    const ComparedNumber* worst = nullptr;
+    for (const ComparedNumber* number : {&skewness, &excess_kurtosis}) {
+        if (number->stands_out && (worst == nullptr || number->distance > worst->distance)) {
+            worst = number;
+        }
+    }
+    if (worst == nullptr && standard_deviation.stands_out) { worst = &standard_deviation; }
+    return worst;
+}
+
 std::optional<std::string> comparison_refusal(const Recording& recording) {
     const std::vector<std::string> axes = axes_of(recording);
     if (axes.empty()) { return "there is no angular rate gx, gy or gz to compare"; }
@@ -298,7 +316,7 @@ Comparison compare_recordings(const Recording& recording, const Recording& other
     comparison.other_name = other.name;
     comparison.less_reference = has_reference(recording) || has_reference(other);
     const std::vector<std::string> axes = axes_of(recording);
-    const double alarms = false_alarms_a_curve(axes.size());
+    const double alarms = false_alarms_a_part(parts_with_recording, axes.size());
     for (const std::string& axis : axes) {
         if (other.find("g" + axis) == nullptr) {
             comparison.warnings.push_back(axis + " is left out: '" + other.name + "' does not have it");

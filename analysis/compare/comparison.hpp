@@ -20,19 +20,11 @@
 
 #include "analysis/compare/axis_curves.hpp"
 #include "analysis/compare/compared_curve.hpp"
+#include "analysis/compare/compared_number.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
 namespace gyrolog {
-
-// A number of the distribution about the mean. Against another recording there is no band.
-struct ComparedNumber {
-    double recording = 0.0;
-    double other = 0.0;  // the simulations' median, or the other recording
-    std::optional<double> lo, hi;
-
-    bool outside() const { return lo && (recording < *lo || recording > *hi); }
-};
 
 struct AxisComparison {
     std::string axis;
@@ -45,6 +37,9 @@ struct AxisComparison {
 
     // The larger of the two that stands out, if one does.
     const ComparedCurve* worst() const;
+    // Likewise of the distribution's numbers; the standard deviation, which the curves also show, after the
+    // shape.
+    const ComparedNumber* worst_number() const;
 };
 
 struct Comparison {

@@ -54,6 +54,8 @@ Json number_json(const ComparedNumber& number, double per_unit) {
     if (number.lo) {
         json["lo"] = *number.lo * per_unit;
         json["hi"] = *number.hi * per_unit;
+        json["distance"] = number.distance;
+        json["stands_out"] = number.stands_out;
     }
     return json;
 }

@@ -10,7 +10,9 @@
 //   axes.x.spectrum          the same by f_hz, in dps/sqrt(Hz): root of the two-sided density
 //   .outside                 [{from, to, worst_at, worst_dB, points}], .points_by_chance,
 //   .simulations_outside_as_often, .largest_gap {at, dB, distance, stands_out}
-//   axes.x.standard_deviation, skewness, excess_kurtosis    {recording, other, lo, hi}
+//   axes.x.standard_deviation, skewness, excess_kurtosis
+//                            {recording, other, lo, hi, distance, stands_out}; with simulations, else the
+//                            first two
 //   axes.x.sentence          the outcome in words
 //   notes (on the model), warnings
 #pragma once

@@ -83,7 +83,8 @@ TextRow number_row(const char* label, const char* unit, const ComparedNumber& nu
         {fmt::format("{:.4g}", number.recording * per_unit), fmt::format("{:.4g}", number.other * per_unit)}};
     if (number.lo) {
         row.cells.push_back(fmt::format("{:.4g} to {:.4g}", *number.lo * per_unit, *number.hi * per_unit));
-        row.cells.emplace_back(number.outside() ? "outside" : "");
+        const char* where = number.outside() ? "outside" : "";
+        row.cells.emplace_back(number.stands_out ? "stands out" : where);
     }
     return row;
 }
@@ -99,6 +100,17 @@ std::string distribution_text(const Comparison& comparison, const AxisComparison
                           number_row("  skewness", "", axis.skewness, 1.0),
                           number_row("  excess kurtosis", "", axis.excess_kurtosis, 1.0)};
     return text_table(heads, rows);
+}
+
+// "the samples' excess kurtosis is 61, of simulations -0.016 to 0.019"
+std::string worst_number_text(const AxisComparison& axis, const ComparedNumber& number) {
+    const bool is_rate = &number == &axis.standard_deviation;
+    const char* shape = &number == &axis.skewness ? "skewness" : "excess kurtosis";
+    const double per_unit = is_rate ? deg_per_rad : 1.0;
+    return fmt::format("the samples' {} is {:.2g}{unit}, of simulations {:.2g} to {:.2g}{unit}",
+                       is_rate ? "standard deviation" : shape, number.recording * per_unit,
+                       number.lo.value_or(number.other) * per_unit,
+                       number.hi.value_or(number.other) * per_unit, fmt::arg("unit", is_rate ? " dps" : ""));
 }
 
 std::string heading_text(const Comparison& comparison) {
@@ -123,17 +135,27 @@ std::string heading_text(const Comparison& comparison) {
 }  // namespace
 
 std::string outcome_sentence(const Comparison& comparison, const AxisComparison& axis) {
-    const ComparedCurve* worst = axis.worst();
-    if (worst == nullptr) {
-        if (axis.allan.at.empty()) { return axis.axis + ": there is no noise to compare"; }
-        return axis.axis + (comparison.simulations > 0
-                                ? ": the recording differs no more than simulations do among themselves"
-                                : ": the recordings differ no more than their uncertainty allows");
+    std::string curve;
+    if (const ComparedCurve* worst = axis.worst()) {
+        const PlaceText place = worst == &axis.allan ? &duration_text : &frequency_text;
+        curve = fmt::format("{} is {} at {}",
+                            comparison.simulations > 0 ? "the simulation" : "the first recording",
+                            difference_text(comparison, worst->gap.dB), place(worst->gap.at));
     }
-    const PlaceText place = worst == &axis.allan ? &duration_text : &frequency_text;
-    return fmt::format("{}: {} is {} at {}", axis.axis,
-                       comparison.simulations > 0 ? "the simulation" : "the first recording",
-                       difference_text(comparison, worst->gap.dB), place(worst->gap.at));
+    // Where a curve stands out, it has said of the standard deviation what there is to say.
+    std::string number;
+    const ComparedNumber* worst = axis.worst_number();
+    if (worst != nullptr && (worst != &axis.standard_deviation || curve.empty())) {
+        number = worst_number_text(axis, *worst);
+    }
+    if (!curve.empty() || !number.empty()) {
+        return fmt::format("{}: {}{}{}", axis.axis, curve, curve.empty() || number.empty() ? "" : "; ",
+                           number);
+    }
+    if (axis.allan.at.empty()) { return axis.axis + ": there is no noise to compare"; }
+    return axis.axis + (comparison.simulations > 0
+                            ? ": the recording differs no more than simulations do among themselves"
+                            : ": the recordings differ no more than their uncertainty allows");
 }
 
 std::string comparison_text(const Comparison& comparison) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/simulate/counter_random.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 
 namespace gyrolog {
@@ -40,7 +41,7 @@ TEST(Comparison, OfASimulationWithItsOwnModelFindsLittle) {
         const Comparison comparison = against_model(recording_of(model, seed), model);
         ASSERT_EQ(comparison.axes.size(), 3U);
         for (const AxisComparison& axis : comparison.axes) {
-            found += axis.worst() != nullptr ? 1 : 0;
+            found += axis.worst() != nullptr || axis.worst_number() != nullptr ? 1 : 0;
             outside += axis.spectrum.points_outside();
             by_chance += axis.spectrum.points_by_chance;
         }
@@ -62,6 +63,8 @@ TEST(Comparison, FindsTheAxisThatIsNoisierAndByHowMuch) {
     // 12 000 samples: 0.65 % of the deviation at the shortest time, the model's N 0.5 %.
     EXPECT_NEAR(y.allan.ratio_dB(0), 20.0 * std::log10(1.5), 0.3);
     EXPECT_TRUE(y.standard_deviation.outside());
+    EXPECT_TRUE(y.standard_deviation.stands_out);
+    EXPECT_EQ(y.worst_number(), &y.standard_deviation);
     EXPECT_FALSE(comparison.axes.at(0).standard_deviation.outside());
 }
 
@@ -74,6 +77,50 @@ TEST(Comparison, FindsALineThatNoAveragingTimeShows) {
     ASSERT_EQ(z.worst(), &z.spectrum);
     EXPECT_NEAR(z.spectrum.gap.at, 31.0, 0.5);
     EXPECT_GT(z.spectrum.gap.dB, 1.0);
+}
+
+// Few samples far out, in pairs of both signs: hardly any power, and no skewness.
+TEST(Comparison, FindsADistributionThatNoCurveShows) {
+    const SensorModel model = typical_mpu9250();
+    const auto recording = recording_of(model, 12);
+    std::vector<double> rates = recording->find("gx")->values();
+    const double sd = against_model(recording, model).axes.at(0).standard_deviation.recording;
+    for (const std::size_t at : {2000U, 7000U}) {
+        rates[at] += 8.0 * sd;
+        rates[at + 2500] -= 8.0 * sd;
+    }
+    recording->columns[0] = {"gx", "rad/s", rates};
+    const Comparison comparison = against_model(recording, model);
+    const AxisComparison& x = comparison.axes.at(0);
+    EXPECT_EQ(x.worst(), nullptr);
+    ASSERT_EQ(x.worst_number(), &x.excess_kurtosis);
+    // 4 of 12 000 samples at 8 standard deviations add 4 * 8^4 / 12 000 to the fourth moment.
+    EXPECT_NEAR(x.excess_kurtosis.recording, 4.0 * 4096.0 / 12'000.0, 0.4);
+    EXPECT_EQ(comparison.axes.at(1).worst_number(), nullptr);
+}
+
+TEST(ComparedNumber, OfNormalValuesStandsOutAsOftenAsWished) {
+    constexpr double wished = 0.05;
+    constexpr int trials = 4000;
+    const RandomStream random(3, 77);
+    int found = 0;
+    for (std::uint64_t trial = 0; trial < trials; ++trial) {
+        std::vector<double> simulated;
+        for (std::uint64_t i = 0; i < 12; ++i) { simulated.push_back(5.0 + random.normal(trial * 13 + i)); }
+        const auto same = [](double value) { return value; };
+        found += compare_number(5.0 + random.normal(trial * 13 + 12), simulated, same, wished).stands_out;
+    }
+    const double expected = wished * trials;
+    EXPECT_NEAR(found, expected, 4.0 * std::sqrt(expected));
+}
+
+TEST(ComparedNumber, WithoutAValueHasNoDistance) {
+    const auto same = [](double value) { return value; };
+    const std::vector<double> simulated{1.0, 2.0, 3.0};
+    EXPECT_FALSE(compare_number(std::nan(""), simulated, same, 0.05).stands_out);
+    EXPECT_FALSE(compare_number(9.0, {1.0, std::nan(""), 3.0}, same, 0.05).stands_out);
+    EXPECT_TRUE(compare_number(9.0, {0.0, 0.0, 0.0}, same, 0.05).stands_out);
+    EXPECT_FALSE(compare_number(0.0, {0.0, 0.0, 0.0}, same, 0.05).stands_out);
 }
 
 TEST(Comparison, FollowsTheRecordingsHoles) {
