@@ -131,6 +131,7 @@ void Canvas::fill(const Polyline& polygon, Colour colour, double opacity) {
 }
 
 void Canvas::line(const Polyline& line, const Stroke& stroke) {
+    if (stroke.width_px <= 0.0) { return; }
     for (const Polyline& piece : dashed(line, stroke.dash_px)) {
         if (piece.size() < 2) { continue; }
         cv::polylines(fine_, std::vector<std::vector<cv::Point>>{fixed_points(piece)}, false,

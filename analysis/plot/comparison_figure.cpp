@@ -26,8 +26,11 @@ std::vector<double> on_paper(std::vector<double> rates_rad_s) {
 
 class AxisPanels {
 public:
-    AxisPanels(const Comparison& comparison, const AxisComparison& axis, bool first)
-        : comparison_(comparison), axis_(axis), first_(first) {}
+    AxisPanels(const Comparison& comparison, const AxisComparison& axis)
+        : comparison_(comparison),
+          axis_(axis),
+          is_first_(&axis == comparison.axes.data()),
+          is_first_outside_(&axis == std::find_if(comparison.axes.data(), &axis + 1, has_outside)) {}
 
     void add_to(Figure& figure) const {
         const bool simulated = comparison_.simulations > 0;
@@ -38,13 +41,15 @@ public:
         figure.panels.push_back(histograms());
         figure.panels.push_back(curves(axis_.allan, "Allan deviation", "averaging time τ (s)",
                                        std::string("σ(τ) (") + unit + ")"));
-        if (first_) { add_legend(figure.panels.back()); }
+        if (is_first_) { add_legend(figure.panels.back()); }
         figure.panels.push_back(curves(axis_.spectrum, "spectrum (root of the density)", "frequency (Hz)",
                                        std::string("√S ((") + unit + ")/√Hz)"));
         figure.panels.push_back(ratios());
     }
 
 private:
+    static bool has_outside(const AxisComparison& axis) { return axis.allan.points_outside() > 0; }
+
     // The legend's word for the other curve, and what its band is.
     std::vector<std::string> other_legend() const {
         if (comparison_.simulations == 0) { return {"other, 68 %"}; }
@@ -179,7 +184,7 @@ private:
         outside.marker = Marker::circle;
         outside.marker_size_px = 7.0;
         outside.markers_apart_px = 0.0;
-        if (first_) { outside.legend = {"outside"}; }
+        if (is_first_outside_) { outside.legend = {"outside"}; }
         panel.curves = {std::move(band), std::move(recording)};
         if (!outside.x.empty()) { panel.curves.push_back(std::move(outside)); }
         return panel;
@@ -187,7 +192,8 @@ private:
 
     const Comparison& comparison_;
     const AxisComparison& axis_;
-    bool first_;
+    bool is_first_;
+    bool is_first_outside_;  // of those with points outside
 };
 
 }  // namespace
@@ -200,9 +206,7 @@ Figure figure_of(const ComparisonFigure& request) {
     figure.facts = request.facts;
     figure.columns = 3;
     figure.scale = request.scale;
-    for (std::size_t i = 0; i < comparison.axes.size(); ++i) {
-        AxisPanels(comparison, comparison.axes[i], i == 0).add_to(figure);
-    }
+    for (const AxisComparison& axis : comparison.axes) { AxisPanels(comparison, axis).add_to(figure); }
     const auto rows = 2 * static_cast<int>(comparison.axes.size());
     figure.width_px = request.width_px;
     figure.height_px = static_cast<int>(std::lround((heading_px + rows * row_px) * request.scale));

@@ -135,10 +135,10 @@ PanelDrawing::Trace PanelDrawing::trace_of(const Curve& curve, const Axes& axes)
     for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i) {
         line.push_back(pixel_of(axes, curve.x[i], curve.y[i]));
     }
-    Trace trace{&curve,
-                clip(curve.shape == CurveShape::steps ? with_steps(line) : line, axes.plot),
-                bands_of(curve, axes),
-                {}};
+    Trace trace{&curve, {}, bands_of(curve, axes), {}};
+    if (curve.stroke.width_px > 0.0) {
+        trace.lines = clip(curve.shape == CurveShape::steps ? with_steps(line) : line, axes.plot);
+    }
     if (curve.marker == Marker::none) { return trace; }
     for (const Point& p : line) {
         if (!is_shown(axes, p)) { continue; }

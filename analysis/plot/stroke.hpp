@@ -11,7 +11,7 @@ enum class Marker { none, circle, square, triangle, diamond, triangle_down, hexa
 
 struct Stroke {
     Colour colour = colours::ink;
-    double width_px = 2.0;
+    double width_px = 2.0;        // 0: no line
     std::vector<double> dash_px;  // drawn, left out, ...; empty: solid
 
     Stroke scaled(double by) const {

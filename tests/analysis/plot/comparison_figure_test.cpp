@@ -92,6 +92,32 @@ TEST(ComparisonFigure, MarksWhatLiesOutsideInDecibels) {
     EXPECT_EQ(figure_of(ComparisonFigure{inside, {}}).panels.at(5).curves.size(), 2U);
 }
 
+TEST(ComparisonFigure, NamesTheMarksOnceOnTheFirstAxisThatHasThem) {
+    Comparison comparison = comparison_of({"x", "y", "z"}, true);
+    comparison.axes[0].allan.outside.clear();
+    const Figure figure = figure_of(ComparisonFigure{comparison, {}});
+    EXPECT_EQ(figure.panels.at(11).curves.at(2).legend, std::vector<std::string>{"outside"});
+    EXPECT_TRUE(figure.panels.at(17).curves.at(2).legend.empty());
+}
+
+TEST(ComparisonFigure, JoinsNoMarksByALine) {
+    Comparison comparison = comparison_of({"x"}, true);
+    Figure figure = figure_of(ComparisonFigure{comparison, {}});
+    Panel ratio = figure.panels.at(5);
+    ratio.curves.erase(ratio.curves.begin(), ratio.curves.begin() + 2);
+    Curve& marks = ratio.curves.front();
+    marks.legend.clear();
+    marks.x = {1.0, 10.0};
+    marks.y = {0.0, 0.0};
+    figure.panels = {ratio};
+    figure.columns = 1;
+    const Rendering rendering = render(figure);
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    // Two disks of 7 px and their rims; a hairline between them would be some 1000 px.
+    EXPECT_GT(Picture(rendering).count(colours::vermillion, 60), 20);
+    EXPECT_LT(Picture(rendering).count(colours::vermillion, 60), 200);
+}
+
 TEST(ComparisonFigure, ScalesADistributionToUnitArea) {
     const Comparison comparison = comparison_of({"x"}, true);
     const Curve curve = figure_of(ComparisonFigure{comparison, {}}).panels.at(2).curves.at(0);
