@@ -1,11 +1,19 @@
 #include "analysis/simulate/orientation_rate.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace gyrolog {
 
 namespace {
+
+constexpr double fit_half_s = 0.05;
+
+struct KnownRow {
+    std::size_t row;
+    std::array<double, 3> turned_rad;  // since the run's first
+};
 
 Quaternion conjugate_times(const Quaternion& a, const Quaternion& b) {
     return {a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3],
@@ -22,6 +30,39 @@ double arctangent(double t) {
     double series = 0.0;
     for (int n = 23; n >= 1; n -= 2) { series = 1.0 / n - square * series; }
     return 4.0 * quarter * series;
+}
+
+// Slope by row, about the mean of the rows.
+std::array<double, 3> slope_of(std::span<const KnownRow> rows) {
+    const std::size_t origin = rows.front().row;
+    const std::array<double, 3>& start_rad = rows.front().turned_rad;
+    double mean = 0.0;
+    for (const KnownRow& known : rows) { mean += static_cast<double>(known.row - origin); }
+    mean /= static_cast<double>(rows.size());
+    double squares = 0.0;
+    std::array<double, 3> products{};
+    for (const KnownRow& known : rows) {
+        const double off = static_cast<double>(known.row - origin) - mean;
+        squares += off * off;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            products[axis] += off * (known.turned_rad[axis] - start_rad[axis]);
+        }
+    }
+    return {products[0] / squares, products[1] / squares, products[2] / squares};
+}
+
+// Rates of all rows from the run's first to its last; no two known rows are more than half_rows apart.
+void fit_run(std::span<const KnownRow> run, std::size_t half_rows, double rate_hz,
+             std::span<std::array<double, 3>> rates) {
+    if (run.size() < 2) { return; }
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    for (std::size_t row = run.front().row; row <= run.back().row; ++row) {
+        while (run[begin].row + half_rows < row) { ++begin; }
+        while (end < run.size() && run[end].row <= row + half_rows) { ++end; }
+        const auto slope = slope_of(run.subspan(begin, end - begin));
+        for (std::size_t axis = 0; axis < 3; ++axis) { rates[row][axis] = slope[axis] * rate_hz; }
+    }
 }
 
 }  // namespace
@@ -43,22 +84,27 @@ std::array<double, 3> rotation_vector(const Quaternion& q) {
 }
 
 std::vector<std::array<double, 3>> orientation_rate(std::span<const Quaternion> orientation, double rate_hz) {
-    std::vector<std::array<double, 3>> rates(orientation.size());
+    const auto half_rows = static_cast<std::size_t>(std::max(1.0, std::floor(fit_half_s * rate_hz + 0.5)));
     const double unknown = std::numeric_limits<double>::quiet_NaN();
-    std::array<double, 3> before = {unknown, unknown, unknown};
-    for (std::size_t k = 0; k < orientation.size(); ++k) {
-        std::array<double, 3> after = {unknown, unknown, unknown};
-        if (k + 1 < orientation.size()) {
-            after = rotation_vector(conjugate_times(orientation[k], orientation[k + 1]));
+    std::vector<std::array<double, 3>> rates(orientation.size(), {unknown, unknown, unknown});
+    std::vector<KnownRow> run;
+    for (std::size_t row = 0; row < orientation.size(); ++row) {
+        if (std::isnan(rotation_vector(orientation[row])[0])) { continue; }
+        if (!run.empty() && row - run.back().row > half_rows) {
+            fit_run(run, half_rows, rate_hz, rates);
+            run.clear();
         }
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            double turn_rad = (before[axis] + after[axis]) / 2.0;
-            if (std::isnan(before[axis])) { turn_rad = after[axis]; }
-            if (std::isnan(after[axis])) { turn_rad = before[axis]; }
-            rates[k][axis] = turn_rad * rate_hz;
+        KnownRow next = {row, {}};
+        if (!run.empty()) {
+            const KnownRow& last = run.back();
+            const auto turn_rad = rotation_vector(conjugate_times(orientation[last.row], orientation[row]));
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                next.turned_rad[axis] = last.turned_rad[axis] + turn_rad[axis];
+            }
         }
-        before = after;
+        run.push_back(next);
     }
+    fit_run(run, half_rows, rate_hz, rates);
     return rates;
 }
 

@@ -14,10 +14,16 @@ namespace {
 constexpr double standard_gravity_m_s2 = 9.80665;
 constexpr double window_half_s = 5.0;
 constexpr double window_rows = 30.0;
+constexpr double moment_s = 0.1;
 
 const Column* find_in(const Recording& recording, const std::string& name, std::string_view unit) {
     const Column* column = recording.find(name);
     return column != nullptr && column->unit == unit ? column : nullptr;
+}
+
+std::size_t unknown_in(const std::vector<double>& track) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(track, [](double value) { return !std::isfinite(value); }));
 }
 
 // Sums of a straight line's normal equations about one abscissa.
@@ -70,26 +76,27 @@ void RecordedWorld::read_reference() {
         parts[i] = recording_->find(std::string("ref_q") + "wxyz"[i]);
         if (parts[i] == nullptr && !has_reference_) { return; }
     }
-    if (!has_reference_) {
-        for (Track& track : rate_rad_s_) { track.resize(recording_->rows()); }
-        for (const Segment& segment : recording_->segments) {
-            std::vector<Quaternion> orientation(segment.count);
-            for (std::size_t k = 0; k < segment.count; ++k) {
-                for (std::size_t i = 0; i < 4; ++i) {
-                    orientation[k][i] = parts[i]->value(segment.first + k);
-                }
-            }
-            const auto rates = orientation_rate(orientation, recording_->rate_hz);
-            for (std::size_t k = 0; k < segment.count; ++k) {
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    rate_rad_s_[axis][segment.first + k] = rates[k][axis];
-                }
-            }
-        }
-        has_reference_ = true;
-    }
+    if (!has_reference_) { read_orientation_rate(parts); }
+    drop_empty(rate_rad_s_, "the reference rate");
+    stand_still_where_long_unknown();
     join_unknown(rate_rad_s_, "the reference rate");
     has_reference_ = std::ranges::any_of(rate_rad_s_, [](const Track& track) { return !track.empty(); });
+}
+
+void RecordedWorld::read_orientation_rate(const std::array<const Column*, 4>& parts) {
+    for (Track& track : rate_rad_s_) { track.resize(recording_->rows()); }
+    for (const Segment& segment : recording_->segments) {
+        std::vector<Quaternion> orientation(segment.count);
+        for (std::size_t k = 0; k < segment.count; ++k) {
+            for (std::size_t i = 0; i < 4; ++i) { orientation[k][i] = parts[i]->value(segment.first + k); }
+        }
+        const auto rates = orientation_rate(orientation, recording_->rate_hz);
+        for (std::size_t k = 0; k < segment.count; ++k) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                rate_rad_s_[axis][segment.first + k] = rates[k][axis];
+            }
+        }
+    }
 }
 
 void RecordedWorld::read_specific_force() {
@@ -99,6 +106,7 @@ void RecordedWorld::read_specific_force() {
         if (columns[axis] == nullptr) { return; }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) { specific_force_m_s2_[axis] = columns[axis]->values(); }
+    drop_empty(specific_force_m_s2_, "the specific force");
     join_unknown(specific_force_m_s2_, "the specific force");
     for (const Track& track : specific_force_m_s2_) {
         if (track.empty()) { return; }
@@ -106,21 +114,46 @@ void RecordedWorld::read_specific_force() {
     has_specific_force_ = true;
 }
 
-// A track without any number becomes none at all.
-void RecordedWorld::join_unknown(std::array<Track, 3>& tracks, const std::string& what) {
-    std::size_t most = 0;
+void RecordedWorld::drop_empty(std::array<Track, 3>& tracks, const std::string& what) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         Track& track = tracks[axis];
-        const auto unknown = static_cast<std::size_t>(
-            std::ranges::count_if(track, [](double value) { return !std::isfinite(value); }));
-        if (unknown != 0 && unknown == track.size()) {
-            warnings_.push_back(what + " of axis " + axis_names[axis] +
-                                " is known nowhere: taken as not recorded");
-            track.clear();
-        } else if (unknown != 0) {
-            most = std::max(most, unknown);
-            join_unknown(track);
+        if (track.empty() || unknown_in(track) < track.size()) { continue; }
+        warnings_.push_back(what + " of axis " + axis_names[axis] +
+                            " is known nowhere: taken as not recorded");
+        track.clear();
+    }
+}
+
+void RecordedWorld::stand_still_where_long_unknown() {
+    const double moment_rows = std::max(2.0, moment_s * recording_->rate_hz);
+    std::size_t most = 0;
+    for (Track& track : rate_rad_s_) {
+        std::size_t still = 0;
+        for (std::size_t row = 0; row < track.size();) {
+            std::size_t known = row;
+            while (known < track.size() && !std::isfinite(track[known])) { ++known; }
+            const std::size_t rows = known - row;
+            if (static_cast<double>(rows) > moment_rows) {
+                std::fill_n(track.begin() + static_cast<std::ptrdiff_t>(row), rows, 0.0);
+                still += rows;
+            }
+            row = known + 1;
         }
+        most = std::max(most, still);
+    }
+    if (most == 0) { return; }
+    warnings_.push_back("the reference rate is not known in " + std::to_string(most) + " of " +
+                        std::to_string(recording_->rows()) +
+                        " samples for longer than a moment: taken as not turning there");
+}
+
+void RecordedWorld::join_unknown(std::array<Track, 3>& tracks, const std::string& what) {
+    std::size_t most = 0;
+    for (Track& track : tracks) {
+        const std::size_t unknown = unknown_in(track);
+        if (unknown == 0) { continue; }
+        most = std::max(most, unknown);
+        join_unknown(track);
     }
     if (most == 0) { return; }
     warnings_.push_back(what + " is not known in " + std::to_string(most) + " of " +

@@ -14,12 +14,17 @@ namespace gyrolog {
 
 // World time 0 is the recording's first sampling instant; time runs on the recording's grid, at its rate.
 //
-// Rates: ref_x ref_y ref_z, or else the rate of the orientation ref_qw ... ref_qz (orientation_rate.hpp). An
-// axis without reference is taken not to turn. Between samples: the cubic through the four nearest where they
-// follow each other without a hole, else a straight line. Where the reference is not known (NaN), and in a
-// hole, a straight line joins what is known on either side; before and after, the nearest value is held.
+// Rates: ref_x ref_y ref_z, or else the rate of the orientation ref_qw ... ref_qz, which leaves a bandwidth
+// of 5.8 Hz and, of a real one by optical markers at rest, 0.2 to 0.6 deg/s of noise (orientation_rate.hpp,
+// METHODS.md). An axis without reference is taken not to turn. Between samples: the cubic through the four
+// nearest where they follow each other without a hole, else a straight line. Where the reference is not known
+// (NaN) for no more than 0.1 s (at least two rows), and in a hole of the recording, a straight line joins
+// what is known on either side, and the nearest value is held before the first and after the last; where it
+// is unknown for longer, the sensor is taken not to turn: one noisy value held would be a rotation that never
+// was.
 //
-// Specific force: ax ay az, likewise; without them gravity on z. The accelerometer's noise is in it.
+// Specific force: ax ay az, likewise, but joined and held however long; without them gravity on z. The
+// accelerometer's noise is in it.
 //
 // Temperature: the recorded one has the thermometer's noise, which the die has not. What acts is a straight
 // line fitted to the samples within 5 s on either side (at least 30 rows), a fifth of that apart, joined by
@@ -54,6 +59,9 @@ private:
     void read_specific_force();
     void read_temperature();
     void smooth_temperature(std::span<const Knot> known);
+    void read_orientation_rate(const std::array<const Column*, 4>& parts);
+    void drop_empty(std::array<Track, 3>& tracks, const std::string& what);
+    void stand_still_where_long_unknown();
     void join_unknown(std::array<Track, 3>& tracks, const std::string& what);
     void join_unknown(Track& track) const;
     std::size_t segment_at(double slot, std::size_t guess) const;

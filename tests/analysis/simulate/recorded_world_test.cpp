@@ -1,6 +1,8 @@
 #include "analysis/simulate/recorded_world.hpp"
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <random>
 
@@ -8,6 +10,7 @@
 
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
+#include "host/formats/recording_csv.hpp"
 
 namespace gyrolog {
 namespace {
@@ -177,13 +180,82 @@ TEST(OrientationRate, OfLargeAndTinyTurnsIsExact) {
     EXPECT_EQ(rotation_vector({1.0, 0.0, 0.0, 0.0})[0], 0.0);
 }
 
-TEST(OrientationRate, IsUnknownOnlyWhereNoNeighbourIsKnown) {
+TEST(OrientationRate, IsUnknownOnlyWhereTheOrientationIsForLongerThanTheFitsHalfWidth) {
     std::vector<Quaternion> orientation;
-    for (int k = 0; k < 6; ++k) { orientation.push_back(turned({0.0, 0.0, 1.0}, k * 0.01)); }
-    orientation[2][1] = nan;
+    for (int k = 0; k < 40; ++k) { orientation.push_back(turned({0.0, 0.0, 1.0}, k * 0.01)); }
+    for (const std::size_t k : {0U, 7U, 8U, 9U, 10U, 20U, 21U, 22U, 23U, 24U, 39U}) {
+        orientation[k][1] = nan;  // four rows are bridged, five are 60 ms from one known to the next
+    }
     const auto rates = orientation_rate(orientation, 100.0);
-    for (const std::size_t k : {0U, 1U, 3U, 4U, 5U}) { EXPECT_NEAR(rates[k][2], 1.0, 1e-10) << k; }
-    EXPECT_TRUE(std::isnan(rates[2][2]));
+    for (std::size_t k = 0; k < 40; ++k) {
+        if (k == 0 || (k >= 20 && k <= 24) || k == 39) {
+            EXPECT_TRUE(std::isnan(rates[k][2])) << k;
+        } else {
+            EXPECT_NEAR(rates[k][2], 1.0, 1e-10) << k;
+        }
+    }
+}
+
+TEST(OrientationRate, OfASwingIsLessByTheGainOfAStraightLine) {
+    for (const double f_hz : {1.0, 5.8}) {
+        const double pulsation_rad_s = 2.0 * 3.14159265358979 * f_hz;
+        std::vector<Quaternion> orientation;
+        for (int k = 0; k < 2000; ++k) {
+            orientation.push_back(turned({0.0, 1.0, 0.0}, 0.1 * std::sin(pulsation_rad_s * k * 0.001)));
+        }
+        const auto rates = orientation_rate(orientation, 1000.0);
+        const double u = pulsation_rad_s * 0.05;
+        const double gain = 3.0 * (std::sin(u) - u * std::cos(u)) / (u * u * u);
+        EXPECT_NEAR(gain, f_hz == 1.0 ? 0.99 : std::sqrt(0.5), 0.005);
+        for (std::size_t k = 50; k < 1950; ++k) {
+            const double rate_rad_s =
+                0.1 * pulsation_rad_s * std::cos(pulsation_rad_s * static_cast<double>(k) * 0.001);
+            // 101 rows are 1 % wider than the 100 ms of the formula; its slope is u / 5 at most.
+            ASSERT_NEAR(rates[k][1], gain * rate_rad_s, 0.1 * pulsation_rad_s * 0.01 * u * u / 5.0) << k;
+        }
+    }
+}
+
+TEST(OrientationRate, HasTheNoiseThatAFitLeavesOfTheOrientations) {
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> error_rad(0.0, 1e-3);
+    std::vector<Quaternion> orientation;
+    for (int k = 0; k < 40'000; ++k) {
+        orientation.push_back({1.0, error_rad(random) / 2.0, error_rad(random) / 2.0, 0.0});
+    }
+    const auto rates = orientation_rate(orientation, 200.0);
+    double squares = 0.0;
+    for (const auto& rate : rates) { squares += rate[0] * rate[0]; }
+    const double expected_rad_s = 1e-3 * 200.0 * std::sqrt(3.0 / (10.0 * 11.0 * 21.0));
+    // At least one independent value in 21.
+    EXPECT_NEAR(std::sqrt(squares / 40e3) / expected_rad_s, 1.0, 4.0 / std::sqrt(2.0 * 40e3 / 21.0));
+}
+
+TEST(RecordedWorld, StandsStillWhereTheOrientationIsLongUnknownAndGoesOnAcrossAMoment) {
+    const Maker maker = unbroken(400);
+    const auto known = [](double t_s) {
+        return t_s > 0.495 && (t_s < 1.495 || t_s > 1.565) && (t_s < 2.495 || t_s > 2.695) && t_s < 3.495;
+    };
+    std::vector<Column> columns;
+    for (std::size_t part = 0; part < 4; ++part) {
+        columns.push_back(reals(std::string("ref_q") + "wxyz"[part], "", maker.column([&](double t_s) {
+            return known(t_s) ? turned({0.0, 2.0, 0.0}, t_s)[part] : nan;
+        })));
+    }
+    const RecordedWorld world(maker.recording(std::move(columns)));
+    for (std::size_t slot = 0; slot < 400; ++slot) {
+        const bool turns = slot >= 50 && slot < 350 && (slot < 250 || slot > 269);
+        EXPECT_NEAR(motion_at(world, static_cast<double>(slot) / 100.0).rate_rad_s[1], turns ? 2.0 : 0.0,
+                    1e-10)
+            << slot;
+    }
+    ASSERT_EQ(world.warnings().size(), 2U);
+    EXPECT_EQ(world.warnings()[0],
+              "the reference rate is not known in 120 of 400 samples for longer than a moment: taken as not "
+              "turning there");
+    EXPECT_EQ(world.warnings()[1],
+              "the reference rate is not known in 7 of 400 samples: joined by straight lines there, held at "
+              "the ends");
 }
 
 TEST(RecordedWorld, TakesTheRateOfAnOrientationWhereThereIsNoReferenceRate) {
@@ -198,6 +270,51 @@ TEST(RecordedWorld, TakesTheRateOfAnOrientationWhereThereIsNoReferenceRate) {
     EXPECT_TRUE(world.is_measured());
     EXPECT_NEAR(motion_at(world, 0.5).rate_rad_s[1], 2.0, 1e-10);
     EXPECT_NEAR(motion_at(world, 0.5).rate_rad_s[0], 0.0, 1e-10);
+}
+
+// Sum of squares about their mean.
+double squares_about_mean(const std::vector<double>& values) {
+    double mean = 0.0;
+    for (const double value : values) { mean += value / static_cast<double>(values.size()); }
+    double squares = 0.0;
+    for (const double value : values) { squares += (value - mean) * (value - mean); }
+    return squares;
+}
+
+TEST(RecordedWorld, OfARealOrientationHasTheNoiseAtRestThatMethodsStates) {
+    const std::filesystem::path path =
+        std::filesystem::path(std::getenv("GYROLOG_SOURCE_DIR")) /
+        "../shared/data/broad_ref_motion/05_undisturbed_slow_rotation_with_breaks_B.csv.xz";
+    if (!std::filesystem::exists(path)) { GTEST_SKIP() << path << " is not there"; }
+    auto read = read_recording_csv(path.string());
+    ASSERT_TRUE(read) << read.error().message;
+    const auto recording = std::make_shared<const Recording>(std::move(*read));
+    const RecordedWorld world(recording);
+    // The last rest, between two turns of the hand and the loss of the markers: rows 51300 to 58200.
+    constexpr std::size_t first = 51300;
+    constexpr std::size_t last = 58200;
+    constexpr double stated_real_dps[] = {0.10, 0.09, 0.10};
+    constexpr double stated_dps[] = {0.60, 0.46, 0.18};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Column& gyro = *recording->find(std::string("g") + "xyz"[axis]);
+        std::vector<double> real_dps;
+        std::vector<double> simulated_dps;
+        for (std::size_t row = first; row < last; ++row) {
+            real_dps.push_back(gyro.value(row) * deg_per_rad);
+            simulated_dps.push_back(
+                motion_at(world, static_cast<double>(row) / recording->rate_hz).rate_rad_s[axis] *
+                deg_per_rad);
+        }
+        const double count = last - first;
+        const double real_sd_dps = std::sqrt(squares_about_mean(real_dps) / count);
+        const double simulated_sd_dps = std::sqrt(squares_about_mean(simulated_dps) / count);
+        EXPECT_NEAR(real_sd_dps, stated_real_dps[axis], 0.005);
+        EXPECT_NEAR(simulated_sd_dps, stated_dps[axis], 0.01);
+    }
+    // The markers are not seen for the first 4 s.
+    for (double world_s = 0.0; world_s < 4.0; world_s += 0.01) {
+        EXPECT_EQ(motion_at(world, world_s).rate_rad_s, (std::array<double, 3>{})) << world_s;
+    }
 }
 
 TEST(RecordedWorld, TheThermometersNoiseDoesNotReachTheDie) {
