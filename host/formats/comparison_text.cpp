@@ -107,7 +107,7 @@ std::string worst_number_text(const AxisComparison& axis, const ComparedNumber& 
     const bool is_rate = &number == &axis.standard_deviation;
     const char* shape = &number == &axis.skewness ? "skewness" : "excess kurtosis";
     const double per_unit = is_rate ? deg_per_rad : 1.0;
-    return fmt::format("the samples' {} is {:.2g}{unit}, of simulations {:.2g} to {:.2g}{unit}",
+    return fmt::format("the samples' {} is {:.3g}{unit}, of simulations {:.2g} to {:.2g}{unit}",
                        is_rate ? "standard deviation" : shape, number.recording * per_unit,
                        number.lo.value_or(number.other) * per_unit,
                        number.hi.value_or(number.other) * per_unit, fmt::arg("unit", is_rate ? " dps" : ""));

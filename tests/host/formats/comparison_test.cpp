@@ -69,13 +69,13 @@ TEST(ComparisonText, EndsInAPlainSentence) {
 TEST(ComparisonText, EndsInTheDistributionWhereThatStandsOut) {
     Comparison comparison = against_a_model();
     AxisComparison& axis = comparison.axes[0];
-    axis.excess_kurtosis = {61.0, 0.0, -0.016, 0.019, 400.0, true};
+    axis.excess_kurtosis = {671.3, 0.0, -0.016, 0.019, 400.0, true};
     EXPECT_EQ(last_line(comparison_text(comparison)),
-              "x: the simulation is too quiet by 4.7 dB at 13 ms; the samples' excess kurtosis is 61, of "
+              "x: the simulation is too quiet by 4.7 dB at 13 ms; the samples' excess kurtosis is 671, of "
               "simulations -0.016 to 0.019\n");
     axis.allan.gap.stands_out = false;
     EXPECT_EQ(last_line(comparison_text(comparison)),
-              "x: the samples' excess kurtosis is 61, of simulations -0.016 to 0.019\n");
+              "x: the samples' excess kurtosis is 671, of simulations -0.016 to 0.019\n");
     EXPECT_THAT(comparison_text(comparison), HasSubstr("stands out"));
     EXPECT_EQ(json::parse(comparison_json(comparison))["axes"]["x"]["excess_kurtosis"]["distance"], 400.0);
     axis.excess_kurtosis.stands_out = false;
