@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -177,7 +178,8 @@ TEST(Simulate, LikeAMotionTurnsAsItsOrientationReferenceDoes) {
     ASSERT_EQ(like.t_s, original.t_s);
     // The real gyro's scale is good to 0.5 %, its misalignment to the markers about 1 %, and the gyro is by
     // far the quieter of the two: the regression of the simulated rate on it is 1, unless axes, signs or
-    // times are wrong.
+    // times are wrong, less what the fit of the rate takes off the fast part of this motion (METHODS.md).
+    std::map<std::string, double> stated = {{"gx", 0.945}, {"gy", 0.959}, {"gz", 0.983}};
     for (const char* axis : {"gx", "gy", "gz"}) {
         double together = 0.0;
         double squares = 0.0;
@@ -186,7 +188,7 @@ TEST(Simulate, LikeAMotionTurnsAsItsOrientationReferenceDoes) {
             together += like.find(axis)->value(row) * real_rad_s;
             squares += real_rad_s * real_rad_s;
         }
-        EXPECT_NEAR(together / squares, 1.0, 0.02) << axis;
+        EXPECT_NEAR(together / squares, stated[axis], 0.005) << axis;
     }
 }
 
