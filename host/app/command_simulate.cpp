@@ -146,6 +146,11 @@ Result<std::shared_ptr<const RecordedWorld>> read_like(const Options& options, S
         story.warnings.push_back(fmt::format("the time stamps are copied: {} of the model {} not act on them",
                                              fmt::join(terms, ", "), terms.size() == 1 ? "does" : "do"));
     }
+    if (const auto terms = terms_of_temperature(story.file.model);
+        world->has_temperature() && !terms.empty()) {
+        story.warnings.push_back(fmt::format("the temperature is copied: {} of the model {} not act on it",
+                                             fmt::join(terms, ", "), terms.size() == 1 ? "does" : "do"));
+    }
     return std::shared_ptr<const RecordedWorld>(std::move(world));
 }
 
@@ -316,6 +321,7 @@ Action setup_simulate(CLI::App& app) {
         ->type_name("T");
     app.add_option("--seed", options->seed, "Another sensor of the same kind")
         ->type_name("N")
+        ->check(seed_number())
         ->capture_default_str();
     app.add_option("--like", options->like,
                    "Take time stamps, holes, temperature and reference motion from this recording")
