@@ -56,6 +56,10 @@ function(gyrolog_test name)
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
+    # Instrumented code is some ten times slower: a test that hangs is still found.
+    if(GYROLOG_SANITIZE)
+      set(arg_TIMEOUT 480)
+    endif()
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
     WORKING_DIRECTORY ${CMAKE_BINARY_DIR}
