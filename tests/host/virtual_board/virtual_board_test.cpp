@@ -169,7 +169,7 @@ TEST(VirtualBoard, SamplesThatTheModelLosesShowAsJumpsOfTheTicksAlone) {
 
 TEST(VirtualBoard, ASensorThatLosesEverySampleFallsSilent) {
     VirtualBoardOptions options = at_rate(1000.0);
-    options.model.effects = {{"dropped", {}, {{"per_hour", 3.6e6}, {"longest", 1e6}}, ""}};
+    options.model.effects = {{"dropped", {}, {{"per_hour", 1e6}, {"longest", 1e6}}, ""}};
     const auto board = board_with(options);
     board->on_line_state(true);
     board->advance_to(10'000 * ms);
