@@ -1,38 +1,11 @@
 // What an analysis of sensor counts takes of memory, by counting what is allocated.
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <random>
 
 #include <gtest/gtest.h>
-#include <malloc.h>
 
 #include "analysis/allan/allan_deviation.hpp"
-
-namespace {
-
-std::atomic<std::size_t> bytes_now = 0;
-std::atomic<std::size_t> bytes_most = 0;
-
-void release(void* memory) {
-    bytes_now -= malloc_usable_size(memory);
-    std::free(memory);
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-    void* const memory = std::malloc(size);
-    if (memory == nullptr) { throw std::bad_alloc(); }
-    const std::size_t now = bytes_now += malloc_usable_size(memory);
-    std::size_t most = bytes_most;
-    while (now > most && !bytes_most.compare_exchange_weak(most, now)) {}
-    return memory;
-}
-
-void operator delete(void* memory) noexcept { release(memory); }
-void operator delete(void* memory, std::size_t) noexcept { release(memory); }
+#include "tests/support/heap_account.hpp"
 
 namespace gyrolog {
 namespace {
