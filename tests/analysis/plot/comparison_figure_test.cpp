@@ -42,7 +42,7 @@ ComparedCurve falling_curve(bool with_own_interval) {
     return curve;
 }
 
-Comparison comparison_of(std::vector<std::string> axes, bool with_model) {
+Comparison comparison_of(const std::vector<std::string>& axes, bool with_model) {
     Comparison comparison;
     comparison.recording_name = "night.csv";
     comparison.other_name = "model.json";

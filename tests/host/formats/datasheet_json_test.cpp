@@ -19,7 +19,6 @@
 namespace gyrolog {
 namespace {
 
-using testing::HasSubstr;
 using Json = nlohmann::json;
 
 constexpr double standard_gravity_m_s2 = 9.80665;
