@@ -50,6 +50,12 @@ bool EffectUse::acts_on(std::size_t axis) const {
     return effect_->axes.empty() || std::ranges::count(effect_->axes, axis_names[axis]) != 0;
 }
 
+double EffectValues::operator[](std::string_view param) const {
+    const auto given = effect_->params.find(std::string(param));
+    return given != effect_->params.end() ? given->second
+                                          : *find_param(*find_effect(effect_->effect), param)->otherwise;
+}
+
 RandomStream EffectUse::stream(std::size_t axis, unsigned part) const {
     return context_->stream({'e', static_cast<char>(place_)}, axis, part);
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/simulate/effect_signature.hpp"
 #include "analysis/simulate/stage.hpp"
 
 namespace gyrolog {
@@ -45,6 +46,10 @@ struct EffectDefinition {
     std::string_view rate_error{};
     // It changes the temperature itself: a recorded one has it already.
     bool warms = false;
+    // It has no part in the noise-free answer to the world.
+    bool noise_only = false;
+    // How it shows in a recording; null for what a diagnosis does not look for.
+    const EffectSignature* signature = nullptr;
 };
 
 // One entry of a model's list, as its stage is made from it.

@@ -30,6 +30,7 @@ constinit const EffectDefinition angle_noise_effect = {
     .source = "IEEE 952-1997, annex C (quantization noise)",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

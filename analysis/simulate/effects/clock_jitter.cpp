@@ -46,6 +46,7 @@ constinit const EffectDefinition clock_jitter_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

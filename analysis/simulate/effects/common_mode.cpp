@@ -60,6 +60,7 @@ constinit const EffectDefinition common_mode_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

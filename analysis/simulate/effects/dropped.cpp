@@ -85,6 +85,7 @@ constinit const EffectDefinition dropped_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

@@ -28,6 +28,7 @@ constinit const EffectDefinition flicker_missing_effect = {
     .source = "IEEE 952-1997, annex C (bias instability); made as M. S. Keshner, Proc. IEEE 70 (1982) 212",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

@@ -55,6 +55,7 @@ constinit const EffectDefinition gauss_markov_effect = {
     .source = "IEEE 952-1997, C.1.5",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

@@ -31,6 +31,7 @@ constinit const EffectDefinition quantization_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

@@ -31,6 +31,7 @@ constinit const EffectDefinition rrw_missing_effect = {
     .source = "IEEE 952-1997, annex C (rate random walk)",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

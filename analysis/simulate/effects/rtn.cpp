@@ -90,6 +90,7 @@ constinit const EffectDefinition rtn_effect = {
     .source = "S. Machlup, J. Appl. Phys. 25 (1954) 341",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

@@ -67,6 +67,7 @@ constinit const EffectDefinition spikes_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

@@ -64,6 +64,7 @@ constinit const EffectDefinition stale_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .noise_only = true,
 };
 
 }  // namespace gyrolog

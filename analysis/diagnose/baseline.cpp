@@ -1,0 +1,213 @@
+#include "analysis/diagnose/baseline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/recording_simulator.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr std::array<const char*, 3> gyro_columns = {"gx", "gy", "gz"};
+
+std::vector<std::size_t> axes_of(const Recording& recording) {
+    std::vector<std::size_t> axes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Column* column = recording.find(gyro_columns[axis]);
+        if (column != nullptr && column->unit == "rad/s") { axes.push_back(axis); }
+    }
+    return axes;
+}
+
+std::size_t slots_of(const Recording& recording) {
+    const Segment& last = recording.segments.back();
+    return static_cast<std::size_t>(last.first_index - recording.segments.front().first_index) + last.count;
+}
+
+bool acts_on(const EffectModel& effect, std::size_t axis) {
+    return effect.axes.empty() || std::ranges::count(effect.axes, axis_names[axis]) != 0;
+}
+
+SpectralParts own_parts(const SensorModel& model, std::size_t axis, bool moves, double f_hz, double rate_hz) {
+    const NoiseCoefficients& noise = model.axes[axis].noise;
+    const double omega = 2.0 * pi * f_hz;
+    // Of the sampled process, both the random walk and the angle's rounding error have their aliases in
+    // closed form.
+    const double sampled_omega = 2.0 * rate_hz * std::sin(pi * f_hz / rate_hz);
+    SpectralParts parts;
+    parts.white = noise.N_rad_per_sqrt_s * noise.N_rad_per_sqrt_s;
+    parts.flicker = noise.B_rad_per_s * noise.B_rad_per_s / omega;
+    parts.walk = noise.K_rad_per_s_sqrt_s * noise.K_rad_per_s_sqrt_s / (sampled_omega * sampled_omega);
+    parts.other = model.lsb_rad_s * model.lsb_rad_s / (12.0 * rate_hz) +
+                  sampled_omega * sampled_omega * noise.Q_rad * noise.Q_rad / rate_hz;
+    if (moves) {
+        // What the reference does not know of the motion is taken for the sensor's.
+        double gain_square = 0.0;
+        for (const double gain : model.M[axis]) { gain_square += gain * gain; }
+        parts.other += gain_square * model.ref_noise_rad_s * model.ref_noise_rad_s / rate_hz;
+    }
+    return parts;
+}
+
+double stated(const std::map<std::string, double>& uncertainties, const char* name, double otherwise) {
+    const auto found = uncertainties.find(name);
+    return found == uncertainties.end() ? otherwise : found->second;
+}
+
+// A crystal's, where the model does not state it.
+constexpr double clock_sd_rel = 5e-5;
+// Over which the motion's change is taken.
+constexpr double time_step_s = 1e-3;
+
+// A sensor without any fault: what it shows is the motion itself, as late as the model says.
+SensorModel faultless(const SensorModel& model) {
+    SensorModel sensor;
+    sensor.rate_hz = model.rate_hz;
+    sensor.full_scale_rad_s = sensor.saturation_rad_s = 1e6;
+    sensor.latency_s = model.latency_s;
+    sensor.orientation = model.orientation;
+    return sensor;
+}
+
+std::vector<float> cosines_of(const std::vector<float>& values, CosineTransform& transform) {
+    std::vector<double> work(values.begin(), values.end());
+    transform.forward(work);
+    work[0] = 0.0;
+    return {work.begin(), work.end()};
+}
+
+}  // namespace
+
+std::optional<std::string> diagnosis_refusal(const Recording& recording) {
+    if (axes_of(recording).empty()) {
+        return "has no angular rate of an axis x, y or z in a known scale: columns gx_dps, gy_dps, gz_dps "
+               "(raw counts need a model with their lsb, and arrays or angles cannot be diagnosed)";
+    }
+    if (recording.rows() < diagnosable_samples_min) {
+        return "has " + std::to_string(recording.rows()) + " samples; a diagnosis needs at least " +
+               std::to_string(diagnosable_samples_min);
+    }
+    if (slots_of(recording) > 2 * recording.rows()) {
+        return "has more missing samples than samples: the longest unbroken part has to be cut out first";
+    }
+    return std::nullopt;
+}
+
+SensorModel without_noise(const SensorModel& model) {
+    SensorModel quiet = model;
+    for (AxisModel& axis : quiet.axes) {
+        const double ramp = axis.noise.R_rad_per_s2;
+        axis.noise = {};
+        axis.noise.R_rad_per_s2 = ramp;
+    }
+    quiet.lsb_rad_s = 0.0;
+    quiet.timestamp_jitter_s = 0.0;
+    quiet.temp_noise_C = 0.0;
+    quiet.ref_noise_rad_s = 0.0;
+    quiet.acc_noise_m_s2 = 0.0;
+    std::erase_if(quiet.effects,
+                  [](const EffectModel& entry) { return find_effect(entry.effect)->noise_only; });
+    return quiet;
+}
+
+Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model)
+    : world_(std::move(world)), model_(model) {
+    const Recording& recording = world_->recording();
+    rate_hz_ = recording.rate_hz;
+    length_ = fast_length(slots_of(recording));
+    axes_ = axes_of(recording);
+    bins_ = spectral_bins(length_, rate_hz_);
+    read_temperature();
+    response_rad_s_ = noise_free_response(*this, model_);
+    read_motion();
+    expect_spectrum();
+}
+
+void Baseline::read_temperature() {
+    if (!world_->has_temperature()) { return; }
+    std::vector<double> at_s(length_);
+    for (std::size_t slot = 0; slot < length_; ++slot) { at_s[slot] = static_cast<double>(slot) / rate_hz_; }
+    std::vector<double> temperature_C(length_);
+    world_->temperature(at_s, temperature_C);
+    temperature_C_.assign(temperature_C.begin(), temperature_C.end());
+}
+
+void Baseline::read_motion() {
+    if (!moves()) { return; }
+    true_rate_rad_s_ = noise_free_response(*this, faultless(model_));
+    SensorModel sooner = model_;
+    SensorModel later = model_;
+    sooner.latency_s -= 0.5 * time_step_s;
+    later.latency_s += 0.5 * time_step_s;
+    response_change_rad_s2_ = noise_free_response(*this, sooner);
+    const std::array<std::vector<float>, 3> delayed = noise_free_response(*this, later);
+
+    CosineTransform transform(length_);
+    const double gain_sd = stated(model_.sd_abs, "M", 0.0);
+    const double latency_sd_s = stated(model_.sd_abs, "latency_s", 0.0);
+    const double clock_sd = stated(model_.sd_abs, "rate_rel", clock_sd_rel);
+    for (const std::size_t axis : axes_) {
+        std::vector<float>& change = response_change_rad_s2_[axis];
+        for (std::size_t slot = 0; slot < length_; ++slot) {
+            change[slot] = (change[slot] - delayed[axis][slot]) / static_cast<float>(time_step_s);
+        }
+        const auto take = [&](const std::vector<float>& values, double sd) {
+            if (sd > 0.0) { uncertain_[axis].push_back({cosines_of(values, transform), sd}); }
+        };
+        for (const std::size_t from : axes_) { take(true_rate_rad_s_[from], gain_sd); }
+        take(change, latency_sd_s);
+        std::vector<float> growing(length_);
+        for (std::size_t slot = 0; slot < length_; ++slot) {
+            growing[slot] = static_cast<float>(static_cast<double>(slot) / rate_hz_) * change[slot];
+        }
+        take(growing, clock_sd);
+    }
+}
+
+void Baseline::expect_spectrum() {
+    for (const std::size_t axis : axes_) {
+        parts_[axis].reserve(bins_.size());
+        for (const SpectralBin& bin : bins_) {
+            SpectralParts parts = own_parts(model_, axis, moves(), bin.f_hz, rate_hz_);
+            for (const EffectModel& entry : model_.effects) {
+                const EffectSignature* signature = find_effect(entry.effect)->signature;
+                if (signature != nullptr && signature->spectrum != nullptr && acts_on(entry, axis)) {
+                    signature->spectrum(bin.f_hz, rate_hz_, EffectValues(entry), parts);
+                }
+            }
+            parts_[axis].push_back(parts);
+        }
+    }
+}
+
+std::shared_ptr<const Baseline> Baseline::with(const SensorModel& model) const {
+    return std::make_shared<const Baseline>(world_, model);
+}
+
+std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline, const SensorModel& model) {
+    SimulationRequest request;
+    request.like = baseline.shared_world();
+    RecordingSimulator simulator(without_noise(model), request);
+    std::array<std::vector<float>, 3> response;
+    for (const std::size_t axis : baseline.axes()) { response[axis].assign(baseline.length(), 0.0F); }
+    const std::int64_t origin = baseline.world().recording().segments.front().first_index;
+    Recording piece;
+    while (simulator.next(piece)) {
+        for (const std::size_t axis : baseline.axes()) {
+            const Column& column = *piece.find(gyro_columns[axis]);
+            for (const Segment& segment : piece.segments) {
+                for (std::size_t i = 0; i < segment.count; ++i) {
+                    const auto slot = static_cast<std::size_t>(segment.first_index - origin) + i;
+                    if (slot >= baseline.length()) { break; }
+                    response[axis][slot] = static_cast<float>(column.value(segment.first + i));
+                }
+            }
+        }
+    }
+    return response;
+}
+
+}  // namespace gyrolog

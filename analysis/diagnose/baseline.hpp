@@ -1,0 +1,94 @@
+// What the likelihood of a recording under one model needs apart from its noise: the grid of samples, what
+// the world did, the model's noise-free answer to it and its expected spectrum. Simulations of the recording
+// share it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/spectral_bins.hpp"
+#include "analysis/simulate/effect_signature.hpp"
+#include "analysis/simulate/recorded_world.hpp"
+#include "analysis/simulate/sensor_model.hpp"
+
+namespace gyrolog {
+
+inline constexpr std::size_t diagnosable_samples_min = 2048;
+
+// Why a recording cannot be diagnosed: no axis x, y or z, counts without a scale, too short, more holes than
+// samples. Empty when it can.
+std::optional<std::string> diagnosis_refusal(const Recording& recording);
+
+// A direction in which the model's answer is uncertain by its own statement: a gain of M, the latency, the
+// clock.
+struct UncertainResponse {
+    std::vector<float> cosines;  // of the change for one unit of the parameter
+    double sd = 0.0;             // of the parameter
+};
+
+class Baseline {
+public:
+    // `world`'s recording has no diagnosis_refusal(), `model` no simulation_refusal().
+    Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model);
+
+    const RecordedWorld& world() const { return *world_; }
+    std::shared_ptr<const RecordedWorld> shared_world() const { return world_; }
+    const SensorModel& model() const { return model_; }
+    double rate_hz() const { return rate_hz_; }
+    // Slots of the grid from the first sample that are looked at: fast_length() of all.
+    std::size_t length() const { return length_; }
+    double duration_s() const { return static_cast<double>(length_) / rate_hz_; }
+    const std::vector<std::size_t>& axes() const { return axes_; }  // that the recording has
+    bool moves() const { return world_->has_reference(); }
+
+    // By slot; empty without a thermometer.
+    const std::vector<float>& temperature_C() const { return temperature_C_; }
+    // The model's answer without noise and quantisation, by slot; empty for an axis the recording lacks.
+    const std::vector<float>& response_rad_s(std::size_t axis) const { return response_rad_s_[axis]; }
+
+    // In a moving world, by slot: the world's rate as the model times it, about the sensor's axes, and how
+    // the model's answer changes in time.
+    const std::vector<float>& true_rate_rad_s(std::size_t axis) const { return true_rate_rad_s_[axis]; }
+    const std::vector<float>& response_change_rad_s2(std::size_t axis) const {
+        return response_change_rad_s2_[axis];
+    }
+    const std::vector<UncertainResponse>& uncertain(std::size_t axis) const { return uncertain_[axis]; }
+
+    const SpectralBins& bins() const { return bins_; }
+    // Two-sided densities at the bins' middles under the model, rate's unit squared per Hz.
+    const std::vector<SpectralParts>& parts(std::size_t axis) const { return parts_[axis]; }
+
+    // The same world, another model.
+    std::shared_ptr<const Baseline> with(const SensorModel& model) const;
+
+private:
+    void read_temperature();
+    void read_motion();
+    void expect_spectrum();
+
+    std::shared_ptr<const RecordedWorld> world_;
+    SensorModel model_;
+    double rate_hz_ = 0.0;
+    std::size_t length_ = 0;
+    std::vector<std::size_t> axes_;
+    std::vector<float> temperature_C_;
+    std::array<std::vector<float>, 3> response_rad_s_;
+    std::array<std::vector<float>, 3> true_rate_rad_s_;
+    std::array<std::vector<float>, 3> response_change_rad_s2_;
+    std::array<std::vector<UncertainResponse>, 3> uncertain_;
+    SpectralBins bins_;
+    std::array<std::vector<SpectralParts>, 3> parts_;
+};
+
+// The model's answer to the world without noise, quantisation and whatever is drawn by chance, by slot; times
+// are those of the baseline's grid.
+std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline, const SensorModel& model);
+
+// The model with nothing random left in it.
+SensorModel without_noise(const SensorModel& model);
+
+}  // namespace gyrolog

@@ -1,0 +1,102 @@
+// The answer: where a recording and its model part, which effect it is, and how far the gap closes with it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/finding.hpp"
+#include "analysis/recording/recording.hpp"
+#include "analysis/simulate/sensor_model.hpp"
+
+namespace gyrolog {
+
+enum class Verdict { none, known, unexplained };
+
+struct Rival {
+    std::string effect;
+    double evidence_below_best_nats = 0.0;  // by how much its log Bayes factor is less
+};
+
+struct Cause {
+    Finding finding;
+    double score = 0.0;            // probability that it is right
+    std::vector<Rival> tie_group;  // what this recording cannot tell apart from it, itself first; empty: none
+    double shrink_alone = 0.0;
+    std::string decided_by;  // the recording that would break the tie, with the length it needs; or ""
+};
+
+// In units of the distance between two simulations.
+struct Gap {
+    double value = 0.0;
+    double floor = 1.0;
+    double lo = 0.0;  // 95 %
+    double hi = 0.0;
+};
+
+struct Untestable {
+    std::string effect;
+    std::string why;  // "the recording has no temperature"
+};
+
+// One panel of the figure and one line of the report's table of places: numbers of the recording against what
+// simulations give, before and after the causes were added to the model.
+struct GapDomain {
+    std::string name;    // "Allan deviation", "spectrum", "temperature", ...
+    std::string x_name;  // with unit: "averaging time (s)"
+    std::string y_name;
+    bool log_x = false;
+    bool log_y = false;
+    std::size_t axis = 0;
+    std::vector<double> x;
+    std::vector<double> recording;
+    std::vector<double> before_lo, before_hi;  // band of simulations, see band_probability
+    std::vector<double> after_lo, after_hi;    // empty where nothing was added
+    std::vector<bool> outside_before, outside_after;
+    double gap_before = 0.0;  // rms of the standardised differences; 1 is the floor
+    double gap_after = 0.0;
+};
+
+struct Diagnosis {
+    std::string recording_name;
+    std::string model_name;
+    double duration_s = 0.0;
+    double rate_hz = 0.0;
+    std::size_t samples = 0;
+    std::size_t simulations = 0;
+    double band_probability = 0.95;
+    std::uint64_t seed = 1;
+    std::vector<std::size_t> axes;
+
+    Verdict verdict = Verdict::none;
+    double p_none = 1.0;
+    double p_left = 1.0;  // of what the causes leave
+    std::vector<Cause> causes;
+    Place where;
+    Gap gap_before, gap_after;
+    double shrink = 0.0, shrink_lo = 0.0, shrink_hi = 0.0;
+    std::string
+        held_out;  // on what the gap was measured: "every other minute", the name of the second recording
+    std::vector<GapDomain> domains;
+    std::vector<Untestable> untestable;
+    std::vector<std::string> next_recordings;  // what would settle what is open, in sentences
+    std::vector<std::string> warnings;
+    SensorModel corrected;  // the model with the causes added
+};
+
+struct DiagnosisOptions {
+    std::uint64_t seed = 1;
+    std::size_t simulations = 200;
+    unsigned threads = 0;  // 0: all processors; the result is the same for any number
+    std::shared_ptr<const Recording> holdout{};
+    // With what is being done and its share from 0 to 1; false ends the work.
+    std::function<bool(const char*, double)> on_progress{};
+};
+
+// `recording` has no diagnosis_refusal(), `model` no simulation_refusal(). No value when ended early.
+std::optional<Diagnosis> diagnose(std::shared_ptr<const Recording> recording, const SensorModel& model,
+                                  const std::string& model_name, const DiagnosisOptions& options = {});
+
+}  // namespace gyrolog

@@ -1,0 +1,102 @@
+#include "analysis/diagnose/noise_nuisance.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace gyrolog {
+
+namespace {
+
+// A relative uncertainty as large as the coefficient itself, or larger, says no more than that.
+constexpr double sd_rel_max = 0.9;
+
+double uncertainty(const SensorModel& model, std::size_t axis, const char* name) {
+    const std::map<std::string, double>& own = model.axes[axis].sd_rel;
+    const std::map<std::string, double>& all = model.sd_rel;
+    const auto in_own = own.find(name);
+    const auto in_all = all.find(name);
+    const double sd = in_own != own.end() ? in_own->second : in_all != all.end() ? in_all->second : 0.0;
+    return std::min(sd, sd_rel_max);
+}
+
+struct Terms {
+    double log_likelihood_nats = 0.0;
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
+};
+
+Terms terms(const SpectralBins& bins, std::span<const SpectralParts> parts, std::span<const double> power,
+            const std::array<double, 3>& sd_rel, const Eigen::Vector3d& z) {
+    Terms sum;
+    const Eigen::Array3d sd(sd_rel[0], sd_rel[1], sd_rel[2]);
+    const Eigen::Array3d factor = 1.0 + sd * z.array();
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        const Eigen::Array3d part(parts[i].white, parts[i].flicker, parts[i].walk);
+        const double density = (part * factor.square()).sum() + parts[i].other;
+        const double half = 0.5 * bins[i].count();
+        const double ratio = power[i] / density;
+        sum.log_likelihood_nats -= half * (std::log(density) + ratio);
+        const Eigen::Vector3d slope = (2.0 * sd * factor * part / density).matrix();
+        sum.gradient += half * (ratio - 1.0) * slope;
+        sum.information.noalias() += half * slope * slope.transpose();
+    }
+    sum.log_likelihood_nats -= 0.5 * z.squaredNorm();
+    sum.gradient -= z;
+    return sum;
+}
+
+}  // namespace
+
+std::array<double, 3> noise_uncertainty(const SensorModel& model, std::size_t axis) {
+    return {uncertainty(model, axis, "N"), uncertainty(model, axis, "B"), uncertainty(model, axis, "K")};
+}
+
+void expected_density(std::span<const SpectralParts> parts, const std::array<double, 3>& sd_rel,
+                      const std::array<double, 3>& z, std::span<double> density) {
+    std::array<double, 3> factor{};
+    for (std::size_t j = 0; j < 3; ++j) {
+        factor[j] = 1.0 + sd_rel[j] * z[j];
+        factor[j] *= factor[j];
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        density[i] = factor[0] * parts[i].white + factor[1] * parts[i].flicker + factor[2] * parts[i].walk +
+                     parts[i].other;
+    }
+}
+
+NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralParts> parts,
+                           std::span<const double> power, const std::array<double, 3>& sd_rel,
+                           const NoiseNuisance& start) {
+    Eigen::Vector3d z(start.z.data());
+    // Where the factor 1 + sd z is not positive a coefficient would change its sign.
+    const auto inside = [&](const Eigen::Vector3d& at) {
+        for (int j = 0; j < 3; ++j) {
+            if (1.0 + sd_rel[static_cast<std::size_t>(j)] * at[j] < 0.02) { return false; }
+        }
+        return true;
+    };
+    Terms now = terms(bins, parts, power, sd_rel, z);
+    for (int iteration = 0; iteration < 30; ++iteration) {
+        Eigen::Vector3d step = now.information.ldlt().solve(now.gradient);
+        Terms next;
+        bool better = false;
+        for (int halving = 0; halving < 12 && !better; ++halving) {
+            if (inside(z + step)) {
+                next = terms(bins, parts, power, sd_rel, z + step);
+                better = next.log_likelihood_nats > now.log_likelihood_nats;
+            }
+            if (!better) { step *= 0.5; }
+        }
+        if (!better) { break; }
+        z += step;
+        const double gained = next.log_likelihood_nats - now.log_likelihood_nats;
+        now = next;
+        if (gained < 1e-4) { break; }
+    }
+    return {{z[0], z[1], z[2]}, now.log_likelihood_nats};
+}
+
+}  // namespace gyrolog

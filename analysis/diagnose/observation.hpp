@@ -1,0 +1,53 @@
+// One recording, real or simulated, against a baseline: what is left of it when the model's noise-free answer
+// is taken off, in the form that likelihoods need.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "analysis/diagnose/baseline.hpp"
+#include "analysis/diagnose/noise_nuisance.hpp"
+#include "analysis/recording/recording.hpp"
+
+namespace gyrolog {
+
+class CosineTransform;
+
+struct AxisObservation {
+    // By slot, about its mean. Slots without a sample hold a straight line between their neighbours plus
+    // white noise of the model's level, so that the power there is what it is elsewhere.
+    std::vector<float> residual_rad_s;
+    std::vector<float> cosines;   // DCT-II of the residual, Y_0 = 0; rad/s
+    std::vector<double> power;    // by bin: mean square of the coefficients, over the rate: a density
+    NoiseNuisance noise;          // the model's coefficients, fitted within their uncertainty
+    std::vector<double> density;  // by bin: expected under `noise`
+    // By slot: the inverse transform of Y_k / sqrt(density rate); standard normal and independent where the
+    // model is right.
+    std::vector<float> whitened;
+};
+
+class Observation {
+public:
+    // `recording` covers the baseline's grid (it, or a simulation like it). `seed` for what stands in holes.
+    Observation(std::shared_ptr<const Baseline> baseline, std::shared_ptr<const Recording> recording,
+                std::uint64_t seed);
+
+    const Baseline& baseline() const { return *baseline_; }
+    const Recording& recording() const { return *recording_; }
+    // Of an axis that the baseline has.
+    const AxisObservation& axis(std::size_t axis) const { return axes_[axis]; }
+    // By slot: a sample was there and is to be judged.
+    const std::vector<bool>& present() const { return present_; }
+
+private:
+    void observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform);
+
+    std::shared_ptr<const Baseline> baseline_;
+    std::shared_ptr<const Recording> recording_;
+    std::vector<bool> present_;
+    std::array<AxisObservation, 3> axes_;
+};
+
+}  // namespace gyrolog

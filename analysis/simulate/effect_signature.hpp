@@ -1,0 +1,87 @@
+// What an effect leaves in a recording, as far as its estimator needs it: declared beside the effect's
+// simulator. Data and plain formulas only; the estimators are elsewhere (analysis/diagnose/).
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "analysis/simulate/sensor_model.hpp"
+
+namespace gyrolog {
+
+// Two-sided density of the samples at one frequency below half the rate, aliases included, in (rad/s)^2/Hz.
+struct SpectralParts {
+    double white = 0.0;
+    double flicker = 0.0;
+    double walk = 0.0;
+    double other = 0.0;  // quantisation, the reference's noise, what effects add
+
+    double sum() const { return white + flicker + walk + other; }
+};
+
+// The parameters of one entry, with the effect's own values for those that it leaves out.
+class EffectValues {
+public:
+    explicit EffectValues(const EffectModel& effect) : effect_(&effect) {}
+    double operator[](std::string_view param) const;
+
+private:
+    const EffectModel* effect_;
+};
+
+// Values of one parameter to start from.
+struct TrialValues {
+    std::string_view param;
+    double from = 0.0;
+    double to = 0.0;
+    int count = 1;  // spaced by a constant factor, unless `even`
+    bool even = false;
+};
+
+enum class EvidenceMethod {
+    gaussian,         // mean response and spectrum: gaussian_test.hpp
+    line,             // a steady line in the spectrum
+    step,             // a jump at an unknown moment
+    two_levels,       // a hidden Markov chain
+    tails,            // distribution of the whitened samples
+    outliers,         // single samples
+    variance_course,  // their variance over time
+    variance_of,      // their variance against the temperature
+    shared_noise,     // between axes
+    repeats,          // samples that are the ones before again
+    code_grid,        // the converter's step
+    stamp_gaps,
+    stamp_rate,
+    stamp_spread,
+};
+
+enum class PlaceKind { spectrum, time, instant, temperature, acceleration, rate, amplitude, structure };
+
+struct EffectSignature {
+    EvidenceMethod method = EvidenceMethod::gaussian;
+    PlaceKind place = PlaceKind::spectrum;
+    std::string_view structure{};  // with PlaceKind::structure
+
+    bool needs_temperature = false;
+    bool needs_reference = false;
+    bool needs_specific_force = false;
+
+    // Parameters to which the mean response is proportional, all together; without them, and with
+    // `changes_mean`, the response is what the simulator makes of the trial values.
+    std::span<const std::string_view> linear{};
+    bool changes_mean = false;
+    bool slow = false;  // the mean response is: nothing in it is faster than some ten seconds
+    // Every group is a way to vary the other parameters, as a product; one group is enough for most.
+    std::span<const std::span<const TrialValues>> trials{};
+    // Positive parameters of the spectrum alone that are fitted from a trial value on.
+    std::span<const std::string_view> spectral{};
+    // Changes the expected parts in place.
+    void (*spectrum)(double f_hz, double rate_hz, const EffectValues& effect, SpectralParts& parts) = nullptr;
+
+    // For the report: a sentence with {parameter} where a fitted value belongs, and the recording that would
+    // tell the effect from its rivals.
+    std::string_view words{};
+    std::string_view decided_by{};
+};
+
+}  // namespace gyrolog
