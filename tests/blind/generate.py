@@ -1,0 +1,325 @@
+#!/usr/bin/env python3
+"""Makes sealed cases for the diagnosis of the sim-to-real gap.
+
+A case is DIR/cases/ID/{recording.csv, model.json}; what was put into it stands in SEALED/ID.json, and nowhere else.
+The IDs are shuffled numbers. Written independently of the program: nothing here calls it or shares its code.
+
+Usage: generate.py DIR [--sealed SEALED] [--panel small|full|none|still|motion] [--count N] [--seed N]
+                   [--minutes M] [--motion-minutes M] [--effect NAME]... [--class NAME]... [--list]
+"""
+
+import argparse
+import json
+import os
+import sys
+
+import numbers_or_skip  # noqa: F401  first: it may start another interpreter
+import numpy as np
+
+import textfile
+from effects import CATALOGUE
+from evidence import Description, nats
+from foreign import FOREIGN
+from sensor import Context, record, refitted, stream
+
+TARGETS = {"marginal": (16.0, 34.0), "moderate": (74.0, 240.0), "clear": (850.0, 4000.0)}
+CLASSES = {"marginal": (15.0, 35.0), "moderate": (70.0, 250.0), "clear": (800.0, np.inf)}
+# Effects whose strength a calibration on the very recording cannot swallow whole.
+REFITTED = ["gauss_markov", "rtn", "temp_linear", "temp_quadratic", "temp_lag", "rate_ramp", "warmup", "bias_step",
+            "tone", "heavy_tail", "spikes", "variance_change", "temp_noise", "common_mode", "lowpass"]
+
+
+def known_class(name):
+    return CATALOGUE.get(name) or FOREIGN[name]
+
+
+def class_of(value):
+    """The class that the evidence is in, or the nearest on a logarithmic scale."""
+    if value < 49.0:
+        return "marginal"
+    return "moderate" if value < 447.0 else "clear"
+
+
+def in_class(value, name):
+    low, high = CLASSES[name]
+    return low <= value <= high
+
+
+def description(effects):
+    out = Description()
+    for e in effects:
+        e.describe(out)
+    return out
+
+
+def evidence_of(context, effects):
+    free = all(getattr(e, "free", False) for e in effects)
+    return nats(context, description(effects), Description(), free=free)
+
+
+def own_evidence(context, effect, axis):
+    """What the effect is worth on one of its axes, were it on no other."""
+    params = dict(effect.params)
+    for name, value in params.items():
+        if isinstance(value, list) and len(value) == len(effect.axes):
+            params[name] = [value[effect.axes.index(axis)]]
+    return float(evidence_of(context, [type(effect)(context, params, [axis])]))
+
+
+def draw_axes(rng, cls):
+    if cls.whole:
+        return list("xyz")
+    count = rng.choice([1, 2, 3], p=[0.35, 0.2, 0.45])
+    count = max(int(count), cls.least_axes)
+    return ["xyz"[i] for i in sorted(rng.choice(3, count, replace=False))]
+
+
+def at_strength(context, cls, shape, axes, target):
+    """The effect whose evidence is the target, or the end of its plausible range: bisection in the logarithm."""
+
+    def made(strength):
+        return cls(context, cls.to_params(shape, strength), axes)
+
+    low, high = cls.range(context, shape)
+    if low == high:
+        return made(low)
+    if evidence_of(context, [made(high)]) <= target:
+        return made(high)
+    if evidence_of(context, [made(low)]) >= target:
+        return made(low)
+    low, high = np.log(low), np.log(high)
+    nearest = (np.inf, None)
+    for _ in range(18):
+        middle = 0.5 * (low + high)
+        effect = made(np.exp(middle))
+        value = evidence_of(context, [effect])
+        off = abs(np.log(value / target)) if value > 0.0 else np.inf
+        if off < nearest[0]:
+            nearest = (off, effect)
+        if off < 0.02:
+            break
+        low, high = (middle, high) if value < target else (low, middle)
+    return nearest[1] or made(np.exp(high))
+
+
+def draw_effect(context, name, strength_class, salt=""):
+    cls = known_class(name)
+    for attempt in range(8):
+        rng = stream(context.seed, "effect", name, strength_class, salt, attempt)
+        axes = draw_axes(rng, cls)
+        shape = cls.shape(rng, context, axes)
+        low, high = TARGETS[strength_class]
+        target = float(np.exp(rng.uniform(np.log(low), np.log(high))))
+        effect = at_strength(context, cls, shape, axes, target)
+        value = evidence_of(context, [effect])
+        if in_class(value, strength_class):
+            break
+    return effect, value
+
+
+def context_of(spec, model=None):
+    """The sensor and its world, from the part of a truth that says how they were made."""
+    return Context(spec["seed"], spec["motion"], spec["minutes"], model=model, temperature=spec.get("temperature"),
+                   fast=spec.get("fast"))
+
+
+def world_for(spec):
+    """Temperature and rates that the effects of the case need."""
+    rng = stream(spec["seed"], "need")
+    spec = dict(spec)
+    for name, _ in spec["effects"]:
+        cls = known_class(name)
+        if cls.temperature:
+            spec["temperature"] = "sweep" if cls.temperature == "sweep" else str(rng.choice(["drift", "sweep"]))
+        if cls.fast:
+            spec["fast"] = max(cls.fast, float(spec.get("fast") or 0.0))
+    return spec
+
+
+def make_case(spec):
+    """(columns, model, truth) of a specification: seed, motion, minutes, effects [(name, class)], refitted."""
+    spec = world_for(spec)
+    context = context_of(spec)
+    drawn = [draw_effect(context, name, c, i) for i, (name, c) in enumerate(spec["effects"])]
+    effects = [e for e, _ in drawn]
+    values = [v for _, v in drawn]
+    if spec.get("refitted"):
+        # Another recording of the same unit that has the effect too, fitted as if it had not.
+        sister = Context(spec["seed"], spec["motion"], spec["minutes"], temperature=spec.get("temperature"))
+        model = refitted(sister, record(sister, effects, "sister"))
+        context = context_of(spec, model=model)
+        for i, (name, c) in enumerate(spec["effects"]):
+            for grow in range(12):
+                values[i] = evidence_of(context, [effects[i]])
+                if values[i] >= CLASSES[c][0]:
+                    break
+                low, high = TARGETS[c]
+                rng = stream(spec["seed"], "regrow", i, grow)
+                first = draw_effect(context, name, c, f"{i}r{grow}")
+                effects[i], values[i] = first
+                model = refitted(sister, record(sister, effects, f"sister{grow}"))
+                context = context_of(spec, model=model)
+                for e in effects:
+                    e.context = context
+    columns = record(context, effects)
+    truth = {
+        "verdict": "none",
+        "effects": [],
+        "foreign": False,
+        "pair": len(effects) > 1,
+        "refitted": bool(spec.get("refitted")),
+        "made": {k: spec.get(k) for k in ("seed", "motion", "minutes", "temperature", "fast")},
+    }
+    for (name, asked), e, value in zip(spec["effects"], effects, values):
+        truth["verdict"] = "known" if name in CATALOGUE else "unexplained"
+        truth["foreign"] = name not in CATALOGUE
+        truth["effects"].append({
+            "effect": name, "axes": e.axes, "where": {**e.where(), "axes": e.axes}, "params": e.params,
+            "nats": round(float(value), 2), "class": class_of(value), "asked": asked,
+            "nats_of_axis": {} if e.whole else {a: round(own_evidence(context, e, a), 2) for a in e.axes},
+        })
+    return columns, context.model, truth
+
+
+def decimals_of(columns):
+    return {name: 3 if name == "temp_C" else 5 if name.startswith(("ref_", "a")) else 6 for name in columns}
+
+
+# ------------------------------------------------------------------ panels
+
+
+def spec(seed, effects, motion, minutes, **more):
+    return {"seed": int(seed), "effects": effects, "motion": bool(motion), "minutes": minutes, **more}
+
+
+def moves(rng, name):
+    needs = known_class(name).needs
+    return needs == "motion" or (needs == "both" and bool(rng.random() < 0.5))
+
+
+def families(name):
+    return known_class(name).family
+
+
+def draw_pair(rng, motion):
+    names = [n for n, c in CATALOGUE.items() if c.needs in (("motion", "both") if motion else ("still", "both"))]
+    # What corrupts the stamps or the codes is checked alone.
+    names = [n for n in names if families(n) != "structure"]
+    while True:
+        a, b = rng.choice(names, 2, replace=False)
+        if families(a) != families(b):
+            return [(str(a), str(rng.choice(["moderate", "clear"]))), (str(b), str(rng.choice(["moderate", "clear"])))]
+
+
+def full_panel(rng, count, minutes, motion_minutes):
+    """`count` cases of each effect and class, and in proportion none, foreign, pairs and refitted models."""
+    out = []
+
+    def add(effects, motion, **more):
+        out.append(spec(rng.integers(1, 2**31), effects, motion, motion_minutes if motion else minutes, **more))
+
+    for name, cls in CATALOGUE.items():
+        for c in cls.classes:
+            for _ in range(count):
+                add([(name, c)], moves(rng, name))
+    for name, cls in FOREIGN.items():
+        for c in cls.classes:
+            for _ in range(count):
+                add([(name, c)], moves(rng, name))
+    for i in range(15 * count):
+        motion = i % 3 == 2
+        add(draw_pair(rng, motion), motion)
+    for i in range(5 * count):
+        name = str(rng.choice(REFITTED))
+        c = str(rng.choice([k for k in CATALOGUE[name].classes if k != "marginal"]))
+        add([(name, c)], False, refitted=True)
+    for i in range(25 * count):
+        add([], i % 5 == 4)
+    return out
+
+
+SMALL = [  # effect, class, motion
+    ([], False), ([], False), ([], False), ([], True), ([], True),
+    ([("arw_scale", "clear")], False), ([("tone", "moderate")], False), ([("temp_linear", "clear")], False),
+    ([("heavy_tail", "moderate")], False), ([("spikes", "clear")], False), ([("bias_step", "clear")], False),
+    ([("stale", "clear")], False), ([("gauss_markov", "clear")], False), ([("variance_change", "clear")], False),
+    ([("common_mode", "moderate")], False), ([("clock_rate", "clear")], False), ([("quantization", "clear")], False),
+    ([("scale_factor", "clear")], True), ([("misalignment", "clear")], True), ([("latency", "moderate")], True),
+    ([("g_sensitivity", "clear")], True), ([("tone", "clear"), ("bias_step", "clear")], False),
+    ([("resonance", "clear")], False), ([("breathing_noise", "clear")], False),
+]
+
+
+def panel(kind, count, seed, minutes, motion_minutes, only_effects=None, only_classes=None):
+    rng = np.random.default_rng(seed)
+    if kind == "small":
+        minutes, motion_minutes = minutes or 35.0, motion_minutes or 12.0
+        out = [spec(rng.integers(1, 2**31), effects, motion, motion_minutes if motion else minutes)
+               for effects, motion in SMALL]
+    elif kind == "none":
+        minutes, motion_minutes = minutes or 120.0, motion_minutes or 18.0
+        out = [spec(rng.integers(1, 2**31), [], i % 5 == 4, motion_minutes if i % 5 == 4 else minutes)
+               for i in range(count or 200)]
+    else:
+        out = full_panel(rng, count or 1, minutes or 120.0, motion_minutes or 18.0)
+        if kind in ("still", "motion"):
+            out = [s for s in out if s["motion"] == (kind == "motion")]
+    if only_effects:
+        out = [s for s in out if any(e in only_effects for e, _ in s["effects"])
+               or ("none" in only_effects and not s["effects"])]
+    if only_classes:
+        out = [s for s in out if all(c in only_classes for _, c in s["effects"])]
+    numbers = rng.permutation(max(1000, 3 * len(out)))[: len(out)]
+    cases = {f"c{number:05d}": s for number, s in zip(numbers, out)}
+    return dict(sorted(cases.items()))
+
+
+def write_case(case_id, case_spec, directory, sealed):
+    columns, model, truth = make_case(case_spec)
+    where = os.path.join(directory, "cases", case_id)
+    os.makedirs(where, exist_ok=True)
+    os.makedirs(sealed, exist_ok=True)
+    textfile.write(os.path.join(where, "recording.csv"), columns, decimals_of(columns))
+    with open(os.path.join(where, "model.json"), "w") as file:
+        json.dump(model, file, indent=1)
+    with open(os.path.join(sealed, case_id + ".json"), "w") as file:
+        json.dump(truth, file, indent=1)
+    return truth
+
+
+def panel_arguments(parser):
+    parser.add_argument("--panel", default="small", choices=["small", "full", "none", "still", "motion"])
+    parser.add_argument("--count", type=int, help="cases of each effect and class (full), or of all (none)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--minutes", type=float, help="of a recording at rest")
+    parser.add_argument("--motion-minutes", type=float)
+    parser.add_argument("--effect", action="append", help="only cases with this effect, or none")
+    parser.add_argument("--class", dest="classes", action="append", choices=list(CLASSES))
+
+
+def panel_from(arguments):
+    return panel(arguments.panel, arguments.count, arguments.seed, arguments.minutes, arguments.motion_minutes,
+                 arguments.effect, arguments.classes)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("directory")
+    parser.add_argument("--sealed", help="where the truths go (DIRECTORY/sealed)")
+    parser.add_argument("--list", action="store_true", help="count the cases, make none")
+    panel_arguments(parser)
+    arguments = parser.parse_args()
+    cases = panel_from(arguments)
+    if arguments.list:
+        print(len(cases), "cases,", sum(s["motion"] for s in cases.values()), "with motion")
+        return 0
+    sealed = arguments.sealed or os.path.join(arguments.directory, "sealed")
+    for number, (case_id, case_spec) in enumerate(cases.items(), 1):
+        write_case(case_id, case_spec, arguments.directory, sealed)
+        print(f"\r{number}/{len(cases)}", end="", file=sys.stderr)
+    print(file=sys.stderr)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

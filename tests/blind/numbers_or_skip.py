@@ -1,0 +1,15 @@
+"""numpy, from the interpreter that has it: Debian's numpy belongs to Debian's python, which need not come first."""
+
+import os
+import sys
+
+SKIPPED = 77
+
+try:
+    import numpy  # noqa: F401
+except ImportError:
+    _system = "/usr/bin/python3"
+    if os.path.exists(_system) and os.path.realpath(sys.executable) != os.path.realpath(_system):
+        os.execv(_system, [_system, "-B"] + sys.argv)
+    print("numpy is not installed (Debian: python3-numpy)")
+    sys.exit(SKIPPED)
