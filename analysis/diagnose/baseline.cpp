@@ -113,8 +113,9 @@ SensorModel without_noise(const SensorModel& model) {
     return quiet;
 }
 
-Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model)
-    : world_(std::move(world)), model_(model) {
+Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
+                   std::shared_ptr<ResponseMemory> memory)
+    : world_(std::move(world)), model_(model), memory_(std::move(memory)) {
     const Recording& recording = world_->recording();
     rate_hz_ = recording.rate_hz;
     length_ = fast_length(slots_of(recording));
@@ -168,23 +169,22 @@ void Baseline::read_motion() {
 }
 
 void Baseline::expect_spectrum() {
+    for (const SpectralBin& bin : bins_) { f_hz_.push_back(bin.f_hz); }
     for (const std::size_t axis : axes_) {
-        parts_[axis].reserve(bins_.size());
-        for (const SpectralBin& bin : bins_) {
-            SpectralParts parts = own_parts(model_, axis, moves(), bin.f_hz, rate_hz_);
-            for (const EffectModel& entry : model_.effects) {
-                const EffectSignature* signature = find_effect(entry.effect)->signature;
-                if (signature != nullptr && signature->spectrum != nullptr && acts_on(entry, axis)) {
-                    signature->spectrum(bin.f_hz, rate_hz_, EffectValues(entry), parts);
-                }
+        for (const double f_hz : f_hz_) {
+            parts_[axis].push_back(own_parts(model_, axis, moves(), f_hz, rate_hz_));
+        }
+        for (const EffectModel& entry : model_.effects) {
+            const EffectSignature* signature = find_effect(entry.effect)->signature;
+            if (signature != nullptr && signature->spectrum != nullptr && acts_on(entry, axis)) {
+                signature->spectrum(f_hz_, rate_hz_, EffectValues(entry, axis), parts_[axis]);
             }
-            parts_[axis].push_back(parts);
         }
     }
 }
 
 std::shared_ptr<const Baseline> Baseline::with(const SensorModel& model) const {
-    return std::make_shared<const Baseline>(world_, model);
+    return std::make_shared<const Baseline>(world_, model, memory_);
 }
 
 std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline, const SensorModel& model) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnose/response_memory.hpp"
 #include "analysis/diagnose/spectral_bins.hpp"
 #include "analysis/simulate/effect_signature.hpp"
 #include "analysis/simulate/recorded_world.hpp"
@@ -33,7 +34,8 @@ struct UncertainResponse {
 class Baseline {
 public:
     // `world`'s recording has no diagnosis_refusal(), `model` no simulation_refusal().
-    Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model);
+    Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
+             std::shared_ptr<ResponseMemory> memory = std::make_shared<ResponseMemory>());
 
     const RecordedWorld& world() const { return *world_; }
     std::shared_ptr<const RecordedWorld> shared_world() const { return world_; }
@@ -59,11 +61,14 @@ public:
     const std::vector<UncertainResponse>& uncertain(std::size_t axis) const { return uncertain_[axis]; }
 
     const SpectralBins& bins() const { return bins_; }
+    const std::vector<double>& bin_frequencies_hz() const { return f_hz_; }
     // Two-sided densities at the bins' middles under the model, rate's unit squared per Hz.
     const std::vector<SpectralParts>& parts(std::size_t axis) const { return parts_[axis]; }
 
     // The same world, another model.
     std::shared_ptr<const Baseline> with(const SensorModel& model) const;
+    // Shared by all baselines that come from one.
+    ResponseMemory& memory() const { return *memory_; }
 
 private:
     void read_temperature();
@@ -72,6 +77,7 @@ private:
 
     std::shared_ptr<const RecordedWorld> world_;
     SensorModel model_;
+    std::shared_ptr<ResponseMemory> memory_;
     double rate_hz_ = 0.0;
     std::size_t length_ = 0;
     std::vector<std::size_t> axes_;
@@ -81,6 +87,7 @@ private:
     std::array<std::vector<float>, 3> response_change_rad_s2_;
     std::array<std::vector<UncertainResponse>, 3> uncertain_;
     SpectralBins bins_;
+    std::vector<double> f_hz_;
     std::array<std::vector<SpectralParts>, 3> parts_;
 };
 

@@ -61,9 +61,10 @@ void take_mean_off(std::vector<float>& values, const std::vector<bool>& present)
     }
 }
 
-// Takes the most likely of the model's uncertain responses off the coefficients.
-void take_uncertain_off(const std::vector<UncertainResponse>& uncertain, const SpectralBins& bins,
-                        const std::vector<double>& density, double rate_hz, std::vector<float>& cosines) {
+// Takes the most likely of the model's uncertain responses off the coefficients; returns their parameters.
+std::vector<double> take_uncertain_off(const std::vector<UncertainResponse>& uncertain,
+                                       const SpectralBins& bins, const std::vector<double>& density,
+                                       double rate_hz, std::vector<float>& cosines) {
     const auto count = static_cast<Eigen::Index>(uncertain.size());
     const auto column = [&](Eigen::Index a, std::size_t k) {
         return static_cast<double>(uncertain[static_cast<std::size_t>(a)].cosines[k]);
@@ -91,6 +92,7 @@ void take_uncertain_off(const std::vector<UncertainResponse>& uncertain, const S
             cosines[k] -= static_cast<float>(best[a] * column(a, k));
         }
     }
+    return {best.data(), best.data() + best.size()};
 }
 
 void measure_power(const SpectralBins& bins, double rate_hz, const std::vector<float>& cosines,
@@ -151,7 +153,8 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     };
     fit_noise();
     if (!baseline.uncertain(axis).empty()) {
-        take_uncertain_off(baseline.uncertain(axis), baseline.bins(), seen.density, rate_hz, seen.cosines);
+        seen.uncertain_fit = take_uncertain_off(baseline.uncertain(axis), baseline.bins(), seen.density,
+                                                rate_hz, seen.cosines);
         fit_noise();
         std::copy(seen.cosines.begin(), seen.cosines.end(), work.begin());
         transform.inverse(work);

@@ -20,6 +20,7 @@ struct AxisObservation {
     // white noise of the model's level, so that the power there is what it is elsewhere.
     std::vector<float> residual_rad_s;
     std::vector<float> cosines;   // DCT-II of the residual, Y_0 = 0; rad/s
+    std::vector<double> uncertain_fit;  // values of Baseline::uncertain() that were taken off
     std::vector<double> power;    // by bin: mean square of the coefficients, over the rate: a density
     NoiseNuisance noise;          // the model's coefficients, fitted within their uncertainty
     std::vector<double> density;  // by bin: expected under `noise`

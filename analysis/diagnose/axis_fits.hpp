@@ -1,0 +1,36 @@
+// One effect's fits to single axes and to all together, and which of them the data call for.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/finding.hpp"
+#include "analysis/simulate/effect.hpp"
+
+namespace gyrolog {
+
+// Parameters for some axes alike.
+struct AxesFit {
+    std::vector<std::size_t> axes;
+    std::vector<double> gain_nats;  // by axis
+    std::map<std::string, double> params;
+    std::map<std::string, double> sd;  // of those that were fitted
+    double cost_nats = 0.0;            // of the freedom of all of them
+
+    double total_gain_nats() const;
+    double evidence_nats() const { return total_gain_nats() - cost_nats; }
+};
+
+// What it costs that a parameter could be anywhere in its plausible range: log-uniform where that lies on one
+// side of zero. At least half a nat.
+double occam_cost_nats(const EffectParam& param, double value, double sd);
+const EffectParam& param_of(const EffectDefinition& effect, std::string_view name);
+
+// Of single-axis fits those that pay for themselves (the best one if none does), or a fit that several share
+// where that has more evidence. `shared_cost_nats`: of parameters that single-axis fits have in common.
+std::optional<Finding> best_of(const EffectDefinition& effect, const std::vector<AxesFit>& single,
+                               double common_cost_nats, const std::optional<AxesFit>& shared);
+
+}  // namespace gyrolog

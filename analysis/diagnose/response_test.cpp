@@ -1,0 +1,467 @@
+#include "analysis/diagnose/response_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/diagnose/axis_fits.hpp"
+#include "analysis/diagnose/effect_response.hpp"
+#include "analysis/diagnose/mean_regression.hpp"
+#include "analysis/diagnose/simplex_search.hpp"
+#include "analysis/diagnose/trial_grid.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+// Beyond this evidence trial values are refined, which takes a simulation.
+constexpr double worth_refining_nats = 3.0;
+constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
+
+struct Trial {
+    TrialPoint point;
+    std::array<std::vector<std::vector<float>>, 3> responses;  // by axis, by linear parameter
+};
+
+// One axis, one trial, the noise as the observation has it.
+struct Quick {
+    NormalEquations equations;
+    double gain_nats = 0.0;
+    double cost_nats = 0.0;  // of the linear parameters
+};
+
+class ResponseTest final : public EffectTest {
+public:
+    ResponseTest(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline)
+        : effect_(effect), signature_(*effect.signature), baseline_(std::move(baseline)) {
+        for (const TrialPoint& point : trial_points(signature_)) { trials_.push_back(simulated(point)); }
+        coefficients_ = signature_.slow ? std::min(slow_coefficients, baseline_->length()) : reach();
+    }
+
+    std::optional<Finding> find(const Observation& observation) const override {
+        const std::vector<std::size_t>& axes = baseline_->axes();
+        std::vector<MeanRegression> regressions;
+        for (const std::size_t axis : axes) {
+            regressions.emplace_back(observation, axis, observation.axis(axis).density, coefficients_);
+        }
+        std::vector<std::vector<Quick>> quick(trials_.size());
+        std::size_t best = 0;
+        double best_evidence = minus_infinity;
+        for (std::size_t t = 0; t < trials_.size(); ++t) {
+            for (std::size_t a = 0; a < axes.size(); ++a) {
+                quick[t].push_back(quick_fit(regressions[a], trials_[t].responses[axes[a]]));
+            }
+            const double evidence = quick_evidence(quick[t]);
+            if (evidence > best_evidence) {
+                best_evidence = evidence;
+                best = t;
+            }
+        }
+        const ParamValues sd = trial_sd(quick, best);
+        std::optional<Finding> finding = fitted(observation, trials_[best], sd);
+        if (finding && finding->evidence_nats > worth_refining_nats && !sd.empty()) {
+            const Trial better = refined(regressions, trials_[best]);
+            std::optional<Finding> refitted_finding =
+                fitted(observation, better, trial_sd_at(regressions, better));
+            if (refitted_finding && refitted_finding->gain_nats > finding->gain_nats) {
+                finding = std::move(refitted_finding);
+            }
+        }
+        if (finding) { locate(observation, *finding); }
+        return finding;
+    }
+
+private:
+    EffectModel entry_of(ParamValues params) const {
+        return {std::string(effect_.name), {}, std::move(params), ""};
+    }
+
+    Trial simulated(const TrialPoint& point) const {
+        Trial trial{point, {}};
+        const auto add = [&](const ParamValues& params, double unit) {
+            std::array<std::vector<float>, 3> response =
+                effect_response(*baseline_, entry_of(params), signature_.slow);
+            for (const std::size_t axis : baseline_->axes()) {
+                for (float& coefficient : response[axis]) {
+                    coefficient = static_cast<float>(static_cast<double>(coefficient) / unit);
+                }
+                trial.responses[axis].push_back(std::move(response[axis]));
+            }
+        };
+        if (signature_.linear.empty()) { add(point.params, 1.0); }
+        for (const std::string_view name : signature_.linear) {
+            ParamValues params = point.params;
+            // A size at which the answer is well above rounding and the sensor still far from its limits.
+            const double unit = param_of(effect_, name).plausible_to;
+            for (const std::string_view other : signature_.linear) { params[std::string(other)] = 0.0; }
+            params[std::string(name)] = unit;
+            add(params, unit);
+        }
+        return trial;
+    }
+
+    // Coefficients beyond which a fast response has next to nothing: a thousandth of its weight.
+    std::size_t reach() const {
+        std::size_t reach = 2;
+        for (const std::size_t axis : baseline_->axes()) {
+            for (const std::vector<float>& response : trials_.front().responses[axis]) {
+                reach = std::max(reach, reach_of(response));
+            }
+        }
+        return reach;
+    }
+
+    static std::size_t reach_of(const std::vector<float>& response) {
+        double total = 0.0;
+        for (const float c : response) { total += static_cast<double>(c) * static_cast<double>(c); }
+        double beyond = 0.0;
+        std::size_t k = response.size();
+        while (k > 1 && beyond <= 1e-3 * total) {
+            --k;
+            beyond += static_cast<double>(response[k]) * static_cast<double>(response[k]);
+        }
+        return k + 1;
+    }
+
+    // Whether the linear parameters are known well enough to be worth their freedom.
+    Quick quick_fit(const MeanRegression& regression, std::span<const std::vector<float>> responses) const {
+        Quick quick{regression.equations(responses), 0.0, 0.0};
+        const Eigen::VectorXd c = solved(quick.equations);
+        quick.gain_nats = c.dot(quick.equations.b) - 0.5 * c.dot(quick.equations.A * c);
+        quick.cost_nats = linear_cost(quick.equations, c);
+        return quick;
+    }
+
+    Eigen::VectorXd solved(const NormalEquations& equations) const {
+        if (signature_.linear.empty()) { return Eigen::VectorXd::Ones(1); }
+        // A direction of which the data know nothing stays at zero.
+        return equations.A.completeOrthogonalDecomposition().solve(equations.b);
+    }
+
+    Eigen::VectorXd linear_sd(const NormalEquations& equations) const {
+        const Eigen::MatrixXd covariance = equations.A.completeOrthogonalDecomposition().pseudoInverse();
+        return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    }
+
+    double linear_cost(const NormalEquations& equations, const Eigen::VectorXd& c) const {
+        if (signature_.linear.empty()) { return 0.0; }
+        const Eigen::VectorXd sd = linear_sd(equations);
+        double cost = 0.0;
+        for (std::size_t j = 0; j < signature_.linear.size(); ++j) {
+            const auto at = static_cast<Eigen::Index>(j);
+            cost += occam_cost_nats(param_of(effect_, signature_.linear[j]), c[at], sd[at]);
+        }
+        return cost;
+    }
+
+    static double quick_evidence(const std::vector<Quick>& axes) {
+        double evidence = 0.0;
+        double best = minus_infinity;
+        for (const Quick& axis : axes) {
+            const double own = axis.gain_nats - axis.cost_nats;
+            evidence += std::max(own, 0.0);
+            best = std::max(best, own);
+        }
+        return best > 0.0 ? evidence : best;
+    }
+
+    // Neighbours of a trial along one parameter of its group: the trials' places, if they are there.
+    std::array<std::optional<std::size_t>, 2> neighbours(std::size_t trial, std::size_t dimension) const {
+        const TrialPoint& centre = trials_[trial].point;
+        std::array<std::optional<std::size_t>, 2> found;
+        for (std::size_t t = 0; t < trials_.size(); ++t) {
+            const TrialPoint& point = trials_[t].point;
+            if (point.group != centre.group) { continue; }
+            bool same_otherwise = true;
+            for (std::size_t i = 0; i < point.index.size(); ++i) {
+                same_otherwise = same_otherwise && (i == dimension || point.index[i] == centre.index[i]);
+            }
+            if (!same_otherwise) { continue; }
+            if (point.index[dimension] + 1 == centre.index[dimension]) { found[0] = t; }
+            if (point.index[dimension] == centre.index[dimension] + 1) { found[1] = t; }
+        }
+        return found;
+    }
+
+    struct Peak {
+        double place;  // in steps from the trial
+        double sd;     // in steps
+    };
+
+    std::optional<Peak> peak(const std::vector<std::vector<Quick>>& quick, std::size_t trial,
+                             std::size_t dimension) const {
+        const auto [less, more] = neighbours(trial, dimension);
+        const double here = quick_evidence(quick[trial]);
+        if (!less || !more) { return std::nullopt; }
+        const double fall_less = here - quick_evidence(quick[*less]);
+        const double fall_more = here - quick_evidence(quick[*more]);
+        const double curvature = fall_less + fall_more;
+        if (!(curvature > 0.0)) { return std::nullopt; }
+        return Peak{std::clamp(0.5 * (fall_less - fall_more) / curvature, -0.5, 0.5),
+                    1.0 / std::sqrt(curvature)};
+    }
+
+    double step_of(const TrialValues& values, double at) const {
+        const double steps = values.count - 1;
+        return values.even ? (values.to - values.from) / steps
+                           : at * std::log(values.to / values.from) / steps;
+    }
+
+    std::span<const TrialValues> varied(const TrialPoint& point) const {
+        return signature_.trials.empty() ? std::span<const TrialValues>{} : signature_.trials[point.group];
+    }
+
+    ParamValues trial_sd(const std::vector<std::vector<Quick>>& quick, std::size_t trial) const {
+        ParamValues sd;
+        const TrialPoint& point = trials_[trial].point;
+        const std::span<const TrialValues> values = varied(point);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (values[i].count < 2 || is_choice(values[i])) { continue; }
+            const std::string name(values[i].param);
+            const std::optional<Peak> top = peak(quick, trial, i);
+            sd[name] = step_of(values[i], point.params.at(name)) * (top ? std::min(top->sd, 3.0) : 1.0);
+        }
+        return sd;
+    }
+
+    // Parameters on their trial's scale, where a step of 1 is one of the trial values'.
+    TrialPoint moved(const TrialPoint& from, const std::vector<double>& steps) const {
+        TrialPoint point = from;
+        const std::span<const TrialValues> values = varied(from);
+        std::size_t free = 0;
+        for (const TrialValues& trial : values) {
+            if (trial.count < 2 || is_choice(trial)) { continue; }
+            double& value = point.params[std::string(trial.param)];
+            const double step = steps[free++];
+            value = trial.even ? value + step * (trial.to - trial.from) / (trial.count - 1)
+                               : value * std::pow(trial.to / trial.from, step / (trial.count - 1));
+        }
+        return point;
+    }
+
+    // A parameter of whole numbers, or yes or no: nothing lies between its trial values.
+    bool is_choice(const TrialValues& values) const {
+        const EffectParam& param = param_of(effect_, values.param);
+        return param.whole_up_to != 0.0 || param.range == EffectParam::Range::yes_no || values.count == 2;
+    }
+
+    std::size_t free_parameters(const TrialPoint& point) const {
+        std::size_t count = 0;
+        for (const TrialValues& values : varied(point)) { count += values.count > 1 && !is_choice(values); }
+        return count;
+    }
+
+    double evidence_at(const std::vector<MeanRegression>& regressions, const Trial& trial) const {
+        std::vector<Quick> quick;
+        for (std::size_t a = 0; a < regressions.size(); ++a) {
+            quick.push_back(quick_fit(regressions[a], trial.responses[baseline_->axes()[a]]));
+        }
+        return quick_evidence(quick);
+    }
+
+    double evidence_at(const std::vector<MeanRegression>& regressions, const TrialPoint& from,
+                       const std::vector<double>& steps) const {
+        const TrialPoint point = moved(from, steps);
+        if (effect_refusal(entry_of(with_linear(point.params)))) { return minus_infinity; }
+        return evidence_at(regressions, simulated(point));
+    }
+
+    ParamValues with_linear(ParamValues params) const {
+        for (const std::string_view name : signature_.linear) { params[std::string(name)] = 0.0; }
+        return params;
+    }
+
+    Trial refined(const std::vector<MeanRegression>& regressions, const Trial& start) const {
+        const std::size_t count = free_parameters(start.point);
+        if (count == 0) { return start; }
+        constexpr int simulations_most = 18;
+        const SimplexMaximum maximum = simplex_maximum(
+            [&](const std::vector<double>& steps) { return evidence_at(regressions, start.point, steps); },
+            std::vector<double>(count, 0.0), 0.4, 0.05, simulations_most);
+        return simulated(moved(start.point, maximum.at));
+    }
+
+    // From the curvature of the evidence about a point between the trials.
+    ParamValues trial_sd_at(const std::vector<MeanRegression>& regressions, const Trial& trial) const {
+        ParamValues sd;
+        const double here = evidence_at(regressions, trial);
+        std::size_t free = 0;
+        for (const TrialValues& values : varied(trial.point)) {
+            if (values.count < 2 || is_choice(values)) { continue; }
+            const std::string name(values.param);
+            double step = 0.02;
+            double fall = 0.0;
+            for (; step < 3.0; step *= 3.0) {
+                std::vector<double> less(free_parameters(trial.point), 0.0);
+                less[free] = -step;
+                std::vector<double> more = less;
+                more[free] = step;
+                fall = 2.0 * here - evidence_at(regressions, trial.point, less) -
+                       evidence_at(regressions, trial.point, more);
+                if (fall > 0.5) { break; }
+            }
+            const double sd_steps = fall > 0.0 && fall < 1e300 ? std::min(step / std::sqrt(fall), 3.0) : 1.0;
+            sd[name] = sd_steps * step_of(values, trial.point.params.at(name));
+            ++free;
+        }
+        return sd;
+    }
+
+    // The gain with N, B and K refitted, on one axis.
+    struct AxisFit {
+        Eigen::VectorXd c;
+        Eigen::VectorXd sd;
+        double gain_nats = 0.0;
+        double cost_nats = 0.0;
+        NormalEquations equations;
+    };
+
+    AxisFit refitted(const Observation& observation, std::size_t axis, const Trial& trial,
+                     const Eigen::VectorXd* given) const {
+        const AxisObservation& seen = observation.axis(axis);
+        const std::vector<std::vector<float>>& responses = trial.responses[axis];
+        const std::array<double, 3> sd_rel = noise_uncertainty(baseline_->model(), axis);
+        std::vector<double> density = seen.density;
+        NoiseNuisance noise = seen.noise;
+        AxisFit fit;
+        for (int round = 0; round < 3; ++round) {
+            const MeanRegression regression(observation, axis, density, coefficients_);
+            fit.equations = regression.equations(responses);
+            fit.c = given != nullptr ? *given : solved(fit.equations);
+            const MeanRegression::Rest rest = regression.rest(responses, fit.equations, fit.c);
+            noise = fit_nuisance(baseline_->bins(), baseline_->parts(axis), rest.power, sd_rel, noise);
+            expected_density(baseline_->parts(axis), sd_rel, noise.z, density);
+            fit.gain_nats = noise.log_likelihood_nats - seen.noise.log_likelihood_nats - rest.charge_nats;
+        }
+        if (!signature_.linear.empty()) { fit.sd = linear_sd(fit.equations); }
+        fit.cost_nats = linear_cost(fit.equations, fit.c);
+        return fit;
+    }
+
+    AxesFit described(const std::vector<std::size_t>& axes, const Trial& trial, const AxisFit& fit) const {
+        AxesFit described;
+        described.axes = axes;
+        described.params = trial.point.params;
+        described.cost_nats = fit.cost_nats;
+        for (std::size_t j = 0; j < signature_.linear.size(); ++j) {
+            const std::string name(signature_.linear[j]);
+            described.params[name] = fit.c[static_cast<Eigen::Index>(j)];
+            described.sd[name] = fit.sd[static_cast<Eigen::Index>(j)];
+        }
+        return described;
+    }
+
+    std::optional<Finding> fitted(const Observation& observation, const Trial& trial,
+                                  const ParamValues& trial_sd) const {
+        double common_cost = 0.0;
+        for (const auto& [name, sd] : trial_sd) {
+            common_cost += occam_cost_nats(param_of(effect_, name), trial.point.params.at(name), sd);
+        }
+        const bool only_shared = signature_.whole_sensor && baseline_->axes().size() > 1;
+        std::vector<AxesFit> single;
+        NormalEquations pooled;
+        for (const std::size_t axis : baseline_->axes()) {
+            const AxisFit fit = refitted(observation, axis, trial, nullptr);
+            AxesFit described_fit = described({axis}, trial, fit);
+            described_fit.gain_nats = {fit.gain_nats};
+            described_fit.sd.insert(trial_sd.begin(), trial_sd.end());
+            if (!only_shared) { single.push_back(std::move(described_fit)); }
+            if (pooled.A.size() == 0) {
+                pooled = fit.equations;
+            } else {
+                pooled.A += fit.equations.A;
+                pooled.b += fit.equations.b;
+            }
+        }
+        std::optional<AxesFit> shared;
+        if (baseline_->axes().size() > 1) {
+            AxisFit common;
+            common.c = solved(pooled);
+            if (!signature_.linear.empty()) { common.sd = linear_sd(pooled); }
+            common.cost_nats = linear_cost(pooled, common.c) + common_cost;
+            shared = described(baseline_->axes(), trial, common);
+            shared->sd.insert(trial_sd.begin(), trial_sd.end());
+            for (const std::size_t axis : baseline_->axes()) {
+                shared->gain_nats.push_back(refitted(observation, axis, trial, &common.c).gain_nats);
+            }
+        }
+        return best_of(effect_, single, common_cost, shared);
+    }
+
+    void locate(const Observation& observation, Finding& finding) const {
+        switch (signature_.place) {
+            case PlaceKind::temperature:
+                finding.where.temperature = true;
+                break;
+            case PlaceKind::acceleration:
+                finding.where.acceleration = true;
+                break;
+            case PlaceKind::structure:
+                finding.where.structure = signature_.structure;
+                break;
+            case PlaceKind::time:
+                finding.where.time_s = {0.0, baseline_->duration_s()};
+                break;
+            case PlaceKind::rate:
+                locate_rates(finding);
+                break;
+            default:
+                break;
+        }
+        if (signature_.slow) { locate_times(observation, finding); }
+    }
+
+    // Where the response of the first axis has nine tenths of its weight.
+    void locate_times(const Observation& observation, Finding& finding) const {
+        const std::size_t axis = finding.where.axes.front();
+        const std::vector<float>& response = trials_.front().responses[axis].front();
+        const SpectralBins& bins = baseline_->bins();
+        std::vector<double> weights;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < bins.size() && bins[i].end <= response.size(); ++i) {
+            double weight = 0.0;
+            for (std::size_t k = bins[i].first; k < bins[i].end; ++k) {
+                weight += static_cast<double>(response[k]) * static_cast<double>(response[k]);
+            }
+            weights.push_back(weight / observation.axis(axis).density[i]);
+            sum += weights.back();
+        }
+        double below = 0.0;
+        Span band{bins.front().f_hz, bins.front().f_hz};
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            if (below < 0.05 * sum) { band.from = bins[i].f_hz; }
+            if (below < 0.95 * sum) { band.to = bins[i].f_hz; }
+            below += weights[i];
+        }
+        finding.where.tau_s = {0.37 / band.to, std::min(0.37 / band.from, 0.5 * baseline_->duration_s())};
+    }
+
+    // The rates, by size, over which the response is strong.
+    void locate_rates(Finding& finding) const {
+        std::vector<float> sizes;
+        for (const std::size_t axis : finding.where.axes) {
+            for (const float rate : baseline_->true_rate_rad_s(axis)) { sizes.push_back(std::fabs(rate)); }
+        }
+        if (sizes.empty()) { return; }
+        const auto at = [&](double share) {
+            const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
+            std::ranges::nth_element(sizes, sizes.begin() + place);
+            return static_cast<double>(sizes[static_cast<std::size_t>(place)]);
+        };
+        finding.where.rate_rad_s = {at(0.5), at(1.0)};
+    }
+
+    const EffectDefinition& effect_;
+    const EffectSignature& signature_;
+    std::shared_ptr<const Baseline> baseline_;
+    std::vector<Trial> trials_;
+    std::size_t coefficients_ = 0;
+};
+
+}  // namespace
+
+MadeTest make_response_test(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline) {
+    return {std::make_unique<ResponseTest>(effect, std::move(baseline)), {}};
+}
+
+}  // namespace gyrolog
