@@ -2,12 +2,18 @@
 // simulator. Data and plain formulas only; the estimators are elsewhere (analysis/diagnose/).
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "analysis/simulate/sensor_model.hpp"
 
 namespace gyrolog {
+
+struct Recording;
+class EffectUse;
 
 // Two-sided density of the samples at one frequency below half the rate, aliases included, in (rad/s)^2/Hz.
 struct SpectralParts {
@@ -22,12 +28,17 @@ struct SpectralParts {
 // The parameters of one entry, with the effect's own values for those that it leaves out.
 class EffectValues {
 public:
-    explicit EffectValues(const EffectModel& effect) : effect_(&effect) {}
+    explicit EffectValues(const EffectModel& effect, std::size_t axis = 0) : effect_(&effect), axis_(axis) {}
     double operator[](std::string_view param) const;
+    std::size_t axis() const { return axis_; }  // on which it is looked at
 
 private:
     const EffectModel* effect_;
+    std::size_t axis_;
 };
+
+// Of a time from the first sample and a temperature.
+using WhiteGain = std::function<double(double time_s, double temperature_C)>;
 
 // Values of one parameter to start from.
 struct TrialValues {
@@ -39,7 +50,8 @@ struct TrialValues {
 };
 
 enum class EvidenceMethod {
-    gaussian,         // mean response and spectrum: gaussian_test.hpp
+    response,         // the mean answer to the world
+    spectrum,         // of the noise
     line,             // a steady line in the spectrum
     step,             // a jump at an unknown moment
     two_levels,       // a hidden Markov chain
@@ -58,25 +70,36 @@ enum class EvidenceMethod {
 enum class PlaceKind { spectrum, time, instant, temperature, acceleration, rate, amplitude, structure };
 
 struct EffectSignature {
-    EvidenceMethod method = EvidenceMethod::gaussian;
+    EvidenceMethod method = EvidenceMethod::spectrum;
     PlaceKind place = PlaceKind::spectrum;
     std::string_view structure{};  // with PlaceKind::structure
 
     bool needs_temperature = false;
     bool needs_reference = false;
     bool needs_specific_force = false;
+    bool whole_sensor = false;  // acts on all axes alike, whatever the entry says
 
-    // Parameters to which the mean response is proportional, all together; without them, and with
-    // `changes_mean`, the response is what the simulator makes of the trial values.
+    // Parameters to which the mean response is proportional, each by itself; without them the response is
+    // what the simulator makes of the trial values.
     std::span<const std::string_view> linear{};
-    bool changes_mean = false;
-    bool slow = false;  // the mean response is: nothing in it is faster than some ten seconds
-    // Every group is a way to vary the other parameters, as a product; one group is enough for most.
+    bool changes_mean = false;  // beside the spectrum
+    bool slow = false;          // the mean response is: nothing in it is faster than some ten seconds
+    // Every group is a way to vary other parameters, as a product; one group is enough for most.
     std::span<const std::span<const TrialValues>> trials{};
-    // Positive parameters of the spectrum alone that are fitted from a trial value on.
+    // Positive parameters of the spectrum that are fitted, from the trial values on where they have some.
     std::span<const std::string_view> spectral{};
-    // Changes the expected parts in place.
-    void (*spectrum)(double f_hz, double rate_hz, const EffectValues& effect, SpectralParts& parts) = nullptr;
+    // Changes the expected parts, one for each frequency, in place.
+    void (*spectrum)(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+                     std::span<SpectralParts> parts) = nullptr;
+
+    // Sets to false, by row, what an entry of the model has spoilt for judging anything else.
+    void (*unjudged)(const Recording& recording, const EffectModel& entry,
+                     std::vector<bool>& judged) = nullptr;
+
+    // Degrees of freedom of Student's t, where that is the distribution of the white noise.
+    double (*degrees_of_freedom)(const EffectValues& effect) = nullptr;
+    // By what factor an entry changes the standard deviation of the white noise.
+    WhiteGain (*white_gain)(const EffectUse& use) = nullptr;
 
     // For the report: a sentence with {parameter} where a fitted value belongs, and the recording that would
     // tell the effect from its rivals.

@@ -23,6 +23,20 @@ constexpr EffectParam params[] = {
      .plausible_to = 2.0},
 };
 
+void spectrum(std::span<const double> /*f_hz*/, double /*rate_hz*/, const EffectValues& effect,
+              std::span<SpectralParts> parts) {
+    for (SpectralParts& part : parts) { part.white *= effect["factor"] * effect["factor"]; }
+}
+
+constexpr std::string_view fitted[] = {"factor"};
+
+constexpr EffectSignature signature = {
+    .spectral = fitted,
+    .spectrum = spectrum,
+    .words = "The white noise is {factor} times the model's",
+    .decided_by = "any still recording of some minutes at another sample rate",
+};
+
 }  // namespace
 
 constinit const EffectDefinition arw_scale_effect = {
@@ -31,6 +45,7 @@ constinit const EffectDefinition arw_scale_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -20,6 +20,17 @@ constexpr EffectParam params[] = {
      .plausible_to = 0.01},
 };
 
+constexpr std::string_view linear[] = {"gain"};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::rate,
+    .needs_reference = true,
+    .linear = linear,
+    .words = "The two directions have different gains, by {gain} either way",
+    .decided_by = "the same plateaus in both directions, and slow reversals",
+};
+
 }  // namespace
 
 constinit const EffectDefinition asymmetry_effect = {
@@ -28,6 +39,7 @@ constinit const EffectDefinition asymmetry_effect = {
     .source = "IEEE 528-2019 (scale factor asymmetry)",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

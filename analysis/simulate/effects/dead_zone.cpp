@@ -30,6 +30,21 @@ constexpr EffectParam params[] = {
      .otherwise = 0.0},
 };
 
+constexpr TrialValues with_offset[] = {{.param = "jump", .from = 0.0, .to = 0.0, .count = 1},
+                                       {.param = "width_dps", .from = 0.003, .to = 0.6, .count = 11}};
+constexpr TrialValues with_jump[] = {{.param = "jump", .from = 1.0, .to = 1.0, .count = 1},
+                                     {.param = "width_dps", .from = 0.003, .to = 0.6, .count = 11}};
+constexpr std::span<const TrialValues> trials[] = {with_offset, with_jump};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::rate,
+    .needs_reference = true,
+    .trials = trials,
+    .words = "Rates up to {width_dps} have no answer",
+    .decided_by = "slow reversals through zero rate",
+};
+
 }  // namespace
 
 constinit const EffectDefinition dead_zone_effect = {
@@ -38,6 +53,7 @@ constinit const EffectDefinition dead_zone_effect = {
     .source = "IEEE 528-2019 (dead band)",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -20,6 +20,23 @@ constexpr EffectParam params[] = {
      .plausible_to = 0.006},
 };
 
+void spectrum(std::span<const double> f_hz, double /*rate_hz*/, const EffectValues& effect,
+              std::span<SpectralParts> parts) {
+    const double B_rad_per_s = effect["B_dps"] * rad_per_deg;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        parts[i].flicker += B_rad_per_s * B_rad_per_s / (2.0 * pi * f_hz[i]);
+    }
+}
+
+constexpr std::string_view fitted[] = {"B_dps"};
+
+constexpr EffectSignature signature = {
+    .spectral = fitted,
+    .spectrum = spectrum,
+    .words = "Flicker noise is missing in the model, a bias instability of {B_dps}",
+    .decided_by = "a still recording of 6 hours or more at a steady temperature",
+};
+
 }  // namespace
 
 constinit const EffectDefinition flicker_missing_effect = {
@@ -29,6 +46,7 @@ constinit const EffectDefinition flicker_missing_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

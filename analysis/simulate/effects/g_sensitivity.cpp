@@ -42,6 +42,19 @@ constexpr EffectParam params[] = {
     along("z_dps_per_g", "for specific force along the sensor's z"),
 };
 
+constexpr std::string_view linear[] = {"x_dps_per_g", "y_dps_per_g", "z_dps_per_g"};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::acceleration,
+    .needs_specific_force = true,
+    .linear = linear,
+    .words =
+        "The rate follows the specific force: {x_dps_per_g} along x, {y_dps_per_g} along y, {z_dps_per_g} "
+        "along z",
+    .decided_by = "tilts to all six faces at rest",
+};
+
 }  // namespace
 
 constinit const EffectDefinition g_sensitivity_effect = {
@@ -52,6 +65,7 @@ constinit const EffectDefinition g_sensitivity_effect = {
     .source = "IEEE 528-2019 (acceleration-sensitive drift rate)",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

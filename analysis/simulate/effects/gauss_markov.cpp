@@ -47,6 +47,30 @@ constexpr EffectParam params[] = {
      .plausible_to = 500.0},
 };
 
+void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+              std::span<SpectralParts> parts) {
+    const double sigma_rad_s = effect["sigma_dps"] * rad_per_deg;
+    const double correlation = std::exp(-1.0 / (rate_hz * effect["tau_s"]));
+    // Of the sampled process, a first-order autoregression.
+    const double innovation = sigma_rad_s * sigma_rad_s * (1.0 - correlation * correlation) / rate_hz;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const double cosine = std::cos(2.0 * pi * f_hz[i] / rate_hz);
+        parts[i].other += innovation / (1.0 - 2.0 * correlation * cosine + correlation * correlation);
+    }
+}
+
+constexpr std::string_view fitted[] = {"sigma_dps", "tau_s"};
+constexpr TrialValues tau_values[] = {{.param = "tau_s", .from = 0.2, .to = 500.0, .count = 14}};
+constexpr std::span<const TrialValues> trials[] = {tau_values};
+
+constexpr EffectSignature signature = {
+    .trials = trials,
+    .spectral = fitted,
+    .spectrum = spectrum,
+    .words = "The bias fluctuates by {sigma_dps} with a correlation time of {tau_s}",
+    .decided_by = "a still recording of 50 correlation times or more",
+};
+
 }  // namespace
 
 constinit const EffectDefinition gauss_markov_effect = {
@@ -56,6 +80,7 @@ constinit const EffectDefinition gauss_markov_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

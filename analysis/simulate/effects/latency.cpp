@@ -25,6 +25,19 @@ constexpr EffectParam params[] = {
      .plausible_to = 1e-2},
 };
 
+constexpr TrialValues delay_values[] = {{.param = "delay_s", .from = 3e-4, .to = 1.5e-2, .count = 12}};
+constexpr std::span<const TrialValues> trials[] = {delay_values};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::rate,
+    .needs_reference = true,
+    .whole_sensor = true,
+    .trials = trials,
+    .words = "The sensor is {delay_s} late",
+    .decided_by = "broadband motion, up to a tenth of the sample rate",
+};
+
 }  // namespace
 
 constinit const EffectDefinition latency_effect = {
@@ -33,6 +46,7 @@ constinit const EffectDefinition latency_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

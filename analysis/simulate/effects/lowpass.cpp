@@ -25,6 +25,7 @@
 // in the steady state of its first value.
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/portable_math.hpp"
@@ -242,6 +243,42 @@ constexpr EffectParam params[] = {
      .whole_up_to = 2.0},
 };
 
+void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+              std::span<SpectralParts> parts) {
+    const bool first_order = effect["order"] == 1.0;
+    const double w_T = 2.0 * pi * effect["fc_hz"] / rate_hz;
+    const NoiseFilter filter =
+        first_order ? first_order_noise(w_T) : second_order_noise(w_T / std::sqrt(2.0));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const double angle = 2.0 * pi * f_hz[i] / rate_hz;
+        const std::complex<double> back = std::polar(1.0, -angle);
+        const double gain = filter.b * filter.b * std::norm(1.0 + filter.m * back) /
+                            std::norm(1.0 - filter.phi_1 * back - filter.phi_2 * back * back);
+        parts[i].white *= gain;
+        // Slow noise has nothing that could fold.
+        const double ratio = f_hz[i] / effect["fc_hz"];
+        const double slow_gain = 1.0 / (1.0 + std::pow(ratio, first_order ? 2.0 : 4.0));
+        parts[i].flicker *= slow_gain;
+        parts[i].walk *= slow_gain;
+    }
+}
+
+constexpr std::string_view fitted[] = {"fc_hz"};
+constexpr TrialValues first_order_values[] = {{.param = "order", .from = 1.0, .to = 1.0, .count = 1},
+                                              {.param = "fc_hz", .from = 4.0, .to = 300.0, .count = 18}};
+constexpr TrialValues second_order_values[] = {{.param = "order", .from = 2.0, .to = 2.0, .count = 1},
+                                               {.param = "fc_hz", .from = 4.0, .to = 300.0, .count = 18}};
+constexpr std::span<const TrialValues> trials[] = {second_order_values, first_order_values};
+
+constexpr EffectSignature signature = {
+    .changes_mean = true,
+    .trials = trials,
+    .spectral = fitted,
+    .spectrum = spectrum,
+    .words = "A low-pass filter of order {order} at {fc_hz} is missing in the model",
+    .decided_by = "a recording at a higher sample rate, or one with fast motion",
+};
+
 }  // namespace
 
 constinit const EffectDefinition lowpass_effect = {
@@ -252,6 +289,7 @@ constinit const EffectDefinition lowpass_effect = {
     .source = "definition; the samples of white noise: Box, Jenkins, Reinsel, Time Series Analysis, A4.1",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -40,6 +40,17 @@ constexpr EffectParam params[] = {
     gain_from("from_z", "gain of the true rate about z; the z axis itself is left alone"),
 };
 
+constexpr std::string_view linear[] = {"from_x", "from_y", "from_z"};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::rate,
+    .needs_reference = true,
+    .linear = linear,
+    .words = "The axis picks up rates about other axes: {from_x} of x, {from_y} of y, {from_z} of z",
+    .decided_by = "plateaus of several rates about one axis after the other",
+};
+
 }  // namespace
 
 constinit const EffectDefinition misalignment_effect = {
@@ -48,6 +59,7 @@ constinit const EffectDefinition misalignment_effect = {
     .source = "IEEE 528-2019 (input-axis misalignment)",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -26,6 +26,17 @@ constexpr EffectParam params[] = {
     share_at_full_scale("cubic", "odd error at full scale, as a fraction of it"),
 };
 
+constexpr std::string_view linear[] = {"quadratic", "cubic"};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::rate,
+    .needs_reference = true,
+    .linear = linear,
+    .words = "The gain is not linear: {quadratic} even and {cubic} odd error at full scale",
+    .decided_by = "plateaus of many rates of both signs up to full scale",
+};
+
 }  // namespace
 
 constinit const EffectDefinition nonlinearity_effect = {
@@ -34,6 +45,7 @@ constinit const EffectDefinition nonlinearity_effect = {
     .source = "IEEE 528-2019 (nonlinearity)",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

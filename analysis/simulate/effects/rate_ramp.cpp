@@ -17,6 +17,17 @@ constexpr EffectParam params[] = {
     {.name = "ramp_dps_per_s", .meaning = "slope", .plausible_from = -2e-4, .plausible_to = 2e-4},
 };
 
+constexpr std::string_view linear[] = {"ramp_dps_per_s"};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::time,
+    .linear = linear,
+    .slow = true,
+    .words = "The bias drifts in proportion to time, by {ramp_dps_per_s}",
+    .decided_by = "a second recording right after this one: a ramp goes on, a random walk does not",
+};
+
 }  // namespace
 
 constinit const EffectDefinition rate_ramp_effect = {
@@ -25,6 +36,7 @@ constinit const EffectDefinition rate_ramp_effect = {
     .source = "IEEE 952-1997, C.1 (rate ramp)",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -23,6 +23,24 @@ constexpr EffectParam params[] = {
      .plausible_to = 2e-3},
 };
 
+void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+              std::span<SpectralParts> parts) {
+    const double K_rad_per_s_sqrt_s = effect["K_dps_sqrt_hz"] * rad_per_deg;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const double sampled_omega = 2.0 * rate_hz * std::sin(pi * f_hz[i] / rate_hz);
+        parts[i].walk += K_rad_per_s_sqrt_s * K_rad_per_s_sqrt_s / (sampled_omega * sampled_omega);
+    }
+}
+
+constexpr std::string_view fitted[] = {"K_dps_sqrt_hz"};
+
+constexpr EffectSignature signature = {
+    .spectral = fitted,
+    .spectrum = spectrum,
+    .words = "The bias wanders: a rate random walk of {K_dps_sqrt_hz} is missing in the model",
+    .decided_by = "a still recording at least three times as long, at a steady temperature",
+};
+
 }  // namespace
 
 constinit const EffectDefinition rrw_missing_effect = {
@@ -32,6 +50,7 @@ constinit const EffectDefinition rrw_missing_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -21,6 +21,19 @@ constexpr EffectParam params[] = {
      .plausible_to = 450.0},
 };
 
+constexpr TrialValues limit_values[] = {
+    {.param = "limit_dps", .from = 235.0, .to = 495.0, .count = 27, .even = true}};
+constexpr std::span<const TrialValues> trials[] = {limit_values};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::rate,
+    .needs_reference = true,
+    .trials = trials,
+    .words = "The output is clipped at {limit_dps}",
+    .decided_by = "plateaus of both signs up to full scale",
+};
+
 }  // namespace
 
 constinit const EffectDefinition saturation_effect = {
@@ -29,6 +42,7 @@ constinit const EffectDefinition saturation_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

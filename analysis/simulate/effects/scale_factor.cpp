@@ -14,6 +14,17 @@ constexpr EffectParam params[] = {
     {.name = "eps", .meaning = "relative gain error", .plausible_from = -0.03, .plausible_to = 0.03},
 };
 
+constexpr std::string_view linear[] = {"eps"};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::rate,
+    .needs_reference = true,
+    .linear = linear,
+    .words = "The scale factor is off by {eps}",
+    .decided_by = "plateaus of several rates of both signs about one axis after the other",
+};
+
 }  // namespace
 
 constinit const EffectDefinition scale_factor_effect = {
@@ -22,6 +33,7 @@ constinit const EffectDefinition scale_factor_effect = {
     .source = "IEEE 528-2019 (scale factor error)",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

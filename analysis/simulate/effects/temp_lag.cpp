@@ -79,6 +79,23 @@ constexpr EffectParam params[] = {
     reference_C_param,
 };
 
+constexpr std::string_view linear[] = {"c1_dps_per_C"};
+constexpr TrialValues tau_values[] = {{.param = "tau_s", .from = 60.0, .to = 1800.0, .count = 10}};
+constexpr TrialValues play_values[] = {{.param = "play_C", .from = 0.2, .to = 5.0, .count = 7}};
+constexpr std::span<const TrialValues> trials[] = {tau_values, play_values};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::temperature,
+    .needs_temperature = true,
+    .linear = linear,
+    .slow = true,
+    .trials = trials,
+    .words =
+        "The bias follows the temperature late, {c1_dps_per_C} with a lag of {tau_s} and a play of {play_C}",
+    .decided_by = "one sweep of the temperature up and down by 5 degC or more",
+};
+
 }  // namespace
 
 constinit const EffectDefinition temp_lag_effect = {
@@ -89,6 +106,7 @@ constinit const EffectDefinition temp_lag_effect = {
     .source = "play operator: M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, Springer 1996",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -23,6 +23,18 @@ constexpr EffectParam params[] = {
     reference_C_param,
 };
 
+constexpr std::string_view linear[] = {"c1_dps_per_C"};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::temperature,
+    .needs_temperature = true,
+    .linear = linear,
+    .slow = true,
+    .words = "The bias follows the temperature, {c1_dps_per_C}",
+    .decided_by = "one sweep of the temperature up and down by 5 degC or more",
+};
+
 }  // namespace
 
 constinit const EffectDefinition temp_linear_effect = {
@@ -31,6 +43,7 @@ constinit const EffectDefinition temp_linear_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

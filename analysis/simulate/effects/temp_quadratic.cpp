@@ -36,6 +36,18 @@ constexpr EffectParam params[] = {
     reference_C_param,
 };
 
+constexpr std::string_view linear[] = {"c1_dps_per_C", "c2_dps_per_C2"};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::temperature,
+    .needs_temperature = true,
+    .linear = linear,
+    .slow = true,
+    .words = "The bias follows the temperature along a parabola, {c1_dps_per_C} and {c2_dps_per_C2}",
+    .decided_by = "one sweep of the temperature up and down by 10 degC or more",
+};
+
 }  // namespace
 
 constinit const EffectDefinition temp_quadratic_effect = {
@@ -44,6 +56,7 @@ constinit const EffectDefinition temp_quadratic_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -36,6 +36,20 @@ constexpr EffectParam params[] = {
      .plausible_to = 900.0},
 };
 
+constexpr std::string_view linear[] = {"a_dps"};
+constexpr TrialValues tau_values[] = {{.param = "tau_s", .from = 45.0, .to = 1200.0, .count = 12}};
+constexpr std::span<const TrialValues> trials[] = {tau_values};
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::response,
+    .place = PlaceKind::time,
+    .linear = linear,
+    .slow = true,
+    .trials = trials,
+    .words = "The bias settles after turn-on: {a_dps} at first, with a time constant of {tau_s}",
+    .decided_by = "two or three cold starts of half an hour",
+};
+
 }  // namespace
 
 constinit const EffectDefinition warmup_effect = {
@@ -44,6 +58,7 @@ constinit const EffectDefinition warmup_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog
