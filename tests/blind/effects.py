@@ -6,7 +6,7 @@ says what it does to the likelihood, the other members what it does to the sampl
 
 import numpy as np
 
-from evidence import AXES
+from evidence import AXES, folded_lowpass
 from sensor import LSB_DPS, filtered, flicker, log_uniform, shaped, walk
 
 REFERENCE_C = 25.0
@@ -55,6 +55,10 @@ class Acting:
 
     def acting_axes(self):
         return [axis for axis in range(3) if self.on(axis)]
+
+    # What the model file lacks for the effect to be one.
+    def prepare(self, model):
+        pass
 
     # What it does to samples.
     def times(self, rng, instants, stamps):
@@ -279,12 +283,11 @@ class Lowpass(Acting):
         return 1.0 / (1.0 + s) if self.of("order", axis, 1) == 1 else 1.0 / (1.0 + np.sqrt(2.0) * s + s * s)
 
     def whitened(self, axis, white, around, rng):
-        from evidence import folded_lowpass
-
         rate, length = self.context.rate_hz, white.size
         f = np.fft.rfftfreq(length, 1.0 / rate)
         grid = np.linspace(0.0, rate / 2.0, 2049)
-        gain = np.interp(f, grid, np.sqrt(folded_lowpass(grid, self.of("fc_hz", axis), self.of("order", axis, 1), rate)))
+        power = folded_lowpass(grid, self.of("fc_hz", axis), self.of("order", axis, 1), rate)
+        gain = np.interp(f, grid, np.sqrt(power))
         return np.fft.irfft(np.fft.rfft(white) * gain, length)
 
     def _lag(self, axis, W, rate):
@@ -377,7 +380,8 @@ class Spikes(Acting):
 
     @classmethod
     def shape(cls, rng, context, axes):
-        return {"per_hour": float(log_uniform(rng, 1.5, 25.0)), "sigma_dps": float(context.sigma_dps(AXES.index(axes[0])))}
+        return {"per_hour": float(log_uniform(rng, 1.5, 25.0)),
+                "sigma_dps": float(context.sigma_dps(AXES.index(axes[0])))}
 
     @classmethod
     def range(cls, context, shape):
@@ -633,7 +637,8 @@ class TempLag(Acting):
     def shape(cls, rng, context, axes):
         sign = float(rng.choice([-1.0, 1.0]))
         if rng.random() < 0.7:
-            return {"sign": sign, "tau_s": float(log_uniform(rng, 120.0, np.clip(context.duration_s / 7.0, 150.0, 900.0)))}
+            longest = np.clip(context.duration_s / 7.0, 150.0, 900.0)
+            return {"sign": sign, "tau_s": float(log_uniform(rng, 120.0, longest))}
         return {"sign": sign, "play_C": float(rng.uniform(0.15, 0.4) * np.ptp(context.slow.T))}
 
     @classmethod
@@ -679,7 +684,8 @@ class Quantization(Acting):
 
     @classmethod
     def shape(cls, rng, context, axes):
-        return {"codes": int(rng.choice([2, 3, 4, 6, 8]))}
+        # Codes as coarse, or the sensor's own where the model has none.
+        return {"codes": 1 if len(axes) == 3 and rng.random() < 0.4 else int(rng.choice([2, 3, 4, 6, 8]))}
 
     @classmethod
     def range(cls, context, shape):
@@ -688,6 +694,10 @@ class Quantization(Acting):
     @classmethod
     def to_params(cls, shape, strength):
         return {"lsb_dps": shape["codes"] * LSB_DPS}
+
+    def prepare(self, model):
+        if np.ravel(self.params["lsb_dps"])[0] < 1.5 * LSB_DPS:
+            model["lsb_dps"] = 0.0
 
     def converted(self, axis, value):
         step = self.of("lsb_dps", axis)
@@ -735,7 +745,8 @@ class Dropped(Acting):
     @classmethod
     def shape(cls, rng, context, axes):
         hidden = bool(context.motion) and rng.random() < 0.6
-        return {"longest": int(rng.integers(1, 13)), "in_stamps": 0 if hidden else 1, "hours": context.duration_s / 3600.0}
+        return {"longest": int(rng.integers(1, 13)), "in_stamps": 0 if hidden else 1,
+                "hours": context.duration_s / 3600.0}
 
     @classmethod
     def range(cls, context, shape):
@@ -774,7 +785,8 @@ class Dropped(Acting):
 
     def describe(self, d):
         # A loss that the stamps hide moves all that follows by whole periods.
-        d.structure["gaps" if self.params.get("in_stamps", 1) else "slips"] = self.params["per_hour"] * self.context.duration_s / 3600.0
+        kind = "gaps" if self.params.get("in_stamps", 1) else "slips"
+        d.structure[kind] = float(self.params["per_hour"]) * self.context.duration_s / 3600.0
 
     def where(self):
         return {"structure": "timestamp_gaps" if self.params.get("in_stamps", 1) else "growing_lag"}

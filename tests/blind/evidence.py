@@ -149,7 +149,7 @@ def _spectrum(context, description, axis, N, B, K):
     return white, B**2 / (2.0 * np.pi * f), (K / (2.0 * np.pi * f)) ** 2, fixed
 
 
-def _spectral_nats(context, true, other, axis, free, apart):
+def _spectral_nats(context, true, other, axis, free, apart, perfect):
     sensor, bins = context.sensor, context.bins
     rate = context.rate_hz
     known = _spectrum(context, true, axis, sensor.N[axis], sensor.B[axis], sensor.K[axis])
@@ -168,6 +168,8 @@ def _spectral_nats(context, true, other, axis, free, apart):
         parts = _spectrum(context, description, axis, *description.stated.get(axis, context.stated(axis)))
         sd = context.stated_sd(axis) if not free else [np.inf] * 3
         _, value, _ = fitted_levels(power, bins.count, parts[:3], parts[3], sd)
+        if perfect and sign < 0.0:
+            value = 0.5 * np.sum(bins.count * (1.0 + np.log(s_true)))
         total += sign * value
     return total + prior_cost
 
@@ -297,11 +299,12 @@ def _structure_nats(context, true, other):
     return total
 
 
-def nats(context, true, other, free=False, apart=False):
+def nats(context, true, other, free=False, apart=False, perfect=False):
     """Evidence for `true`, which made the data, against `other`.
 
     free: N, B and K are fitted without any prior. apart: a difference of the means is weighed by the true spectrum,
-    so that no level fitted to it takes it up; it then counts as its square, as a distance does.
+    so that no level fitted to it takes it up; it then counts as its square, as a distance does. perfect: against the
+    true levels, even where the model states others.
     """
     total = 0.0
     for axis in range(3):
@@ -310,7 +313,7 @@ def nats(context, true, other, free=False, apart=False):
                     or axis in true.level or axis in other.level
                     or axis in true.mean or axis in other.mean)
         if spectral:
-            total += _spectral_nats(context, true, other, axis, free, apart)
+            total += _spectral_nats(context, true, other, axis, free, apart, perfect)
         if axis in true.level or axis in other.level:
             total += _level_nats(context, true, other, axis)
         if true.nu[axis] != other.nu[axis]:

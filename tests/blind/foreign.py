@@ -242,7 +242,8 @@ class SkewedNoise(Foreign):
             kurtosis = 6.0 * ((a - b) ** 2 * (s + 1.0) - a * b * (s + 2.0)) / (a * b * (s + 2.0) * (s + 3.0))
             return skew, kurtosis
 
-        # On the curve without kurtosis (a - b)^2 (s + 1) = a b (s + 2): with u = a/s, (1 - 2u)^2 (s+1) = u (1-u) s (s+2)/s
+        # None where (a - b)^2 (s + 1) = a b (s + 2), s = a + b. With u = a / s that is
+        # (1 - 2 u)^2 (s + 1) = u (1 - u) (s + 2).
         def on_curve(s):
             ratio = (s + 2.0) / (s + 1.0)
             u = 0.5 - 0.5 * np.sqrt(ratio / (4.0 + ratio))

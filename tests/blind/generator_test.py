@@ -18,7 +18,7 @@ import generate
 import judge
 import textfile
 from effects import CATALOGUE, ArwScale, BiasStep, GaussMarkov, Lowpass, RateRamp, Rtn, TempLinear, Tone
-from foreign import FOREIGN
+from foreign import FOREIGN, SkewedNoise
 from sensor import LSB_DPS, Context, Sensor, draw_model, record, shaped, stream
 
 LIMIT = 4.5  # standard errors
@@ -100,6 +100,14 @@ class Noise(unittest.TestCase):
             error = LIMIT * np.sqrt(2.0 * 4.0 / context.n)
             self.assertLess(abs(np.var(x) / variance - 1.0), error + 0.003)
             self.assertLess(abs(np.mean(x[:-1] * x[1:]) / np.var(x) - lag), error + 0.003)
+
+    def test_skewed_noise_is_askew_and_no_more(self):
+        context = Context(4, False, 120.0)
+        x = SkewedNoise(context, {"skewness": 0.4}, ["x"]).whitened(0, np.empty(context.n), None, stream(1, "skew"))
+        n = context.n
+        self.assertLess(abs(np.mean(x**2) - 1.0), LIMIT * np.sqrt(2.0 / n))
+        self.assertLess(abs(np.mean(x**3) - 0.4), LIMIT * np.sqrt(15.0 / n))
+        self.assertLess(abs(np.mean(x**4) - 3.0), LIMIT * np.sqrt(96.0 / n))
 
     def test_noise_shaped_on_a_longer_circle_does_not_close(self):
         ends = [(x[0] - x[-1]) ** 2 for x in (shaped(stream(s, "c"), 4096, 1.0, lambda f: f**-2.0) for s in range(60))]
@@ -187,7 +195,7 @@ class Sealed(unittest.TestCase):
     def test_every_effect_makes_a_recording_that_differs_from_the_same_without(self):
         for name, cls in {**CATALOGUE, **FOREIGN}.items():
             motion = cls.needs == "motion"
-            case = generate.world_for(generate.spec(9, [(name, "clear")], motion, 6.0 if motion else 12.0))
+            case = generate.world_for(generate.spec(9, [(name, "clear")], motion, 5.0 if motion else 8.0))
             context = generate.context_of(case)
             effect, value = generate.draw_effect(context, name, "clear")
             self.assertGreater(value, 0.0, name)
@@ -257,7 +265,8 @@ def answer_to(truth, **change):
                "params": e["params"], "sd": {}, "shrink_alone": 1.0} for e in truth["effects"]]
     gap = {"value": 3.0, "floor": 1.0, "lo": 2.0, "hi": 4.0}
     return {"schema": "gyrolog-diagnosis/1", "verdict": truth["verdict"], "p_none": 0.001, "causes": causes,
-            "where": {}, "gap_before": gap, "gap_after": gap, "shrink": 1.0, "shrink_lo": 0.9, "shrink_hi": 1.0, **change}
+            "where": {}, "gap_before": gap, "gap_after": gap, "shrink": 1.0, "shrink_lo": 0.9, "shrink_hi": 1.0,
+            **change}
 
 
 class Judgement(unittest.TestCase):
@@ -299,6 +308,17 @@ class Judgement(unittest.TestCase):
         self.assertEqual(place({"freq_hz": [38.0, 39.0]}, ["x", "y"]), (False, False))
         self.assertEqual(place({"freq_hz": [1.0, 49.0]}, ["x", "y"]), (False, False))
         self.assertEqual(place({}, ["x", "y"]), (False, False))
+
+    def test_a_corrected_model_that_keeps_levels_fitted_to_the_effect_is_not_right(self):
+        case = generate.spec(5, [("gauss_markov", "clear")], False, 30.0, refitted=True)
+        _, model, truth = generate.make_case(case)
+        answer = answer_to(truth)
+        entry = {k: truth["effects"][0][k] for k in ("effect", "axes", "params")}
+        kept = judge.true_shrink(truth, model, answer, {**model, "effects": [entry]})[0]
+        first = generate.context_of(truth["made"]).first_model
+        mended = judge.true_shrink(truth, model, answer, {**model, "axes": first["axes"], "effects": [entry]})[0]
+        self.assertGreater(mended, 0.95)
+        self.assertGreater(mended, kept)
 
     def test_malformed_answers_are_named(self):
         answer = answer_to(self.truth, p_none=float("nan"))

@@ -1,4 +1,4 @@
-"""One answer held against one truth: is it well formed, what did it name, is the place right, how far is the gap shrunk.
+"""One answer held against one truth: is it well formed, what did it name, is the place right, the gap how far shrunk.
 
 The true shrink of an answer is 1 - E(truth | claimed) / E(truth | nothing): the evidence that the data hold against
 the corrected model, over what they hold against the first one (evidence.py, N, B, K, M, latency and clock free within
@@ -163,7 +163,7 @@ def true_shrink(truth, model, answer, corrected):
     context = context_of(truth["made"], model=model)
     free = truth["foreign"] and all(getattr(FOREIGN[e["effect"]], "free", False) for e in truth["effects"])
     made = true_description(context, truth)
-    whole = nats(context, made, Description(), free=free, apart=True)
+    whole = nats(context, made, Description(), free=free, apart=True, perfect=truth["refitted"])
     claimed, unread = claimed_description(context, answer, corrected)
-    left = nats(context, made, claimed, free=free, apart=True)
+    left = nats(context, made, claimed, free=free, apart=True, perfect=truth["refitted"])
     return float(np.clip(1.0 - left / max(whole, 1e-9), 0.0, 1.0)), unread

@@ -1,5 +1,8 @@
 """A gyro with its world, and a recording of it. Units: deg/s, seconds, degrees Celsius, g; two-sided densities."""
 
+import copy
+import zlib
+
 import numpy as np
 
 from evidence import Bins, dct, fitted_levels
@@ -13,7 +16,7 @@ CUT = 3.0  # parameters are drawn normal within the stated uncertainty, and neve
 
 def stream(seed, *path):
     """An independent generator for each use of a case's seed."""
-    return np.random.default_rng([seed] + [sum(ord(c) << (8 * i) for i, c in enumerate(str(p)[:7])) for p in path])
+    return np.random.default_rng([seed] + [zlib.crc32(str(part).encode()) for part in path])
 
 
 def log_uniform(rng, low, high, size=None):
@@ -263,8 +266,6 @@ def record(context, effects, noise_name="noise"):
 
 def refitted(context, columns):
     """The model as a calibration of this very recording would state it: N, B, K by Whittle's likelihood."""
-    import copy
-
     model = copy.deepcopy(context.first_model)
     f = context.bins.f
     fixed = np.full_like(f, LSB_DPS**2 / 12.0 / context.rate_hz)
