@@ -38,6 +38,14 @@ constexpr EffectParam params[] = {
      .otherwise = 1.0},
 };
 
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::stamp_spread,
+    .place = PlaceKind::structure,
+    .structure = "timestamp_jitter",
+    .words = "Single sampling times are off by {sd_s} (one sigma) beyond what the model says.",
+    .decided_by = "stamps taken in the board's interrupt, or broadband motion under a reference rate",
+};
+
 }  // namespace
 
 constinit const EffectDefinition clock_jitter_effect = {
@@ -47,6 +55,7 @@ constinit const EffectDefinition clock_jitter_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -40,6 +40,14 @@ constexpr EffectParam params[] = {
      .otherwise = 1.0},
 };
 
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::stamp_rate,
+    .place = PlaceKind::structure,
+    .structure = "timestamp_rate",
+    .words = "The sample clock is off by {rel} of its nominal rate.",
+    .decided_by = "an hour of stamps from a disciplined clock, or a reference rate that never rests",
+};
+
 }  // namespace
 
 constinit const EffectDefinition clock_rate_effect = {
@@ -49,6 +57,7 @@ constinit const EffectDefinition clock_rate_effect = {
     .params = params,
     .make = make,
     .rate_error = "rel",
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -77,6 +77,14 @@ constexpr EffectParam params[] = {
      .otherwise = 1.0},
 };
 
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::stamp_gaps,
+    .place = PlaceKind::structure,
+    .structure = "timestamp_gaps",
+    .words = "Samples are lost {per_hour}, up to {longest} in a row.",
+    .decided_by = "a recording with the board's sample counter, or with a reference rate that never rests",
+};
+
 }  // namespace
 
 constinit const EffectDefinition dropped_effect = {
@@ -86,6 +94,7 @@ constinit const EffectDefinition dropped_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

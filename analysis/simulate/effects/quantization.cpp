@@ -23,6 +23,14 @@ constexpr EffectParam params[] = {
      .plausible_to = 8.0 / 65.5},
 };
 
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::code_grid,
+    .place = PlaceKind::structure,
+    .structure = "code_grid",
+    .words = "The numbers come in steps of {lsb_dps}.",
+    .decided_by = "raw counts from the sensor's registers",
+};
+
 }  // namespace
 
 constinit const EffectDefinition quantization_effect = {
@@ -32,6 +40,7 @@ constinit const EffectDefinition quantization_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

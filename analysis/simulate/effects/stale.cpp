@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "analysis/recording/recording.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 
 namespace gyrolog {
@@ -54,6 +57,35 @@ constexpr EffectParam params[] = {
      .plausible_to = 0.45},
 };
 
+// The samples that repeat tell nothing that the ones before did not.
+void leave_out_repeats(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
+    std::vector<const Column*> columns;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool acts = entry.axes.empty() || std::ranges::count(entry.axes, axis_names[axis]) != 0;
+        const Column* column = recording.find(std::string("g") + axis_names[axis]);
+        if (acts && column != nullptr) { columns.push_back(column); }
+    }
+    if (columns.empty()) { return; }
+    for (const Segment& segment : recording.segments) {
+        for (std::size_t row = segment.first + 1; row < segment.first + segment.count; ++row) {
+            const bool repeats = std::ranges::all_of(columns, [row](const Column* column) {
+                return std::visit([row](const auto& data) { return data[row] == data[row - 1]; },
+                                  column->data);
+            });
+            if (repeats) { judged[row] = false; }
+        }
+    }
+}
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::repeats,
+    .place = PlaceKind::structure,
+    .structure = "duplicated_samples",
+    .unjudged = leave_out_repeats,
+    .words = "The sensor is read faster than it updates: {eps} of the samples repeat the one before.",
+    .decided_by = "raw counts of all axes and the temperature, read at the sensor's data-ready signal",
+};
+
 }  // namespace
 
 constinit const EffectDefinition stale_effect = {
@@ -65,6 +97,7 @@ constinit const EffectDefinition stale_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -1,0 +1,42 @@
+// Which quantities of a sample repeat those of the sample before, counted by pattern: bit c of a pattern is
+// set where quantity c repeats.
+//
+// Model: a share eps of the samples repeats in all quantities of a set at once; apart from that, each
+// quantity repeats by chance, independently of the others, at a rate of its own in every block of time (a
+// rounded value repeats the more often, the less it moves).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "analysis/recording/recording.hpp"
+
+namespace gyrolog {
+
+inline constexpr std::size_t repeat_quantities_max = 4;
+inline constexpr std::size_t repeat_patterns = 1U << repeat_quantities_max;
+
+using PatternCounts = std::array<double, repeat_patterns>;
+
+// Rows whose `lag`-th before belongs to the same segment, by pattern, in `blocks` equal blocks of rows.
+std::vector<PatternCounts> count_patterns(const Recording& recording,
+                                          const std::vector<const Column*>& quantities, std::size_t lag,
+                                          std::size_t blocks);
+
+// Of all patterns that contain `set`, and of all there are.
+double count_containing(const PatternCounts& counts, std::size_t set);
+double count_all(const PatternCounts& counts);
+
+struct RepeatFit {
+    double eps = 0.0;
+    double log_likelihood_nats = 0.0;
+};
+
+// The most likely chance rates for a given eps, and the most likely eps; `set` has two quantities or more
+// (eps and the chance of a single one cannot be told apart). By expectation maximisation.
+RepeatFit fit_chance(const std::vector<PatternCounts>& blocks, std::size_t quantities, std::size_t set,
+                     double eps);
+RepeatFit fit_repeats(const std::vector<PatternCounts>& blocks, std::size_t quantities, std::size_t set);
+
+}  // namespace gyrolog
