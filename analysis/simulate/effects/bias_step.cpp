@@ -28,6 +28,15 @@ constexpr EffectParam params[] = {
     {.name = "at_s", .meaning = "from this time on", .plausible_from = 0.0, .plausible_to = 1e5},
 };
 
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::step,
+    .place = PlaceKind::instant,
+    .words = "The bias jumps once, {at_s} after the first sample, by {step_dps}.",
+    .decided_by =
+        "a second recording of the same length at rest: a jump that was one event is not in it, "
+        "noise that wanders is",
+};
+
 }  // namespace
 
 constinit const EffectDefinition bias_step_effect = {
@@ -36,6 +45,7 @@ constinit const EffectDefinition bias_step_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -81,6 +81,38 @@ constexpr EffectParam params[] = {
      .plausible_to = 200.0},
 };
 
+// The spectrum of a chain of two states is that of first-order Gauss-Markov noise of the same variance and
+// correlation time, sampled.
+void add_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+                  std::span<SpectralParts> parts) {
+    const double high_s = effect["dwell_high_s"];
+    const double low_s = effect["dwell_low_s"];
+    const double distance_rad_s = effect["amplitude_dps"] * rad_per_deg;
+    const double share = high_s / (high_s + low_s);
+    const double variance = distance_rad_s * distance_rad_s * share * (1.0 - share);
+    const double changes = (1.0 / high_s + 1.0 / low_s) / rate_hz;
+    const double kept = std::exp(-changes);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const double sine = std::sin(pi * f_hz[i] / rate_hz);
+        // 1 - 2 kept cos(2 pi f / rate) + kept^2, without the difference of near equals.
+        const double lost = -std::expm1(-changes);
+        const double denominator = lost * lost + 4.0 * kept * sine * sine;
+        parts[i].other += variance * -std::expm1(-2.0 * changes) / (rate_hz * denominator);
+    }
+}
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::two_levels,
+    .place = PlaceKind::spectrum,
+    .spectrum = add_spectrum,
+    .words =
+        "The bias jumps to and fro between two levels {amplitude_dps} apart (popcorn noise) and stays "
+        "{dwell_high_s} on the upper one and {dwell_low_s} on the lower one, on average.",
+    .decided_by =
+        "a recording at rest that is ten times as long: two levels then show as two peaks in the "
+        "distribution of short averages, Gauss-Markov noise as one",
+};
+
 }  // namespace
 
 constinit const EffectDefinition rtn_effect = {
@@ -91,6 +123,7 @@ constinit const EffectDefinition rtn_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

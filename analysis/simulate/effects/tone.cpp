@@ -45,6 +45,16 @@ constexpr EffectParam params[] = {
      .otherwise = 0.0},
 };
 
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::line,
+    .place = PlaceKind::spectrum,
+    .words =
+        "A steady line stands at {f_hz}, {amplitude_dps} high; it comes from outside, mains or vibration, "
+        "and its true frequency may lie above half the sampling rate, folded.",
+    .decided_by =
+        "a recording at another sampling rate, which shows whether the line is folded and from where",
+};
+
 }  // namespace
 
 constinit const EffectDefinition tone_effect = {
@@ -53,6 +63,7 @@ constinit const EffectDefinition tone_effect = {
     .source = "IEEE 952-1997, C.1.6 (sinusoidal noise)",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

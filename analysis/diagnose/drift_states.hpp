@@ -1,0 +1,28 @@
+// A noise spectrum as a few independent first-order processes: what a Kalman filter needs of it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace gyrolog {
+
+inline constexpr std::size_t drift_parts = 5;
+
+// Of averages over `step_s`: white noise, a random walk (the last part), and Gauss-Markov processes with
+// correlation times a factor of eight apart, the first twice the step; together they follow flicker noise to
+// a few percent (A. van der Ziel, Physica 16 (1950) 359).
+struct DriftStates {
+    double white_variance = 0.0;                   // of one average
+    std::array<double, drift_parts> kept{};        // from one average to the next
+    std::array<double, drift_parts> innovation{};  // variance
+    std::array<double, drift_parts> start{};       // variance before the first; the random walk's is wide
+};
+
+// `density`: two-sided, at f_hz. Weighted alike in every octave up to 1 / (2 step_s); coefficients by
+// multiplicative updates of the Itakura-Saito distance (C. Fevotte, N. Bertin, J.-L. Durrieu, Neural
+// Computation 21 (2009) 793, eq. 3.12), which is Whittle's likelihood.
+DriftStates drift_states(std::span<const double> f_hz, std::span<const double> density, double step_s,
+                         double duration_s);
+
+}  // namespace gyrolog

@@ -1,0 +1,269 @@
+#include "analysis/diagnose/step_test.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "analysis/diagnose/axis_fits.hpp"
+#include "analysis/diagnose/step_scan.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+// Of the least that a jump could show in all coefficients, no more than this is left out of the scan.
+constexpr double left_out = 0.01;
+constexpr std::size_t used_min = 512;
+constexpr std::size_t used_max = 32768;
+// A jump's power is taken off up to this multiple of the coefficients that the scan uses.
+constexpr std::size_t removed_beyond = 16;
+constexpr double worth_refining_nats = 3.0;
+// Closer to an end a jump is a few odd samples.
+constexpr std::size_t edge_samples = 16;
+// A moment known better than this is looked for among the samples.
+constexpr double coarse_places = 4.0;
+
+class StepTest final : public EffectTest {
+public:
+    StepTest(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline)
+        : effect_(effect), height_(param_of(effect, "step_dps")), baseline_(std::move(baseline)) {
+        used_ = used_min;
+        for (const std::size_t axis : baseline_->axes()) {
+            used_ = std::max(used_, coefficients_needed(axis));
+        }
+        while (used_ >= baseline_->length()) { used_ /= 2; }
+    }
+
+    std::optional<Finding> find(const Observation& observation) const override {
+        StepScan scan(baseline_->length(), used_);
+        Seen seen(observation);
+        for (const std::size_t axis : baseline_->axes()) {
+            seen.density[axis] = observation.axis(axis).density;
+            seen.fits[axis] = scan.fit(observation.axis(axis).cosines, weights(seen.density[axis]));
+        }
+        if (!locate(scan, seen) || gain_at(seen, seen.place) < worth_refining_nats) { return std::nullopt; }
+        // What the jump raised the random walk by is given back; then it may show better elsewhere.
+        for (int round = 0; round < 2; ++round) {
+            for (const std::size_t axis : baseline_->axes()) { refit_noise(scan, axis, seen); }
+            for (const std::size_t axis : baseline_->axes()) {
+                seen.fits[axis] = scan.fit(observation.axis(axis).cosines, weights(seen.density[axis]));
+            }
+            locate(scan, seen);
+        }
+        return finding_of(scan, seen);
+    }
+
+private:
+    struct Seen {
+        explicit Seen(const Observation& what) : observation(&what) {}
+
+        const Observation* observation;
+        std::array<std::vector<double>, 3> density;  // by bin, the jump taken off
+        std::array<StepScan::Fit, 3> fits;
+        std::array<double, 3> gain_nats{};  // with the noise refitted
+        std::size_t place = 0;
+    };
+
+    std::size_t coefficients_needed(std::size_t axis) const {
+        const std::vector<SpectralParts>& parts = baseline_->parts(axis);
+        std::vector<double> beyond(parts.size() + 1, 0.0);  // from this bin on
+        for (std::size_t i = parts.size(); i-- > 0;) {
+            const SpectralBin& bin = baseline_->bins()[i];
+            beyond[i] = beyond[i + 1] + bin.count() / (bin.f_hz * bin.f_hz * parts[i].sum());
+        }
+        std::size_t used = used_min;
+        for (std::size_t i = 0; i < parts.size() && used < used_max; ++i) {
+            if (beyond[i] < left_out * beyond.front()) { break; }
+            while (used < baseline_->bins()[i].end) { used *= 2; }
+        }
+        return used;
+    }
+
+    // Of coefficients 1, 2, ...
+    std::vector<double> weights(const std::vector<double>& density) const {
+        std::vector<double> out(used_);
+        for (std::size_t i = 0; i < density.size() && baseline_->bins()[i].first <= used_; ++i) {
+            const double weight = 1.0 / (density[i] * baseline_->rate_hz());
+            for (std::size_t k = baseline_->bins()[i].first; k < baseline_->bins()[i].end && k <= used_;
+                 ++k) {
+                out[k - 1] = weight;
+            }
+        }
+        return out;
+    }
+
+    double height_cost(const Seen& seen, std::size_t axis, std::size_t place) const {
+        const double sd_dps = deg_per_rad / std::sqrt(seen.fits[axis].information[place]);
+        return occam_cost_nats(height_, 0.0, sd_dps);
+    }
+
+    double gain_at(const Seen& seen, std::size_t place) const {
+        double sum = 0.0;
+        for (const std::size_t axis : baseline_->axes()) { sum += seen.fits[axis].gain_nats(place); }
+        return sum;
+    }
+
+    // Of a jump there, on the axes that it pays for, at least one.
+    double evidence_at(const Seen& seen, std::size_t place) const {
+        double sum = 0.0;
+        double best = -1e300;
+        for (const std::size_t axis : baseline_->axes()) {
+            const double evidence = seen.fits[axis].gain_nats(place) - height_cost(seen, axis, place);
+            sum += std::max(evidence, 0.0);
+            best = std::max(best, evidence);
+        }
+        return best > 0.0 ? sum : best;
+    }
+
+    bool inside(const StepScan& scan, std::size_t place) const {
+        const double at = scan.sample_at(place);
+        const double edge = std::max(static_cast<double>(edge_samples), 2.0 * scan.spacing());
+        return at > edge && at < static_cast<double>(baseline_->length()) - edge;
+    }
+
+    bool locate(const StepScan& scan, Seen& seen) const {
+        double best = -1e300;
+        for (std::size_t place = 0; place < scan.places(); ++place) {
+            if (!inside(scan, place)) { continue; }
+            const double evidence = evidence_at(seen, place);
+            if (!(evidence > best)) { continue; }
+            best = evidence;
+            seen.place = place;
+        }
+        return best > -1e300;
+    }
+
+    void refit_noise(const StepScan& scan, std::size_t axis, Seen& seen) const {
+        const AxisObservation& observed = seen.observation->axis(axis);
+        const double height = seen.fits[axis].height(seen.place);
+        const double at = scan.sample_at(seen.place);
+        const std::size_t end = std::min(baseline_->length(), removed_beyond * used_);
+        std::vector<double> power = observed.power;
+        for (std::size_t i = 0; i < power.size() && baseline_->bins()[i].first < end; ++i) {
+            const SpectralBin& bin = baseline_->bins()[i];
+            double change = 0.0;
+            for (std::size_t k = bin.first; k < std::min(bin.end, end); ++k) {
+                const double part = height * step_coefficient(baseline_->length(), at, k);
+                change += part * (part - 2.0 * static_cast<double>(observed.cosines[k]));
+            }
+            power[i] = std::max(0.0, power[i] + change / (bin.count() * baseline_->rate_hz()));
+        }
+        const std::array<double, 3> sd_rel = noise_uncertainty(baseline_->model(), axis);
+        const NoiseNuisance noise =
+            fit_nuisance(baseline_->bins(), baseline_->parts(axis), power, sd_rel, observed.noise);
+        expected_density(baseline_->parts(axis), sd_rel, noise.z, seen.density[axis]);
+        seen.gain_nats[axis] = std::max(0.0, noise.log_likelihood_nats - observed.noise.log_likelihood_nats);
+    }
+
+    struct Moment {
+        double at = 0.0;     // before this sample
+        double sd = 0.0;     // samples
+        double width = 0.0;  // samples: integral of the likelihood over its maximum
+    };
+
+    // `log_likelihood` at moments `spacing` apart, the first at `first`.
+    static Moment moment_of(const std::vector<double>& log_likelihood, double first, double spacing) {
+        const auto best = std::ranges::max_element(log_likelihood);
+        double weight = 0.0;
+        double mean = 0.0;
+        double square = 0.0;
+        for (std::size_t i = 0; i < log_likelihood.size(); ++i) {
+            const double share = std::exp(log_likelihood[i] - *best);
+            const double away = static_cast<double>(i) - static_cast<double>(best - log_likelihood.begin());
+            weight += share;
+            // Far off it is another jump.
+            if (share < 1e-4) { continue; }
+            mean += share * away;
+            square += share * away * away;
+        }
+        Moment moment;
+        moment.at = first + spacing * static_cast<double>(best - log_likelihood.begin());
+        moment.width = weight * spacing;
+        moment.sd = spacing * std::sqrt(square / weight + 1.0 / 12.0);
+        return moment;
+    }
+
+    Moment moment(const StepScan& scan, const Seen& seen, const std::vector<std::size_t>& axes) const {
+        std::vector<double> gain(scan.places(), -1e300);
+        for (std::size_t place = 0; place < scan.places(); ++place) {
+            if (!inside(scan, place)) { continue; }
+            gain[place] = 0.0;
+            for (const std::size_t axis : axes) { gain[place] += seen.fits[axis].gain_nats(place); }
+        }
+        const Moment coarse = moment_of(gain, scan.sample_at(0), scan.spacing());
+        if (coarse.width > coarse_places * scan.spacing()) { return coarse; }
+        return moment_among_samples(scan, seen, axes, coarse.at);
+    }
+
+    // White noise about the two levels, which are those of the samples around.
+    Moment moment_among_samples(const StepScan& scan, const Seen& seen, const std::vector<std::size_t>& axes,
+                                double about) const {
+        const auto half = static_cast<std::size_t>(std::ceil(2.0 * scan.spacing())) + 8;
+        const std::size_t length = baseline_->length();
+        const auto middle = static_cast<std::size_t>(std::lround(about));
+        const std::size_t first = middle > half ? middle - half : 0;
+        const std::size_t end = std::min(length, middle + half + 1);
+        std::vector<double> likelihood(end - first, 0.0);
+        for (const std::size_t axis : axes) {
+            const std::vector<float>& samples = seen.observation->axis(axis).residual_rad_s;
+            const auto mean = [&](std::size_t from, std::size_t to) {
+                double sum = 0.0;
+                for (std::size_t i = from; i < to; ++i) { sum += static_cast<double>(samples[i]); }
+                return to > from ? sum / static_cast<double>(to - from) : 0.0;
+            };
+            const double before = mean(first > 2 * half ? first - 2 * half : 0, first);
+            const double after = mean(end, std::min(length, end + 2 * half));
+            const double height = after - before;
+            const double variance = seen.density[axis].back() * baseline_->rate_hz();
+            double sum = 0.0;
+            for (std::size_t i = end; i-- > first;) {
+                sum += height * (static_cast<double>(samples[i]) - 0.5 * (before + after)) / variance;
+                likelihood[i - first] += sum;
+            }
+        }
+        return moment_of(likelihood, static_cast<double>(first), 1.0);
+    }
+
+    std::optional<Finding> finding_of(const StepScan& scan, const Seen& seen) const {
+        std::vector<AxesFit> fits;
+        for (const std::size_t axis : baseline_->axes()) {
+            if (!(seen.gain_nats[axis] > 0.0)) { continue; }
+            const double sd_dps = deg_per_rad / std::sqrt(seen.fits[axis].information[seen.place]);
+            AxesFit fit;
+            fit.axes = {axis};
+            fit.gain_nats = {seen.gain_nats[axis]};
+            fit.params = {{"step_dps", seen.fits[axis].height(seen.place) * deg_per_rad}};
+            fit.sd = {{"step_dps", sd_dps}};
+            fit.cost_nats = occam_cost_nats(height_, 0.0, sd_dps);
+            fits.push_back(std::move(fit));
+        }
+        std::optional<Finding> finding = best_of(effect_, fits, 0.0, std::nullopt);
+        if (!finding) { return std::nullopt; }
+        const Moment when = moment(scan, seen, finding->where.axes);
+        // A sample at the moment itself has jumped already.
+        const double at_s = (when.at - 0.5) / baseline_->rate_hz();
+        finding->evidence_nats -=
+            std::max(0.5, std::log(static_cast<double>(baseline_->length()) / when.width));
+        finding->parameters += 1;
+        for (std::size_t i = 0; i < finding->entries.size(); ++i) {
+            finding->entries[i].params["at_s"] = at_s;
+            finding->sd[i]["at_s"] = when.sd / baseline_->rate_hz();
+        }
+        finding->where.time_s = Span{at_s, at_s};
+        return finding;
+    }
+
+    const EffectDefinition& effect_;
+    const EffectParam& height_;
+    std::shared_ptr<const Baseline> baseline_;
+    std::size_t used_ = used_min;
+};
+
+}  // namespace
+
+MadeTest make_step_test(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline) {
+    return {std::make_unique<StepTest>(effect, std::move(baseline)), {}};
+}
+
+}  // namespace gyrolog
