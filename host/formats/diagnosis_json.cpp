@@ -1,0 +1,180 @@
+#include "host/formats/diagnosis_json.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include <nlohmann/json.hpp>
+
+#include "host/formats/effect_words.hpp"
+#include "host/formats/noise_json.hpp"
+
+namespace gyrolog {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json axes_json(const std::vector<std::size_t>& axes) {
+    Json json = Json::array();
+    for (const std::size_t axis : axes) { json.push_back(axis_names.at(axis)); }
+    return json;
+}
+
+void put_span(Json& json, const char* key, const std::optional<Span>& span, double per_unit = 1.0) {
+    if (span) { json[key] = {span->from * per_unit, span->to * per_unit}; }
+}
+
+// Without the axes.
+Json place_json(const Place& place) {
+    Json json = Json::object();
+    put_span(json, "freq_hz", place.freq_hz);
+    put_span(json, "tau_s", place.tau_s);
+    put_span(json, "time_s", place.time_s);
+    if (place.temperature) { json["temperature"] = true; }
+    if (place.acceleration) { json["acceleration"] = true; }
+    put_span(json, "rate_dps", place.rate_rad_s, deg_per_rad);
+    put_span(json, "amplitude_sigma", place.amplitude_sigma);
+    if (!place.structure.empty()) { json["structure"] = place.structure; }
+    return json;
+}
+
+Json gap_json(const Gap& gap) {
+    return {{"value", gap.value}, {"floor", gap.floor}, {"lo", gap.lo}, {"hi", gap.hi}};
+}
+
+// An entry without axes acts on all that the finding names.
+std::vector<std::string> axes_of_entry(const Finding& finding, const EffectModel& entry) {
+    if (!entry.axes.empty()) { return entry.axes; }
+    std::vector<std::string> axes;
+    for (const std::size_t axis : finding.where.axes) { axes.emplace_back(axis_names.at(axis)); }
+    return axes;
+}
+
+double gain_of_entry(const Finding& finding, const EffectModel& entry) {
+    const auto axes = axes_of_entry(finding, entry);
+    double most = 0.0;
+    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+        if (std::ranges::count(axes, axis_names[axis]) > 0) {
+            most = std::max(most, finding.axis_gain_nats[axis]);
+        }
+    }
+    return most;
+}
+
+void put_params(Json& json, const Finding& finding) {
+    const auto sd_of = [&](std::size_t entry) {
+        return Json(entry < finding.sd.size() ? finding.sd[entry] : std::map<std::string, double>());
+    };
+    const auto strongest = std::ranges::max_element(
+        finding.entries, {}, [&](const EffectModel& entry) { return gain_of_entry(finding, entry); });
+    json["params"] = Json::object();
+    json["sd"] = Json::object();
+    if (strongest == finding.entries.end()) { return; }
+    json["params"] = strongest->params;
+    json["sd"] = sd_of(static_cast<std::size_t>(strongest - finding.entries.begin()));
+    if (finding.entries.size() == 1) { return; }
+    for (std::size_t entry = 0; entry < finding.entries.size(); ++entry) {
+        for (const std::string& axis : axes_of_entry(finding, finding.entries[entry])) {
+            json["params_by_axis"][axis] = finding.entries[entry].params;
+            json["sd_by_axis"][axis] = sd_of(entry);
+        }
+    }
+}
+
+Json tie_group_json(const Cause& cause) {
+    Json group = Json::array({cause.finding.effect});
+    for (const Rival& rival : cause.tie_group) {
+        if (rival.effect != cause.finding.effect) { group.push_back(rival.effect); }
+    }
+    return group;
+}
+
+Json cause_json(const Cause& cause) {
+    const Finding& finding = cause.finding;
+    Json json;
+    json["effect"] = finding.effect;
+    json["score"] = cause.score;
+    json["tie_group"] = tie_group_json(cause);
+    json["axes"] = axes_json(finding.where.axes);
+    json["where"] = place_json(finding.where);
+    put_params(json, finding);
+    json["shrink_alone"] = cause.shrink_alone;
+    json["sentence"] = effect_words(finding);
+    json["gain_nats"] = finding.gain_nats;
+    json["evidence_nats"] = finding.evidence_nats;
+    for (const Rival& rival : cause.tie_group) {
+        if (rival.effect != finding.effect) { json["tie"][rival.effect] = rival.evidence_below_best_nats; }
+    }
+    if (!cause.decided_by.empty()) { json["decided_by"] = cause.decided_by; }
+    return json;
+}
+
+Json domain_json(const GapDomain& domain) {
+    Json json;
+    json["name"] = domain.name;
+    json["axis"] = axis_names.at(domain.axis);
+    json["points"] = domain.x.size();
+    json["outside_before"] = std::ranges::count(domain.outside_before, true);
+    json["gap_before"] = domain.gap_before;
+    if (!domain.after_lo.empty()) {
+        json["outside_after"] = std::ranges::count(domain.outside_after, true);
+        json["gap_after"] = domain.gap_after;
+    }
+    return json;
+}
+
+void put_circumstances(Json& json, const Diagnosis& diagnosis) {
+    json["recording"] = diagnosis.recording_name;
+    json["model"] = diagnosis.model_name;
+    json["rate_hz"] = diagnosis.rate_hz;
+    json["duration_s"] = diagnosis.duration_s;
+    json["samples"] = diagnosis.samples;
+    json["axes"] = axes_json(diagnosis.axes);
+    json["simulations"] = diagnosis.simulations;
+    json["band_probability"] = diagnosis.band_probability;
+    json["seed"] = diagnosis.seed;
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::none:
+            return "none";
+        case Verdict::known:
+            return "known";
+        case Verdict::unexplained:
+            return "unexplained";
+    }
+    return "";
+}
+
+std::string diagnosis_json(const Diagnosis& diagnosis) {
+    Json json;
+    json["schema"] = "gyrolog-diagnosis/1";
+    json["verdict"] = name_of(diagnosis.verdict);
+    json["p_none"] = diagnosis.p_none;
+    json["p_left"] = diagnosis.p_left;
+    json["causes"] = Json::array();
+    for (const Cause& cause : diagnosis.causes) { json["causes"].push_back(cause_json(cause)); }
+    json["where"] = Json::object();
+    if (!diagnosis.where.axes.empty()) { json["where"]["axes"] = axes_json(diagnosis.where.axes); }
+    json["where"].update(place_json(diagnosis.where));
+    json["gap_before"] = gap_json(diagnosis.gap_before);
+    json["gap_after"] = gap_json(diagnosis.gap_after);
+    json["shrink"] = diagnosis.shrink;
+    json["shrink_lo"] = diagnosis.shrink_lo;
+    json["shrink_hi"] = diagnosis.shrink_hi;
+    json["held_out"] = diagnosis.held_out;
+    put_circumstances(json, diagnosis);
+    json["domains"] = Json::array();
+    for (const GapDomain& domain : diagnosis.domains) { json["domains"].push_back(domain_json(domain)); }
+    json["untestable"] = Json::array();
+    for (const Untestable& one : diagnosis.untestable) {
+        json["untestable"].push_back({{"effect", one.effect}, {"why", one.why}});
+    }
+    json["next_recordings"] = diagnosis.next_recordings;
+    json["warnings"] = diagnosis.warnings;
+    return json_text(json);
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,35 @@
+// A diagnosis for programs: schema gyrolog-diagnosis/1.
+//
+//   verdict                  "none", "known", "unexplained"
+//   p_none, p_left           p-value of "no gap", before and after the causes were added
+//   causes                   best first: {effect, score, tie_group, axes, where, params, sd, shrink_alone,
+//                            sentence, gain_nats, evidence_nats}. tie_group begins with the effect itself.
+//                            Parameters have the effect's own names and units. Where axes differ in them,
+//                            `params` and `sd` are those of the axis with the largest gain, and
+//                            params_by_axis, sd_by_axis (by "x", "y", "z") hold all. Where others tie:
+//                            tie {effect: by how many nats of evidence it is behind}, decided_by (the
+//                            recording that would decide)
+//   where                    axes, freq_hz, tau_s, time_s, temperature, acceleration, rate_dps,
+//                            amplitude_sigma, structure: those that apply
+//   gap_before, gap_after    {value, floor, lo, hi}: in units of the distance between two simulations
+//   shrink, shrink_lo, shrink_hi            1 - (after^2 - floor^2) / (before^2 - floor^2)
+//   held_out                 on what the gap was measured
+//   recording, model, rate_hz, duration_s, samples, axes, simulations, band_probability, seed
+//   domains                  [{name, axis, points, outside_before, outside_after, gap_before, gap_after}]
+//   untestable               [{effect, why}]
+//   next_recordings, warnings               sentences
+//
+// A number that is not finite is null.
+#pragma once
+
+#include <string>
+
+#include "analysis/diagnose/diagnosis.hpp"
+
+namespace gyrolog {
+
+std::string_view name_of(Verdict verdict);
+
+std::string diagnosis_json(const Diagnosis& diagnosis);
+
+}  // namespace gyrolog

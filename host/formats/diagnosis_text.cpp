@@ -1,0 +1,284 @@
+#include "host/formats/diagnosis_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "analysis/noise/noise_model.hpp"
+#include "analysis/simulate/chain.hpp"
+#include "host/formats/effect_words.hpp"
+#include "host/formats/text_table.hpp"
+#include "host/formats/uncertain_number.hpp"
+#include "host/formats/wrapped_text.hpp"
+
+namespace gyrolog {
+namespace {
+
+std::string frequency_text(double f_hz) { return quantity_text("f_hz", f_hz, 0.0, nullptr); }
+
+template <typename Text>
+std::string span_text(const Span& span, Text text) {
+    return span.from == span.to ? text(span.from) : text(span.from) + " to " + text(span.to);
+}
+
+// "a", "a and b", "a, b and c"
+std::string listed(const std::vector<std::string>& items) {
+    std::string text;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (i > 0) { text += i + 1 == items.size() ? " and " : ", "; }
+        text += items[i];
+    }
+    return text;
+}
+
+std::string cause_name(const Cause& cause) {
+    const std::string axes = axes_text(cause.finding.where.axes);
+    return axes.empty() ? cause.finding.effect : cause.finding.effect + " on " + axes;
+}
+
+std::vector<std::string> cause_names(const Diagnosis& diagnosis) {
+    std::vector<std::string> names;
+    for (const Cause& cause : diagnosis.causes) { names.push_back(cause_name(cause)); }
+    return names;
+}
+
+// How often a recording of the very model differs as much.
+std::string odds_text(double p) {
+    if (p < 1e-6) { return "less than 1 in a million"; }
+    if (p >= 0.1) { return fmt::format("{:.0f} of 100", 100.0 * p); }
+    const double one_of = 1.0 / p;
+    const double step = std::pow(10.0, std::floor(std::log10(one_of)) - 1.0);
+    return fmt::format("1 of {:.0f}", std::round(one_of / step) * step);
+}
+
+std::string probability_text(double p) { return p < 1e-6 ? "p < 1e-6" : fmt::format("p = {:.2g}", p); }
+
+std::string chance_sentence(const Diagnosis& diagnosis) {
+    return fmt::format("Of recordings that do come from the model, {} would differ as much ({}).",
+                       odds_text(diagnosis.p_none), probability_text(diagnosis.p_none));
+}
+
+std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
+
+std::string times_floor(double value, const Gap& gap) { return fmt::format("{:.2g}", value / gap.floor); }
+
+std::string gap_before_sentence(const Diagnosis& diagnosis) {
+    const Gap& gap = diagnosis.gap_before;
+    const std::string place = place_text(diagnosis.where);
+    return fmt::format("{}{}he simulation is {} times the floor away ({} to {}).", place,
+                       place.empty() ? "T" : ": t", times_floor(gap.value, gap), times_floor(gap.lo, gap),
+                       times_floor(gap.hi, gap));
+}
+
+std::string gap_after_sentence(const Diagnosis& diagnosis) {
+    const Gap& gap = diagnosis.gap_after;
+    const std::size_t causes = diagnosis.causes.size();
+    const char* with = causes == 1 ? "it" : causes == 2 ? "both" : "all of them";
+    std::string text = fmt::format(
+        "With {} the gap {} {} times the floor: {} ({} to {}) closed on data that the fit did not see", with,
+        gap.value < diagnosis.gap_before.value ? "falls to" : "is still", times_floor(gap.value, gap),
+        percent(diagnosis.shrink), percent(diagnosis.shrink_lo), percent(diagnosis.shrink_hi));
+    if (!diagnosis.held_out.empty()) { text += fmt::format(" ({})", diagnosis.held_out); }
+    return text + ".";
+}
+
+std::string with_full_stop(std::string sentence) {
+    if (!sentence.ends_with('.')) { sentence += '.'; }
+    return sentence;
+}
+
+// How likely the gap is by chance, where it lies, what makes it and how far it closes.
+std::string summary_text(const Diagnosis& diagnosis) {
+    std::vector<std::string> sentences{chance_sentence(diagnosis)};
+    if (diagnosis.verdict == Verdict::none) { return wrapped_text("", sentences.front()); }
+    sentences.push_back(gap_before_sentence(diagnosis));
+    for (const Cause& cause : diagnosis.causes) {
+        const std::string axes = axes_text(cause.finding.where.axes);
+        const std::string words = with_full_stop(effect_words(cause.finding));
+        const bool says_axes = diagnosis.causes.size() > 1 && !axes.empty();
+        sentences.push_back(says_axes ? fmt::format("On {}: {}", axes, words) : words);
+    }
+    if (!diagnosis.causes.empty()) { sentences.push_back(gap_after_sentence(diagnosis)); }
+    if (diagnosis.verdict == Verdict::unexplained && !diagnosis.causes.empty()) {
+        sentences.push_back(
+            fmt::format("What is left is not by chance either ({}).", probability_text(diagnosis.p_left)));
+    }
+    return wrapped_text("", fmt::format("{}", fmt::join(sentences, " ")));
+}
+
+std::string heading_text(const Diagnosis& diagnosis) {
+    return wrapped_text(
+        "", fmt::format("{} against {} simulations of {} (seed {}): {} samples at {:.6g} Hz, {}",
+                        diagnosis.recording_name, diagnosis.simulations, diagnosis.model_name, diagnosis.seed,
+                        diagnosis.samples, diagnosis.rate_hz, duration_text(diagnosis.duration_s)));
+}
+
+// Parameters that were not fitted stand with those that were: the entry needs both.
+std::string entry_text(const Finding& finding, std::size_t entry) {
+    const EffectDefinition* effect = find_effect(finding.effect);
+    std::string text;
+    for (const auto& [name, value] : finding.entries[entry].params) {
+        const EffectParam* param = nullptr;
+        if (effect != nullptr) {
+            const auto found = std::ranges::find(effect->params, name, &EffectParam::name);
+            if (found != effect->params.end()) { param = &*found; }
+        }
+        double sd = 0.0;
+        if (entry < finding.sd.size() && finding.sd[entry].contains(name)) {
+            sd = finding.sd[entry].at(name);
+        }
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, quantity_text(name, value, sd, param));
+    }
+    if (finding.entries.size() > 1) {
+        text = fmt::format("{}: {}", fmt::join(finding.entries[entry].axes, ", "), text);
+    }
+    return text;
+}
+
+std::string tie_sentence(const Cause& cause) {
+    std::vector<std::string> rivals;
+    for (const Rival& rival : cause.tie_group) {
+        if (rival.effect == cause.finding.effect) { continue; }
+        rivals.push_back(
+            fmt::format("`{}` ({:.1f} nats less)", rival.effect, rival.evidence_below_best_nats));
+    }
+    if (rivals.empty()) { return {}; }
+    std::string text =
+        fmt::format("{} {} nearly as well", listed(rivals), rivals.size() == 1 ? "fits" : "fit");
+    if (!cause.decided_by.empty()) { text += fmt::format("; {} would decide", cause.decided_by); }
+    return text + ".";
+}
+
+std::string cause_text(const Cause& cause, std::size_t rank) {
+    const Finding& finding = cause.finding;
+    std::string text = wrapped_text(
+        fmt::format("  {}. ", rank),
+        fmt::format("{}: probability {}, evidence {:.3g} nats, closes {} of the gap alone", cause_name(cause),
+                    percent(cause.score), finding.evidence_nats, percent(cause.shrink_alone)));
+    const std::string place = place_text(finding.where);
+    if (!place.empty()) { text += wrapped_text("     ", place); }
+    for (std::size_t entry = 0; entry < finding.entries.size(); ++entry) {
+        const std::string values = entry_text(finding, entry);
+        if (!values.empty()) { text += wrapped_text("     ", values); }
+    }
+    const std::string tie = tie_sentence(cause);
+    return tie.empty() ? text : text + wrapped_text("     ", tie);
+}
+
+std::string outside_text(const std::vector<bool>& outside, std::size_t points) {
+    return fmt::format("{} of {}", std::ranges::count(outside, true), points);
+}
+
+std::string domains_text(const Diagnosis& diagnosis) {
+    if (diagnosis.domains.empty()) { return {}; }
+    const bool corrected = std::ranges::any_of(
+        diagnosis.domains, [](const GapDomain& domain) { return !domain.after_lo.empty(); });
+    std::vector<std::string> heads{"gap", "points outside"};
+    if (corrected) { heads = {"gap before", "after", "points outside before", "after"}; }
+    std::vector<TextRow> rows;
+    for (const GapDomain& domain : diagnosis.domains) {
+        TextRow row{fmt::format("  {} {}", axis_names.at(domain.axis), domain.name), "", {}};
+        const std::string before = outside_text(domain.outside_before, domain.x.size());
+        row.cells = {fmt::format("{:.2g}", domain.gap_before), before};
+        if (corrected && domain.after_lo.empty()) {
+            row.cells = {row.cells[0], "-", before, "-"};
+        } else if (corrected) {
+            row.cells = {row.cells[0], fmt::format("{:.2g}", domain.gap_after), before,
+                         outside_text(domain.outside_after, domain.x.size())};
+        }
+        rows.push_back(std::move(row));
+    }
+    return fmt::format(
+               "\nwhere (1 is the floor: what two simulations differ by; {:.3g} % of simulated points are "
+               "inside)\n",
+               100.0 * diagnosis.band_probability) +
+           text_table(heads, rows);
+}
+
+std::string untestable_text(const Diagnosis& diagnosis) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+    for (const Untestable& one : diagnosis.untestable) {
+        auto reason = std::ranges::find_if(reasons, [&](const auto& r) { return r.first == one.why; });
+        if (reason == reasons.end()) { reason = reasons.insert(reasons.end(), {one.why, {}}); }
+        reason->second.push_back(one.effect);
+    }
+    std::string text = reasons.empty() ? "" : "\nnot tested\n";
+    for (const auto& [why, effects] : reasons) {
+        text += wrapped_text("  - ", fmt::format("{}: {}", why, fmt::join(effects, ", ")));
+    }
+    return text;
+}
+
+std::string sentences_text(const char* title, const std::vector<std::string>& sentences) {
+    std::string text = sentences.empty() ? "" : fmt::format("\n{}\n", title);
+    for (const std::string& sentence : sentences) { text += wrapped_text("  - ", sentence); }
+    return text;
+}
+
+}  // namespace
+
+std::string place_text(const Place& place) {
+    std::vector<std::string> parts;
+    if (!place.axes.empty()) {
+        parts.push_back(axes_text(place.axes) + (place.axes.size() == 1 ? " axis" : " axes"));
+    }
+    if (place.tau_s) {
+        parts.push_back("averaging time" + std::string(place.tau_s->from == place.tau_s->to ? " " : "s ") +
+                        span_text(*place.tau_s, duration_text));
+    }
+    if (place.freq_hz) { parts.push_back(span_text(*place.freq_hz, frequency_text)); }
+    if (place.time_s) {
+        parts.push_back((place.time_s->from == place.time_s->to ? "at " : "from ") +
+                        span_text(*place.time_s, duration_text) + " after the first sample");
+    }
+    if (place.temperature) { parts.emplace_back("with the temperature"); }
+    if (place.acceleration) { parts.emplace_back("with the specific force"); }
+    if (place.rate_rad_s) {
+        parts.push_back(fmt::format("rates of {:.3g} to {:.3g} deg/s", place.rate_rad_s->from * deg_per_rad,
+                                    place.rate_rad_s->to * deg_per_rad));
+    }
+    if (place.amplitude_sigma) {
+        parts.push_back(fmt::format("samples {:.2g} to {:.2g} standard deviations off",
+                                    place.amplitude_sigma->from, place.amplitude_sigma->to));
+    }
+    if (!place.structure.empty()) {
+        std::string structure = place.structure;
+        std::ranges::replace(structure, '_', ' ');
+        parts.push_back(structure);
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string verdict_sentence(const Diagnosis& diagnosis) {
+    const std::string causes = listed(cause_names(diagnosis));
+    const bool one = diagnosis.causes.size() == 1;
+    switch (diagnosis.verdict) {
+        case Verdict::none:
+            return "no gap: the recording could have come from the model";
+        case Verdict::known:
+            return fmt::format("known: {} {} the gap", causes, one ? "explains" : "explain");
+        case Verdict::unexplained:
+            break;
+    }
+    if (diagnosis.causes.empty()) { return "unexplained: there is a gap, and no known effect makes it"; }
+    return fmt::format("unexplained: {} {} part of the gap, what makes the rest is not known", causes,
+                       one ? "is" : "are");
+}
+
+std::string diagnosis_text(const Diagnosis& diagnosis) {
+    std::string text = verdict_sentence(diagnosis) + "\n\n" + heading_text(diagnosis);
+    text += summary_text(diagnosis);
+    if (!diagnosis.causes.empty()) { text += "\ncauses\n"; }
+    for (std::size_t i = 0; i < diagnosis.causes.size(); ++i) {
+        text += cause_text(diagnosis.causes[i], i + 1);
+    }
+    text += domains_text(diagnosis);
+    text += untestable_text(diagnosis);
+    text += sentences_text("recordings that would tell more", diagnosis.next_recordings);
+    text += sentences_text("warnings", diagnosis.warnings);
+    return text;
+}
+
+}  // namespace gyrolog

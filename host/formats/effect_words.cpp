@@ -1,0 +1,202 @@
+#include "host/formats/effect_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "analysis/simulate/chain.hpp"
+#include "host/formats/uncertain_number.hpp"
+
+namespace gyrolog {
+namespace {
+
+// One way to write a kind of quantity: `per` of the parameter's own units make one of these.
+struct WrittenUnit {
+    double from;  // for sizes from this on, in the parameter's unit
+    double per;
+    std::string_view name;
+};
+
+struct QuantityKind {
+    std::string_view ending;
+    std::span<const WrittenUnit> units;  // by falling `from`; the last one takes all
+};
+
+constexpr double per_hour = 1.0 / 3600.0;
+
+constexpr std::array times = {
+    WrittenUnit{7200.0, 3600.0, " h"}, WrittenUnit{120.0, 60.0, " min"}, WrittenUnit{1.0, 1.0, " s"},
+    WrittenUnit{1e-3, 1e-3, " ms"},    WrittenUnit{0.0, 1e-6, " µs"},
+};
+constexpr std::array frequencies = {
+    WrittenUnit{1000.0, 1000.0, " kHz"},
+    WrittenUnit{0.1, 1.0, " Hz"},
+    WrittenUnit{0.0, 1e-3, " mHz"},
+};
+constexpr std::array rates = {
+    WrittenUnit{1e-3, 1.0, " deg/s"},
+    WrittenUnit{0.0, per_hour, " deg/h"},
+};
+constexpr std::array rates_per_C = {
+    WrittenUnit{1e-3, 1.0, " deg/s per degC"},
+    WrittenUnit{0.0, per_hour, " deg/h per degC"},
+};
+constexpr std::array rates_per_C2 = {
+    WrittenUnit{1e-3, 1.0, " deg/s per degC^2"},
+    WrittenUnit{0.0, per_hour, " deg/h per degC^2"},
+};
+constexpr std::array rates_per_g = {
+    WrittenUnit{1e-3, 1.0, " deg/s per g"},
+    WrittenUnit{0.0, per_hour, " deg/h per g"},
+};
+constexpr std::array rates_per_g2 = {
+    WrittenUnit{1e-3, 1.0, " deg/s per g^2"},
+    WrittenUnit{0.0, per_hour, " deg/h per g^2"},
+};
+constexpr std::array ramps = {
+    WrittenUnit{1e-3 * per_hour, per_hour, " deg/s per h"},
+    WrittenUnit{0.0, per_hour* per_hour, " deg/h per h"},
+};
+constexpr std::array angles = {WrittenUnit{0.0, 1.0, " deg"}};
+constexpr std::array angle_walks = {WrittenUnit{0.0, 1.0, " deg/s/sqrt(Hz)"}};
+constexpr std::array rate_walks = {WrittenUnit{0.0, 1.0, " deg/s*sqrt(Hz)"}};
+constexpr std::array temperatures = {WrittenUnit{0.0, 1.0, " degC"}};
+constexpr std::array shares_per_C = {WrittenUnit{0.0, 0.01, " % per degC"}};
+constexpr std::array phases = {WrittenUnit{0.0, rad_per_deg, " deg"}};
+constexpr std::array counts_per_hour = {WrittenUnit{0.0, 1.0, " per hour"}};
+constexpr std::array relative = {
+    WrittenUnit{1e-3, 0.01, " %"},
+    WrittenUnit{0.0, 1e-6, " ppm"},
+};
+constexpr std::array shares = {WrittenUnit{0.0, 0.01, " %"}};
+constexpr std::array plain = {WrittenUnit{0.0, 1.0, ""}};
+
+// The first ending that fits: longer ones stand before those that they end in.
+constexpr QuantityKind kinds[] = {
+    {"_dps_per_sqrt_hz", angle_walks},
+    {"_dps_sqrt_hz", rate_walks},
+    {"_dps_per_C2", rates_per_C2},
+    {"_dps_per_C", rates_per_C},
+    {"_dps_per_g2", rates_per_g2},
+    {"_dps_per_g", rates_per_g},
+    {"_dps_per_s", ramps},
+    {"_dps_s", angles},
+    {"_dps", rates},
+    {"per_C", shares_per_C},
+    {"per_hour", counts_per_hour},
+    {"_rad", phases},
+    {"_hz", frequencies},
+    {"_C", temperatures},
+    {"_s", times},
+};
+
+constexpr double relative_error_most = 0.05;
+
+bool is_relative_error(const EffectParam& param) {
+    const double most = std::max(std::abs(param.plausible_from), std::abs(param.plausible_to));
+    return param.range == EffectParam::Range::any && most > 0.0 && most <= relative_error_most;
+}
+
+std::span<const WrittenUnit> units_of(std::string_view name, const EffectParam* param) {
+    for (const QuantityKind& kind : kinds) {
+        if (name.ends_with(kind.ending)) { return kind.units; }
+    }
+    if (param != nullptr && param->range == EffectParam::Range::share) { return shares; }
+    if (param != nullptr && is_relative_error(*param)) { return relative; }
+    return plain;
+}
+
+const EffectParam* find_param(const Finding& finding, std::string_view name) {
+    const EffectDefinition* effect = find_effect(finding.effect);
+    if (effect == nullptr) { return nullptr; }
+    const auto found = std::ranges::find(effect->params, name, &EffectParam::name);
+    return found == effect->params.end() ? nullptr : &*found;
+}
+
+struct ValueOfEntry {
+    double value = 0.0;
+    double sd = 0.0;
+};
+
+// No value where neither the entry nor the effect has one.
+std::optional<ValueOfEntry> value_in(const Finding& finding, std::size_t entry, std::string_view name) {
+    const auto& params = finding.entries[entry].params;
+    const auto given = params.find(std::string(name));
+    if (given == params.end()) {
+        const EffectParam* param = find_param(finding, name);
+        if (param == nullptr || !param->otherwise) { return std::nullopt; }
+        return ValueOfEntry{*param->otherwise, 0.0};
+    }
+    ValueOfEntry found{given->second, 0.0};
+    if (entry < finding.sd.size()) {
+        const auto sd = finding.sd[entry].find(std::string(name));
+        if (sd != finding.sd[entry].end()) { found.sd = sd->second; }
+    }
+    return found;
+}
+
+std::string axes_of(const EffectModel& entry) { return fmt::format("{}", fmt::join(entry.axes, ", ")); }
+
+// "6.8 ± 1.0 min", or "2.0 ± 0.1 deg/s (x), 1.3 ± 0.1 deg/s (y)".
+std::string value_text(const Finding& finding, std::string_view name) {
+    const EffectParam* param = find_param(finding, name);
+    std::vector<std::string> texts;
+    std::string by_axis;
+    for (std::size_t entry = 0; entry < finding.entries.size(); ++entry) {
+        const auto value = value_in(finding, entry, name);
+        if (!value) { continue; }
+        texts.push_back(quantity_text(name, value->value, value->sd, param));
+        by_axis += fmt::format("{}{} ({})", by_axis.empty() ? "" : ", ", texts.back(),
+                               axes_of(finding.entries[entry]));
+    }
+    if (texts.empty()) { return std::string(name); }
+    return std::ranges::adjacent_find(texts, std::ranges::not_equal_to()) == texts.end() ? texts.front()
+                                                                                         : by_axis;
+}
+
+}  // namespace
+
+std::string quantity_text(std::string_view name, double value, double sd, const EffectParam* param) {
+    const auto units = units_of(name, param);
+    const auto unit = std::ranges::find_if(
+        units, [&](const WrittenUnit& one) { return std::abs(value) >= one.from || &one == &units.back(); });
+    if (!(sd > 0.0) || !std::isfinite(sd)) { return fmt::format("{:.3g}{}", value / unit->per, unit->name); }
+    return with_uncertainty(value / unit->per, sd / unit->per) + std::string(unit->name);
+}
+
+std::string filled_words(std::string_view words, const Finding& finding) {
+    std::string text;
+    for (std::size_t at = 0; at < words.size();) {
+        const std::size_t open = std::min(words.find('{', at), words.size());
+        text += words.substr(at, open - at);
+        const std::size_t close = words.find('}', open);
+        if (close == std::string_view::npos) { return text.append(words.substr(open)); }
+        text += value_text(finding, words.substr(open + 1, close - open - 1));
+        at = close + 1;
+    }
+    return text;
+}
+
+std::string effect_words(const Finding& finding) {
+    const EffectDefinition* effect = find_effect(finding.effect);
+    if (effect == nullptr || effect->signature == nullptr || effect->signature->words.empty()) {
+        return finding.effect;
+    }
+    return filled_words(effect->signature->words, finding);
+}
+
+std::string axes_text(const std::vector<std::size_t>& axes) {
+    std::string text;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (i > 0) { text += i + 1 == axes.size() ? " and " : ", "; }
+        text += axis_names.at(axes[i]);
+    }
+    return text;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,29 @@
+// What a finding says, in words and units that people use.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/diagnose/finding.hpp"
+#include "analysis/simulate/effect.hpp"
+
+namespace gyrolog {
+
+// A parameter's value with its standard deviation, where it has one, in a unit that the end of the name tells
+// and the size chooses: "tau_s" 410 as "6.8 ± 1.0 min", "c1_dps_per_C" as deg/s or deg/h per degC. Shares
+// become per cent; so do relative errors, `param` saying by its plausible range that it is one, or ppm.
+std::string quantity_text(std::string_view name, double value, double sd, const EffectParam* param);
+
+// `words` with the finding's values in place of {param}; where axes differ in a value, all of them, each with
+// its axis.
+std::string filled_words(std::string_view words, const Finding& finding);
+
+// The words of the effect's signature so filled; the effect's name where it has none.
+std::string effect_words(const Finding& finding);
+
+// "x", "x and y", "x, y and z"; `axes` by number.
+std::string axes_text(const std::vector<std::size_t>& axes);
+
+}  // namespace gyrolog

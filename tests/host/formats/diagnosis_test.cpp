@@ -1,0 +1,398 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/simulate/chain.hpp"
+#include "host/formats/diagnosis_json.hpp"
+#include "host/formats/diagnosis_text.hpp"
+#include "host/formats/effect_words.hpp"
+#include "host/formats/wrapped_text.hpp"
+
+namespace gyrolog {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+Finding late_temperature() {
+    Finding finding;
+    finding.effect = "temp_lag";
+    finding.entries = {{"temp_lag", {"x"}, {{"c1_dps_per_C", 0.021}, {"tau_s", 410.0}}, ""}};
+    finding.sd = {{{"c1_dps_per_C", 0.002}, {"tau_s", 60.0}}};
+    finding.gain_nats = 151.0;
+    finding.evidence_nats = 140.0;
+    finding.axis_gain_nats = {151.0, 0.0, 0.0};
+    finding.where.axes = {0};
+    finding.where.temperature = true;
+    finding.where.tau_s = Span{60.0, 900.0};
+    return finding;
+}
+
+GapDomain allan_domain() {
+    GapDomain domain;
+    domain.name = "Allan deviation";
+    domain.x = {1.0, 10.0, 100.0};
+    domain.recording = {1.0, 2.0, 3.0};
+    domain.before_lo = {0.9, 0.9, 0.9};
+    domain.before_hi = {1.1, 1.1, 1.1};
+    domain.after_lo = {0.9, 1.9, 2.9};
+    domain.after_hi = {1.1, 2.1, 3.1};
+    domain.outside_before = {false, true, true};
+    domain.outside_after = {false, false, false};
+    domain.gap_before = 5.2;
+    domain.gap_after = 1.02;
+    return domain;
+}
+
+Diagnosis known() {
+    Diagnosis diagnosis;
+    diagnosis.recording_name = "night.csv";
+    diagnosis.model_name = "model.json";
+    diagnosis.duration_s = 7200.0;
+    diagnosis.rate_hz = 100.0;
+    diagnosis.samples = 720'000;
+    diagnosis.simulations = 200;
+    diagnosis.seed = 7;
+    diagnosis.axes = {0, 1, 2};
+    diagnosis.verdict = Verdict::known;
+    diagnosis.p_none = 0.0002;
+    diagnosis.p_left = 0.4;
+    Cause cause;
+    cause.finding = late_temperature();
+    cause.score = 0.91;
+    cause.tie_group = {{"temp_lag", 0.0}, {"temp_linear", 2.1}};
+    cause.shrink_alone = 0.88;
+    cause.decided_by = "one up-and-down sweep of 5 degC";
+    diagnosis.causes = {cause};
+    diagnosis.where.axes = {0};
+    diagnosis.where.tau_s = Span{60.0, 900.0};
+    diagnosis.gap_before = {4.1, 1.0, 3.6, 4.7};
+    diagnosis.gap_after = {1.1, 1.0, 0.9, 1.4};
+    diagnosis.shrink = 0.97;
+    diagnosis.shrink_lo = 0.93;
+    diagnosis.shrink_hi = 1.0;
+    diagnosis.held_out = "every other minute";
+    diagnosis.domains = {allan_domain()};
+    diagnosis.untestable = {{"scale_factor", "the recording has no reference rate"},
+                            {"rtn", "it is too short"},
+                            {"latency", "the recording has no reference rate"}};
+    diagnosis.next_recordings = {"One sweep of the temperature."};
+    diagnosis.warnings = {"a warning"};
+    return diagnosis;
+}
+
+Diagnosis none() {
+    Diagnosis diagnosis = known();
+    diagnosis.verdict = Verdict::none;
+    diagnosis.p_none = 0.43;
+    diagnosis.causes.clear();
+    diagnosis.where = {};
+    diagnosis.gap_before = diagnosis.gap_after = {1.02, 1.0, 0.8, 1.2};
+    diagnosis.shrink = diagnosis.shrink_lo = diagnosis.shrink_hi = 0.0;
+    for (GapDomain& domain : diagnosis.domains) {
+        domain.after_lo.clear();
+        domain.after_hi.clear();
+        domain.outside_after.clear();
+    }
+    return diagnosis;
+}
+
+// Two axes, of which the second has more of the effect.
+Finding different_axes() {
+    Finding finding = late_temperature();
+    finding.entries.push_back({"temp_lag", {"z"}, {{"c1_dps_per_C", 0.05}, {"tau_s", 410.0}}, ""});
+    finding.sd.push_back({{"c1_dps_per_C", 0.001}, {"tau_s", 60.0}});
+    finding.axis_gain_nats = {20.0, 0.0, 130.0};
+    finding.where.axes = {0, 2};
+    return finding;
+}
+
+// What the contract asks for: every key with its type; '?' marks keys that need not be there.
+void expect_keys(const json& object, const std::map<std::string, std::string>& types,
+                 const std::string& where) {
+    ASSERT_TRUE(object.is_object()) << where;
+    for (const auto& [name, type] : types) {
+        const bool may_lack = name.ends_with('?');
+        const std::string key = may_lack ? name.substr(0, name.size() - 1) : name;
+        if (may_lack && !object.contains(key)) { continue; }
+        ASSERT_TRUE(object.contains(key)) << where << "." << key;
+        const json& value = object[key];
+        const std::string is = value.is_number() ? "number" : value.type_name();
+        EXPECT_EQ(is, type) << where << "." << key;
+    }
+    for (const auto& [key, value] : object.items()) {
+        EXPECT_TRUE(types.contains(key) || types.contains(key + "?")) << where << "." << key << " is unknown";
+    }
+}
+
+void expect_place(const json& place, const std::string& where) {
+    expect_keys(place,
+                {{"axes?", "array"},
+                 {"freq_hz?", "array"},
+                 {"tau_s?", "array"},
+                 {"time_s?", "array"},
+                 {"temperature?", "boolean"},
+                 {"acceleration?", "boolean"},
+                 {"rate_dps?", "array"},
+                 {"amplitude_sigma?", "array"},
+                 {"structure?", "string"}},
+                where);
+    for (const char* range : {"freq_hz", "tau_s", "time_s", "rate_dps", "amplitude_sigma"}) {
+        if (!place.contains(range)) { continue; }
+        ASSERT_EQ(place[range].size(), 2U) << range;
+        EXPECT_TRUE(place[range][0].is_number() && place[range][1].is_number()) << range;
+    }
+}
+
+void expect_numbers(const json& params, const std::string& where) {
+    for (const auto& [name, value] : params.items()) { EXPECT_TRUE(value.is_number()) << where << name; }
+}
+
+void expect_cause(const json& cause) {
+    expect_keys(cause,
+                {{"effect", "string"},
+                 {"score", "number"},
+                 {"tie_group", "array"},
+                 {"axes", "array"},
+                 {"where", "object"},
+                 {"params", "object"},
+                 {"sd", "object"},
+                 {"shrink_alone", "number"},
+                 {"sentence", "string"},
+                 {"gain_nats", "number"},
+                 {"evidence_nats", "number"},
+                 {"params_by_axis?", "object"},
+                 {"sd_by_axis?", "object"},
+                 {"tie?", "object"},
+                 {"decided_by?", "string"}},
+                "cause");
+    EXPECT_EQ(cause["tie_group"].at(0), cause["effect"]);
+    expect_place(cause["where"], "cause.where");
+    expect_numbers(cause["params"], "params.");
+    expect_numbers(cause["sd"], "sd.");
+}
+
+void expect_schema(const json& answer) {
+    expect_keys(answer,
+                {{"schema", "string"},           {"verdict", "string"},   {"p_none", "number"},
+                 {"p_left", "number"},           {"causes", "array"},     {"where", "object"},
+                 {"gap_before", "object"},       {"gap_after", "object"}, {"shrink", "number"},
+                 {"shrink_lo", "number"},        {"shrink_hi", "number"}, {"held_out", "string"},
+                 {"recording", "string"},        {"model", "string"},     {"rate_hz", "number"},
+                 {"duration_s", "number"},       {"samples", "number"},   {"axes", "array"},
+                 {"simulations", "number"},      {"seed", "number"},      {"domains", "array"},
+                 {"band_probability", "number"}, {"untestable", "array"}, {"next_recordings", "array"},
+                 {"warnings", "array"}},
+                "answer");
+    EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
+    for (const char* gap : {"gap_before", "gap_after"}) {
+        expect_keys(answer[gap],
+                    {{"value", "number"}, {"floor", "number"}, {"lo", "number"}, {"hi", "number"}}, gap);
+    }
+    expect_place(answer["where"], "where");
+    for (const json& cause : answer["causes"]) { expect_cause(cause); }
+    for (const json& domain : answer["domains"]) {
+        expect_keys(domain,
+                    {{"name", "string"},
+                     {"axis", "string"},
+                     {"points", "number"},
+                     {"outside_before", "number"},
+                     {"gap_before", "number"},
+                     {"outside_after?", "number"},
+                     {"gap_after?", "number"}},
+                    "domain");
+    }
+    for (const json& one : answer["untestable"]) {
+        expect_keys(one, {{"effect", "string"}, {"why", "string"}}, "untestable");
+    }
+}
+
+TEST(DiagnosisJson, HasEveryKeyOfTheContractWithItsType) {
+    expect_schema(json::parse(diagnosis_json(known())));
+    expect_schema(json::parse(diagnosis_json(none())));
+    Diagnosis several = known();
+    several.verdict = Verdict::unexplained;
+    several.causes[0].finding = different_axes();
+    several.causes.push_back(known().causes[0]);
+    several.causes[1].tie_group.clear();
+    expect_schema(json::parse(diagnosis_json(several)));
+    expect_schema(json::parse(diagnosis_json(Diagnosis{})));
+}
+
+TEST(DiagnosisJson, SaysTheContractsExample) {
+    const json answer = json::parse(diagnosis_json(known()));
+    EXPECT_EQ(answer["verdict"], "known");
+    EXPECT_EQ(answer["p_none"], 0.0002);
+    const json& cause = answer["causes"][0];
+    EXPECT_EQ(cause["effect"], "temp_lag");
+    EXPECT_EQ(cause["tie_group"], json({"temp_lag", "temp_linear"}));
+    EXPECT_EQ(cause["axes"], json({"x"}));
+    EXPECT_EQ(cause["where"], json::parse(R"({"temperature": true, "tau_s": [60, 900]})"));
+    EXPECT_EQ(cause["params"], json::parse(R"({"c1_dps_per_C": 0.021, "tau_s": 410})"));
+    EXPECT_EQ(cause["sd"], json::parse(R"({"c1_dps_per_C": 0.002, "tau_s": 60})"));
+    EXPECT_EQ(answer["where"], json::parse(R"({"axes": ["x"], "tau_s": [60, 900]})"));
+    EXPECT_EQ(answer["gap_after"], json::parse(R"({"value": 1.1, "floor": 1.0, "lo": 0.9, "hi": 1.4})"));
+    EXPECT_EQ(answer["domains"][0]["outside_before"], 2);
+    EXPECT_EQ(answer["untestable"].size(), 3U);
+}
+
+TEST(DiagnosisJson, PutsEveryKindOfPlaceUnderItsKeyInItsUnit) {
+    Diagnosis diagnosis = known();
+    Place& place = diagnosis.where;
+    place.axes = {1, 2};
+    place.freq_hz = Span{12.4, 12.6};
+    place.time_s = Span{1500.0, 1500.0};
+    place.acceleration = true;
+    place.rate_rad_s = Span{10.0 * rad_per_deg, 200.0 * rad_per_deg};
+    place.amplitude_sigma = Span{3.0, 9.0};
+    place.structure = "code_grid";
+    const json where = json::parse(diagnosis_json(diagnosis))["where"];
+    EXPECT_EQ(where["axes"], json({"y", "z"}));
+    EXPECT_EQ(where["freq_hz"], json({12.4, 12.6}));
+    EXPECT_EQ(where["time_s"], json({1500.0, 1500.0}));
+    EXPECT_EQ(where["acceleration"], true);
+    EXPECT_NEAR(where["rate_dps"][0].get<double>(), 10.0, 1e-9);
+    EXPECT_NEAR(where["rate_dps"][1].get<double>(), 200.0, 1e-9);
+    EXPECT_EQ(where["amplitude_sigma"], json({3.0, 9.0}));
+    EXPECT_EQ(where["structure"], "code_grid");
+    EXPECT_FALSE(where.contains("temperature"));
+}
+
+TEST(DiagnosisJson, GivesTheParametersOfTheStrongestAxisAndThoseOfAll) {
+    Diagnosis diagnosis = known();
+    diagnosis.causes[0].finding = different_axes();
+    const json cause = json::parse(diagnosis_json(diagnosis))["causes"][0];
+    EXPECT_EQ(cause["axes"], json({"x", "z"}));
+    EXPECT_EQ(cause["params"]["c1_dps_per_C"], 0.05);
+    EXPECT_EQ(cause["sd"]["c1_dps_per_C"], 0.001);
+    EXPECT_EQ(cause["params_by_axis"]["x"]["c1_dps_per_C"], 0.021);
+    EXPECT_EQ(cause["params_by_axis"]["z"]["c1_dps_per_C"], 0.05);
+    EXPECT_EQ(cause["sd_by_axis"]["x"]["c1_dps_per_C"], 0.002);
+    EXPECT_FALSE(json::parse(diagnosis_json(known()))["causes"][0].contains("params_by_axis"));
+}
+
+TEST(DiagnosisText, SaysTheVerdictInItsFirstLine) {
+    EXPECT_THAT(diagnosis_text(known()), StartsWith("known: temp_lag on x explains the gap\n"));
+    EXPECT_THAT(diagnosis_text(none()), StartsWith("no gap: the recording could have come from the model\n"));
+    Diagnosis two = known();
+    two.causes.push_back(two.causes[0]);
+    two.causes[1].finding.effect = "tone";
+    two.causes[1].finding.where.axes = {1, 2};
+    EXPECT_THAT(diagnosis_text(two),
+                StartsWith("known: temp_lag on x and tone on y and z explain the gap\n"));
+    two.verdict = Verdict::unexplained;
+    EXPECT_THAT(verdict_sentence(two), HasSubstr("part of the gap, what makes the rest is not known"));
+    two.causes.clear();
+    EXPECT_EQ(verdict_sentence(two), "unexplained: there is a gap, and no known effect makes it");
+}
+
+std::string joined(std::string text) {
+    std::string line;
+    for (const char c : text) {
+        if (c != '\n' && c != ' ') {
+            line += c;
+        } else if (!line.ends_with(' ')) {
+            line += ' ';
+        }
+    }
+    return line;
+}
+
+TEST(DiagnosisText, TellsPlaceSizeAndHowFarTheGapCloses) {
+    const std::string text = joined(diagnosis_text(known()));
+    EXPECT_THAT(text, HasSubstr("x axis, averaging times 60 s to 15 min: the simulation is 4.1 times the "
+                                "floor away (3.6 to 4.7)."));
+    EXPECT_THAT(text,
+                HasSubstr("With it the gap falls to 1.1 times the floor: 97 % (93 % to 100 %) closed on "
+                          "data that the fit did not see (every other minute)."));
+    EXPECT_THAT(text, HasSubstr("`temp_linear` (2.1 nats less) fits nearly as well; one up-and-down sweep of "
+                                "5 degC would decide."));
+    EXPECT_THAT(text, HasSubstr("1 of 5000 would differ as much (p = 0.0002)"));
+    EXPECT_THAT(text, HasSubstr("tau_s 6.8 ± 1.0 min"));
+    EXPECT_THAT(text, HasSubstr("the recording has no reference rate: scale_factor, latency - it is too"));
+    EXPECT_THAT(text, HasSubstr("One sweep of the temperature. warnings - a warning"));
+    EXPECT_THAT(text, HasSubstr("x Allan deviation 5.2 1 2 of 3 0 of 3"));
+}
+
+TEST(DiagnosisText, OfNoGapClaimsNoPlaceAndNoCause) {
+    const std::string text = diagnosis_text(none());
+    EXPECT_THAT(text, HasSubstr("43 of 100 would differ as much (p = 0.43)"));
+    EXPECT_THAT(text, Not(HasSubstr("times the floor")));
+    EXPECT_THAT(text, Not(HasSubstr("causes")));
+}
+
+TEST(DiagnosisText, KeepsItsLinesWithinATerminal) {
+    Diagnosis diagnosis = known();
+    diagnosis.causes[0].finding = different_axes();
+    diagnosis.recording_name =
+        "a_rather_long_name_of_a_recording_from_the_temperature_chamber_2026-11-21.csv";
+    std::istringstream lines(diagnosis_text(diagnosis));
+    for (std::string line; std::getline(lines, line);) { EXPECT_LE(line.size(), 112U) << line; }
+}
+
+TEST(EffectWords, WriteQuantitiesInUnitsThatPeopleLike) {
+    EXPECT_EQ(quantity_text("tau_s", 410.0, 60.0, nullptr), "6.8 ± 1.0 min");
+    EXPECT_EQ(quantity_text("at_s", 9000.0, 0.0, nullptr), "2.5 h");
+    EXPECT_EQ(quantity_text("delay_s", 0.0032, 0.0001, nullptr), "3.20 ± 0.10 ms");
+    EXPECT_EQ(quantity_text("c1_dps_per_C", 0.021, 0.002, nullptr), "0.0210 ± 0.0020 deg/s per degC");
+    EXPECT_EQ(quantity_text("c1_dps_per_C", -0.0005, 0.0, nullptr), "-1.8 deg/h per degC");
+    EXPECT_EQ(quantity_text("ramp_dps_per_s", 1e-4, 0.0, nullptr), "0.36 deg/s per h");
+    EXPECT_EQ(quantity_text("ramp_dps_per_s", 1e-8, 0.0, nullptr), "0.13 deg/h per h");
+    EXPECT_EQ(quantity_text("sigma_dps", 0.0125, 0.0, nullptr), "0.0125 deg/s");
+    EXPECT_EQ(quantity_text("B_dps", 0.0005, 0.0001, nullptr), "1.80 ± 0.36 deg/h");
+    EXPECT_EQ(quantity_text("f_hz", 49.97, 0.01, nullptr), "49.970 ± 0.010 Hz");
+    EXPECT_EQ(quantity_text("phase_rad", pi, 0.0, nullptr), "180 deg");
+    EXPECT_EQ(quantity_text("per_C", 0.012, 0.001, nullptr), "1.20 ± 0.10 % per degC");
+    EXPECT_EQ(quantity_text("per_hour", 3.2, 0.0, nullptr), "3.2 per hour");
+    EXPECT_EQ(quantity_text("nu", 4.0, 0.5, nullptr), "4.00 ± 0.50");
+    EXPECT_EQ(quantity_text("x_dps_per_g", 0.2, 0.0, nullptr), "0.2 deg/s per g");
+}
+
+TEST(EffectWords, WriteSharesAndRelativeErrorsInPercentOrPpm) {
+    const EffectParam* of_stale = find_effect("stale")->params.data();
+    EXPECT_EQ(quantity_text("eps", 0.0987, 0.0, of_stale), "9.87 %");
+    const EffectParam* of_clock = find_effect("clock_rate")->params.data();
+    EXPECT_EQ(quantity_text("rel", 1.2e-4, 1e-5, of_clock), "120 ± 10 ppm");
+    EXPECT_EQ(quantity_text("rel", -0.007, 0.0, of_clock), "-0.7 %");
+}
+
+TEST(EffectWords, PutValuesInTheirPlaces) {
+    EXPECT_EQ(
+        filled_words("The bias follows the temperature {tau_s} late, {c1_dps_per_C}.", late_temperature()),
+        "The bias follows the temperature 6.8 ± 1.0 min late, 0.0210 ± 0.0020 deg/s per degC.");
+    EXPECT_EQ(filled_words("{c1_dps_per_C}, {tau_s}", different_axes()),
+              "0.0210 ± 0.0020 deg/s per degC (x), 0.0500 ± 0.0010 deg/s per degC (z), 6.8 ± 1.0 min");
+    EXPECT_EQ(filled_words("a loop of {play_C}", late_temperature()), "a loop of 0 degC")
+        << "the effect's own value of what was not fitted";
+    EXPECT_EQ(filled_words("no values", late_temperature()), "no values");
+}
+
+TEST(EffectWords, NameOnlyParametersThatTheEffectHas) {
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
+        const std::string_view words = link.effect->signature->words;
+        EXPECT_FALSE(words.empty()) << link.effect->name;
+        for (std::size_t open = words.find('{'); open != std::string_view::npos;
+             open = words.find('{', open + 1)) {
+            const std::string_view name = words.substr(open + 1, words.find('}', open) - open - 1);
+            EXPECT_TRUE(std::ranges::any_of(link.effect->params,
+                                            [&](const EffectParam& param) { return param.name == name; }))
+                << link.effect->name << " {" << name << "}";
+        }
+    }
+}
+
+TEST(WrappedText, BreaksAtSpacesAndCountsCharacters) {
+    EXPECT_EQ(wrapped_text("- ", "one two three", 9), "- one two\n  three\n");
+    EXPECT_EQ(wrapped_text("", "±± ±± ±±", 5), "±± ±±\n±±\n");
+    EXPECT_EQ(wrapped_text("", "unbreakable", 3), "unbreakable\n");
+    EXPECT_EQ(wrapped_text("- ", "", 9), "- \n");
+}
+
+}  // namespace
+}  // namespace gyrolog
