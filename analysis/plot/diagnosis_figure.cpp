@@ -1,0 +1,279 @@
+#include "analysis/plot/diagnosis_figure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "analysis/plot/number_text.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr int heading_px = 130;
+constexpr int fact_line_px = 30;
+constexpr int row_px = 350;
+constexpr int lone_panel_px = 640;
+constexpr std::size_t columns_most = 3;
+
+// From light to dark in grey, too: band before, band after, recording.
+constexpr Colour before_colour = colours::orange;
+constexpr Colour after_colour = colours::blue;
+constexpr Colour recording_colour = colours::ink;
+
+const Stroke before_edge{mixed(before_colour, colours::ink, 0.25), 1.3, {6.0, 4.0}};
+const Stroke after_edge{mixed(after_colour, colours::ink, 0.2), 1.3, {}};
+constexpr double before_opacity = 0.30;
+constexpr double after_opacity = 0.50;
+
+constexpr double least_decibels = 1.0;
+constexpr double hours_from_s = 7200.0;
+// A panel without its axis, and its legend.
+constexpr double below_plot_px = 100.0;
+constexpr double legend_line_px = 29.0;
+constexpr double around_legend_px = 48.0;
+
+enum class Part { recording, before, after, outside_before, outside_after };
+
+// A domain as it is drawn: in its own unit, or over the middle of the first band in dB.
+class DomainPanel {
+public:
+    DomainPanel(const GapDomain& domain, double band_probability)
+        : domain_(domain),
+          percent_(rounded_number(100.0 * band_probability, 2) + " %"),
+          x_(domain.x),
+          x_name_(domain.x_name) {
+        const bool is_long =
+            std::ranges::any_of(domain.x, [](double x) { return std::abs(x) > hours_from_s; });
+        if (!domain.log_x && domain.x_name == "time (s)" && is_long) {
+            for (double& x : x_) { x /= 3600.0; }
+            x_name_ = "time (h)";
+        }
+    }
+
+    bool has(Part part) const {
+        switch (part) {
+            case Part::recording:
+            case Part::before:
+                return true;
+            case Part::after:
+                return !domain_.after_lo.empty();
+            case Part::outside_before:
+                return std::ranges::count(domain_.outside_before, true) > 0;
+            case Part::outside_after:
+                return has(Part::after) && std::ranges::count(domain_.outside_after, true) > 0;
+        }
+        return false;
+    }
+
+    // `named`: what the panel's legend says, for which there is room above the curves.
+    Panel panel(const std::vector<Part>& named, double height_px) const {
+        Panel panel;
+        panel.caption = caption();
+        panel.x = {x_name_, domain_.log_x ? ScaleKind::logarithmic : ScaleKind::linear, {}};
+        panel.y = {domain_.log_y ? "over the model (dB)" : domain_.y_name, ScaleKind::linear,
+                   range(legend_share(named.size(), height_px))};
+        add_band(panel, domain_.before_lo, domain_.before_hi, before_edge, before_opacity);
+        name(panel.curves[0], Part::before, named);
+        if (has(Part::after)) {
+            add_band(panel, domain_.after_lo, domain_.after_hi, after_edge, after_opacity);
+            name(panel.curves[2], Part::after, named);
+        }
+        Curve recording;
+        recording.x = x_;
+        recording.y = shown(domain_.recording);
+        recording.stroke = {recording_colour, 2.2, {}};
+        name(recording, Part::recording, named);
+        panel.curves.push_back(std::move(recording));
+        for (const Part part : {Part::outside_before, Part::outside_after}) {
+            if (!has(part)) { continue; }
+            panel.curves.push_back(marks(part));
+            name(panel.curves.back(), part, named);
+        }
+        return panel;
+    }
+
+private:
+    void name(Curve& curve, Part part, const std::vector<Part>& named) const {
+        if (std::ranges::count(named, part) > 0) { curve.legend = {words_for(part)}; }
+    }
+
+    std::string words_for(Part part) const {
+        switch (part) {
+            case Part::recording:
+                return "recording";
+            case Part::before:
+                return "model, " + percent_;
+            case Part::after:
+                return "with the causes, " + percent_;
+            case Part::outside_before:
+                return "outside the model";
+            case Part::outside_after:
+                return "outside with the causes";
+        }
+        return {};
+    }
+
+    // The numbers first: a long name is shortened at its end.
+    std::string caption() const {
+        std::string text =
+            std::string(axis_names.at(domain_.axis)) + ", gap " + rounded_number(domain_.gap_before, 2);
+        if (has(Part::after)) { text += " → " + rounded_number(domain_.gap_after, 2); }
+        return text + ": " + domain_.name;
+    }
+
+    std::vector<double> shown(const std::vector<double>& values) const {
+        if (!domain_.log_y) { return values; }
+        const std::size_t count =
+            std::min({values.size(), domain_.before_lo.size(), domain_.before_hi.size()});
+        std::vector<double> dB;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double middle = std::sqrt(domain_.before_lo[i] * domain_.before_hi[i]);
+            dB.push_back(20.0 * std::log10(values[i] / middle));
+        }
+        return dB;
+    }
+
+    // With both edges as lines: where bands lie on each other, only these tell them apart.
+    void add_band(Panel& panel, const std::vector<double>& lo, const std::vector<double>& hi,
+                  const Stroke& edge, double opacity) const {
+        Curve upper;
+        upper.x = x_;
+        upper.lo = shown(lo);
+        upper.hi = shown(hi);
+        upper.y = upper.hi;
+        upper.stroke = edge;
+        upper.band_opacity = opacity;
+        Curve lower;
+        lower.x = x_;
+        lower.y = upper.lo;
+        lower.stroke = edge;
+        panel.curves.push_back(std::move(upper));
+        panel.curves.push_back(std::move(lower));
+    }
+
+    Curve marks(Part part) const {
+        const bool is_before = part == Part::outside_before;
+        const std::vector<bool>& outside = is_before ? domain_.outside_before : domain_.outside_after;
+        const std::vector<double> y = shown(domain_.recording);
+        Curve marks;
+        for (std::size_t i = 0; i < std::min({outside.size(), x_.size(), y.size()}); ++i) {
+            if (!outside[i]) { continue; }
+            marks.x.push_back(x_[i]);
+            marks.y.push_back(y[i]);
+        }
+        marks.stroke = {is_before ? colours::vermillion : colours::purple, 0.0, {}};
+        marks.marker = is_before ? Marker::circle : Marker::diamond;
+        marks.marker_size_px = is_before ? 8.0 : 13.0;
+        marks.markers_apart_px = 0.5 * marks.marker_size_px;
+        return marks;
+    }
+
+    // Of the plot's height.
+    static double legend_share(std::size_t lines, double height_px) {
+        if (lines == 0) { return 0.0; }
+        return (legend_line_px * static_cast<double>(lines) + around_legend_px) / (height_px - below_plot_px);
+    }
+
+    Range range(double free_above) const {
+        RangeFinder finder(ScaleKind::linear);
+        if (domain_.log_y) {
+            finder.add(-least_decibels);
+            finder.add(least_decibels);
+        }
+        for (const std::vector<double>* values : {&domain_.recording, &domain_.before_lo, &domain_.before_hi,
+                                                  &domain_.after_lo, &domain_.after_hi}) {
+            for (const double value : shown(*values)) { finder.add(value); }
+        }
+        Range range = finder.padded(0.06, 0.0);
+        range.hi += (range.hi - range.lo) * free_above / (1.0 - free_above);
+        return range;
+    }
+
+    const GapDomain& domain_;
+    std::string percent_;
+    std::vector<double> x_;
+    std::string x_name_;
+};
+
+// By way of looking, then by axis, so that a row holds one and a column the other.
+std::vector<const GapDomain*> in_rows(const Diagnosis& diagnosis) {
+    std::vector<std::string> names;
+    for (const GapDomain& domain : diagnosis.domains) {
+        if (std::ranges::count(names, domain.name) == 0) { names.push_back(domain.name); }
+    }
+    std::vector<const GapDomain*> domains;
+    for (const std::string& name : names) {
+        for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+            for (const GapDomain& domain : diagnosis.domains) {
+                if (domain.name == name && domain.axis == axis) { domains.push_back(&domain); }
+            }
+        }
+    }
+    return domains;
+}
+
+// As many as axes where every way of looking has all of them.
+std::size_t columns_for(const std::vector<const GapDomain*>& domains) {
+    std::vector<std::size_t> axes;
+    for (const GapDomain* domain : domains) {
+        if (std::ranges::count(axes, domain->axis) == 0) { axes.push_back(domain->axis); }
+    }
+    const std::size_t most = std::clamp(domains.size(), std::size_t{1}, columns_most);
+    if (axes.size() < 2 || domains.size() % axes.size() != 0) { return most; }
+    for (std::size_t i = 0; i < domains.size(); ++i) {
+        if (domains[i]->name != domains[i - i % axes.size()]->name) { return most; }
+    }
+    return axes.size();
+}
+
+// Each part is named once: two in the first panel, the others in the next one that has them. A lone panel
+// has room for all.
+class LegendParts {
+public:
+    explicit LegendParts(std::size_t panels) : most_(panels == 1 ? left_.size() : 2) {}
+
+    std::vector<Part> take(const DomainPanel& panel) {
+        std::vector<Part> taken;
+        for (const Part part : left_) {
+            if (taken.size() < most_ && panel.has(part)) { taken.push_back(part); }
+        }
+        std::erase_if(left_, [&](Part part) { return std::ranges::count(taken, part) > 0; });
+        return taken;
+    }
+
+private:
+    std::vector<Part> left_{Part::recording, Part::before, Part::after, Part::outside_before,
+                            Part::outside_after};
+    std::size_t most_;
+};
+
+}  // namespace
+
+Figure figure_of(const DiagnosisFigure& request) {
+    const Diagnosis& diagnosis = request.diagnosis;
+    const std::vector<const GapDomain*> domains = in_rows(diagnosis);
+    const std::size_t columns = columns_for(domains);
+    Figure figure;
+    figure.title = request.title;
+    figure.source = diagnosis.recording_name + "  |  " + diagnosis.model_name;
+    figure.facts = request.facts;
+    figure.columns = static_cast<int>(columns);
+    figure.scale = request.scale;
+    const int panel_px = domains.size() == 1 ? lone_panel_px : row_px;
+    LegendParts legend(domains.size());
+    for (const GapDomain* domain : domains) {
+        const DomainPanel panel(*domain, diagnosis.band_probability);
+        figure.panels.push_back(panel.panel(legend.take(panel), panel_px));
+    }
+    const auto rows = static_cast<int>((std::max(domains.size(), std::size_t{1}) + columns - 1) / columns);
+    const int facts_px = fact_line_px * static_cast<int>(request.facts.size());
+    figure.width_px = request.width_px;
+    figure.height_px =
+        static_cast<int>(std::lround((heading_px + facts_px + rows * panel_px) * request.scale));
+    return figure;
+}
+
+Rendering render(const DiagnosisFigure& diagnosis) { return render(figure_of(diagnosis)); }
+
+}  // namespace gyrolog

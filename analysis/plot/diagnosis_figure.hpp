@@ -1,0 +1,31 @@
+// A diagnosis in one picture: for each axis and each way of looking, the recording over the band of
+// simulations, before (light, broken edge) and after the causes were added to the model (dark, whole edge).
+// Points outside the first band are marked by disks, those outside the second, where there is one, by
+// diamonds.
+//
+// One column for each axis and one row for each way of looking where all axes have the same; else panels
+// follow each other. What has a logarithmic scale is shown over the middle of the first band, in dB of the
+// quantity: a gap of one decibel would not be seen on a curve of three decades.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/plot/figure.hpp"
+
+namespace gyrolog {
+
+struct DiagnosisFigure {
+    const Diagnosis& diagnosis;
+    std::string title;               // the verdict
+    std::vector<std::string> facts;  // follow the names of recording and model
+    int width_px = 1600;
+    double scale = 1.0;
+};
+
+Figure figure_of(const DiagnosisFigure& diagnosis);
+
+Rendering render(const DiagnosisFigure& diagnosis);
+
+}  // namespace gyrolog

@@ -1,0 +1,184 @@
+#include "analysis/plot/diagnosis_figure.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/analysis/plot/picture.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::size_t points = 40;
+
+// The recording leaves the model's band for the longer half, and the corrected one nowhere.
+GapDomain allan_domain(std::size_t axis, double gap_dB = 4.0) {
+    GapDomain domain;
+    domain.name = "Allan deviation";
+    domain.x_name = "averaging time (s)";
+    domain.y_name = "σ(τ) (deg/s)";
+    domain.log_x = domain.log_y = true;
+    domain.axis = axis;
+    for (std::size_t i = 0; i < points; ++i) {
+        const double at = 0.01 * std::pow(1.35, static_cast<double>(i));
+        const double model = 0.005 / std::sqrt(at);
+        const double width = 1.02 + 0.01 * static_cast<double>(i);
+        const double off_dB = i < points / 2 ? 0.0 : gap_dB * static_cast<double>(i - points / 2) / 20.0;
+        const double middle = model * std::pow(10.0, off_dB / 20.0);
+        domain.x.push_back(at);
+        domain.recording.push_back(middle *
+                                   (1.0 + 0.3 * (width - 1.0) * std::sin(3.0 * static_cast<double>(i))));
+        domain.before_lo.push_back(model / width);
+        domain.before_hi.push_back(model * width);
+        domain.after_lo.push_back(middle / width);
+        domain.after_hi.push_back(middle * width);
+        domain.outside_before.push_back(domain.recording[i] > domain.before_hi[i]);
+        domain.outside_after.push_back(false);
+    }
+    domain.gap_before = 4.13;
+    domain.gap_after = 1.08;
+    return domain;
+}
+
+GapDomain time_domain(std::size_t axis, double duration_s = 7300.0) {
+    GapDomain domain;
+    domain.name = "rate over time";
+    domain.x_name = "time (s)";
+    domain.y_name = "rate (deg/s)";
+    domain.axis = axis;
+    for (std::size_t i = 0; i < points; ++i) {
+        const double share = static_cast<double>(i) / static_cast<double>(points - 1);
+        domain.x.push_back(duration_s * share);
+        domain.recording.push_back(0.02 * std::sin(6.0 * share) + 0.002 * std::sin(40.0 * share));
+        domain.before_lo.push_back(-0.004);
+        domain.before_hi.push_back(0.004);
+        domain.after_lo.push_back(0.02 * std::sin(6.0 * share) - 0.004);
+        domain.after_hi.push_back(0.02 * std::sin(6.0 * share) + 0.004);
+        domain.outside_before.push_back(std::abs(domain.recording[i]) > 0.004);
+        domain.outside_after.push_back(i == 7);
+    }
+    domain.gap_before = 3.1;
+    domain.gap_after = 1.2;
+    return domain;
+}
+
+GapDomain uncorrected(GapDomain domain) {
+    domain.after_lo.clear();
+    domain.after_hi.clear();
+    domain.outside_after.clear();
+    return domain;
+}
+
+Diagnosis diagnosis_of(std::vector<GapDomain> domains) {
+    Diagnosis diagnosis;
+    diagnosis.recording_name = "night.csv";
+    diagnosis.model_name = "model.json";
+    diagnosis.verdict = Verdict::known;
+    diagnosis.domains = std::move(domains);
+    return diagnosis;
+}
+
+std::vector<std::string> legends_of(const Panel& panel) {
+    std::vector<std::string> names;
+    for (const Curve& curve : panel.curves) {
+        if (!curve.legend.empty()) { names.push_back(curve.legend.front()); }
+    }
+    return names;
+}
+
+TEST(DiagnosisFigure, HasAColumnForEachAxisAndARowForEachWayOfLooking) {
+    const Diagnosis diagnosis = diagnosis_of(
+        {allan_domain(0), time_domain(0), allan_domain(1), time_domain(1), allan_domain(2), time_domain(2)});
+    const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
+    EXPECT_EQ(figure.columns, 3);
+    ASSERT_EQ(figure.panels.size(), 6U);
+    EXPECT_EQ(figure.panels[1].caption, "y, gap 4.1 → 1.1: Allan deviation");
+    EXPECT_EQ(figure.panels[3].caption, "x, gap 3.1 → 1.2: rate over time");
+    EXPECT_EQ(figure.source, "night.csv  |  model.json");
+    const Diagnosis uneven = diagnosis_of({allan_domain(0), time_domain(0), allan_domain(1)});
+    EXPECT_EQ(figure_of(DiagnosisFigure{uneven, "known", {}}).columns, 3);
+    const Diagnosis two = diagnosis_of({allan_domain(0), allan_domain(1)});
+    EXPECT_EQ(figure_of(DiagnosisFigure{two, "known", {}}).columns, 2);
+}
+
+TEST(DiagnosisFigure, ShowsALogarithmicQuantityInDecibelsOverTheMiddleOfTheModel) {
+    const Diagnosis diagnosis = diagnosis_of({allan_domain(0, 4.0)});
+    const Panel panel = figure_of(DiagnosisFigure{diagnosis, "known", {}}).panels.at(0);
+    const GapDomain& domain = diagnosis.domains[0];
+    const Curve& before = panel.curves.at(0);
+    const Curve& recording = panel.curves.at(4);
+    for (std::size_t i = 0; i < points; ++i) {
+        EXPECT_NEAR(before.hi[i], -before.lo[i], 1e-9);
+        EXPECT_NEAR(recording.y[i] - before.hi[i],
+                    20.0 * std::log10(domain.recording[i] / domain.before_hi[i]), 1e-9);
+    }
+    EXPECT_EQ(panel.y.kind, ScaleKind::linear);
+    EXPECT_EQ(panel.x.kind, ScaleKind::logarithmic);
+}
+
+TEST(DiagnosisFigure, ShowsALinearQuantityInItsUnitAndLongTimesInHours) {
+    const Diagnosis diagnosis = diagnosis_of({time_domain(0)});
+    const Panel panel = figure_of(DiagnosisFigure{diagnosis, "known", {}}).panels.at(0);
+    EXPECT_EQ(panel.y.title, "rate (deg/s)");
+    EXPECT_EQ(panel.curves.at(4).y, diagnosis.domains[0].recording);
+    EXPECT_EQ(panel.x.title, "time (h)");
+    EXPECT_NEAR(panel.curves.at(4).x.back(), 7300.0 / 3600.0, 1e-12);
+    const Diagnosis brief = diagnosis_of({time_domain(0, 600.0)});
+    EXPECT_EQ(figure_of(DiagnosisFigure{brief, "known", {}}).panels.at(0).x.title, "time (s)");
+}
+
+TEST(DiagnosisFigure, MarksWhatLiesOutsideBeforeAndAfter) {
+    const Diagnosis diagnosis = diagnosis_of({time_domain(0)});
+    const Panel panel = figure_of(DiagnosisFigure{diagnosis, "known", {}}).panels.at(0);
+    ASSERT_EQ(panel.curves.size(), 7U);
+    const auto outside = std::ranges::count(diagnosis.domains[0].outside_before, true);
+    EXPECT_EQ(panel.curves[5].x.size(), static_cast<std::size_t>(outside));
+    EXPECT_EQ(panel.curves[6].x.size(), 1U);
+    EXPECT_NE(panel.curves[5].marker, panel.curves[6].marker);
+    EXPECT_EQ(panel.curves[5].stroke.width_px, 0.0);
+}
+
+TEST(DiagnosisFigure, WithoutCausesHasOneBandAndNoSecondNumber) {
+    const Diagnosis diagnosis = diagnosis_of({uncorrected(allan_domain(0))});
+    const Panel panel = figure_of(DiagnosisFigure{diagnosis, "unexplained", {}}).panels.at(0);
+    EXPECT_EQ(panel.caption, "x, gap 4.1: Allan deviation");
+    EXPECT_EQ(legends_of(panel), (std::vector<std::string>{"model, 95 %", "recording", "outside the model"}));
+}
+
+TEST(DiagnosisFigure, NamesEveryPartOnce) {
+    const Diagnosis diagnosis = diagnosis_of({allan_domain(0), time_domain(0)});
+    const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
+    EXPECT_EQ(legends_of(figure.panels[0]), (std::vector<std::string>{"model, 95 %", "recording"}));
+    EXPECT_EQ(legends_of(figure.panels[1]),
+              (std::vector<std::string>{"with the causes, 95 %", "outside the model"}));
+    const Diagnosis lone = diagnosis_of({time_domain(0)});
+    EXPECT_EQ(legends_of(figure_of(DiagnosisFigure{lone, "known", {}}).panels[0]).size(), 5U);
+}
+
+TEST(DiagnosisFigure, DrawsBandsAndMarksThatDifferInGreyToo) {
+    const Diagnosis diagnosis = diagnosis_of({allan_domain(0), time_domain(0)});
+    const Rendering rendering = render(DiagnosisFigure{diagnosis, "known: temp_lag", {"200 simulations"}});
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    const Picture picture(rendering);
+    const Colour before = mixed(colours::paper, mixed(colours::orange, colours::ink, 0.25), 0.30);
+    const Colour after = mixed(before, mixed(colours::blue, colours::ink, 0.2), 0.50);
+    EXPECT_GT(picture.count(before, 8), 2000);
+    EXPECT_GT(picture.count(after, 8), 2000);
+    EXPECT_GT(picture.count(colours::vermillion, 30), 100);
+    const auto grey = [](Colour c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue; };
+    EXPECT_GT(grey(before) - grey(after), 40.0);
+    EXPECT_GT(grey(after) - grey(colours::ink), 40.0);
+    for (const PanelPlace& place : rendering.panels) { EXPECT_TRUE(place.legend.has_value()); }
+}
+
+TEST(DiagnosisFigure, OfNothingToShowIsStillAPicture) {
+    const Diagnosis diagnosis = diagnosis_of({});
+    EXPECT_TRUE(render(DiagnosisFigure{diagnosis, "no gap", {}}).ok());
+    GapDomain empty = allan_domain(0);
+    for (double& value : empty.recording) { value = 0.0; }
+    const Diagnosis zeros = diagnosis_of({empty});
+    EXPECT_TRUE(render(DiagnosisFigure{zeros, "no gap", {}}).ok());
+}
+
+}  // namespace
+}  // namespace gyrolog
