@@ -45,11 +45,27 @@ constexpr EffectParam params[] = {
     {.name = "N_dps_per_sqrt_hz",
      .meaning = "density of the common noise, two-sided",
      .range = EffectParam::Range::not_negative,
-     .plausible_from = 0.001,
+     .plausible_from = 0.0003,
      .plausible_to = 0.01},
     gain("gain_x"),
     gain("gain_y"),
     gain("gain_z"),
+};
+
+void add_spectrum(std::span<const double> /*f_hz*/, double /*rate_hz*/, const EffectValues& effect,
+                  std::span<SpectralParts> parts) {
+    constexpr std::array<const char*, 3> gains = {"gain_x", "gain_y", "gain_z"};
+    const double rad_per_sqrt_s = effect["N_dps_per_sqrt_hz"] * rad_per_deg * effect[gains[effect.axis()]];
+    for (SpectralParts& part : parts) { part.other += rad_per_sqrt_s * rad_per_sqrt_s; }
+}
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::shared_noise,
+    .place = PlaceKind::structure,
+    .structure = "cross_axis",
+    .spectrum = add_spectrum,
+    .words = "The axes share white noise of {N_dps_per_sqrt_hz}, as from the supply.",
+    .decided_by = "a recording at rest of all three axes, with another supply",
 };
 
 }  // namespace
@@ -61,6 +77,7 @@ constinit const EffectDefinition common_mode_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

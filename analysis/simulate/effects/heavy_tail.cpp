@@ -52,6 +52,16 @@ constexpr EffectParam params[] = {
      .plausible_to = 150.0},
 };
 
+double degrees_of_freedom(const EffectValues& effect) { return effect["nu"]; }
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::tails,
+    .place = PlaceKind::amplitude,
+    .degrees_of_freedom = degrees_of_freedom,
+    .words = "Single samples stray further than normal noise does: Student's t with {nu} degrees of freedom.",
+    .decided_by = "a longer recording at rest, of raw samples",
+};
+
 }  // namespace
 
 constinit const EffectDefinition heavy_tail_effect = {
@@ -61,6 +71,7 @@ constinit const EffectDefinition heavy_tail_effect = {
     .source = "R. W. Bailey, Math. Comp. 62 (1994) 779",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

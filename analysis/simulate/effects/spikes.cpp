@@ -1,3 +1,9 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "analysis/recording/recording.hpp"
 #include "analysis/simulate/effects/arrivals.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/stages/per_axis.hpp"
@@ -57,6 +63,77 @@ constexpr EffectParam params[] = {
      .plausible_to = 5.0},
 };
 
+// How far a sample is from the middle between its neighbours; at the ends, and between holes, as if there
+// were none.
+double off_neighbours(const Column& column, std::size_t row) {
+    return column.value(row) - 0.5 * (column.value(row - 1) + column.value(row + 1));
+}
+
+// Standard deviation of the samples' white noise, from every n-th sample's mean distance to its neighbours.
+// Spikes are left out in a second round.
+double white_sd(const Column& column) {
+    constexpr std::size_t enough = 50'000;
+    constexpr double sd_per_mean = 1.2533;     // of a normal distribution: sqrt(pi / 2)
+    constexpr double of_differences = 1.2247;  // sqrt(1 + 1 / 2)
+    const std::size_t every = std::max<std::size_t>(1, column.size() / enough);
+    double sd = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < 3; ++round) {
+        double sum = 0.0;
+        double count = 0.0;
+        for (std::size_t row = 1; row + 1 < column.size(); row += every) {
+            const double off = std::fabs(off_neighbours(column, row));
+            if (off > 6.0 * of_differences * sd) { continue; }
+            sum += off;
+            count += 1.0;
+        }
+        sd = count > 0.0 ? sd_per_mean / of_differences * sum / count : 0.0;
+    }
+    return sd;
+}
+
+double median_around(const Column& column, std::size_t row) {
+    constexpr std::size_t reach = 4;
+    std::array<double, 2 * reach> near{};
+    std::size_t count = 0;
+    for (std::size_t i = row < reach ? 0 : row - reach; i < std::min(row + reach + 1, column.size()); ++i) {
+        if (i != row) { near[count++] = column.value(i); }
+    }
+    const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(near.begin(), middle, end);
+    return *middle;
+}
+
+// Samples that are more likely a spike than noise: beyond half the smallest size, and beyond what the noise
+// reaches some twice in a million samples.
+void unjudged(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
+    constexpr double noise_sigma = 5.0;
+    constexpr std::array<const char*, 3> columns = {"gx", "gy", "gz"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Column* column = recording.find(columns[axis]);
+        if (column == nullptr || column->unit != "rad/s") { continue; }
+        if (!entry.axes.empty() && std::ranges::count(entry.axes, axis_names[axis]) == 0) { continue; }
+        const double limit_rad_s = std::max(noise_sigma * white_sd(*column),
+                                            0.5 * EffectValues(entry)["smallest_dps"] * rad_per_deg);
+        for (std::size_t row = 1; row + 1 < column->size(); ++row) {
+            // A first look, cheap, which hardly any spike fails.
+            if (std::fabs(off_neighbours(*column, row)) < 0.6 * limit_rad_s) { continue; }
+            if (std::fabs(column->value(row) - median_around(*column, row)) > limit_rad_s) {
+                judged[row] = false;
+            }
+        }
+    }
+}
+
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::outliers,
+    .place = PlaceKind::structure,
+    .structure = "isolated_samples",
+    .unjudged = unjudged,
+    .words = "Single samples are off by {smallest_dps} to {largest_dps}, {per_hour} an hour.",
+    .decided_by = "a longer recording at rest, of raw samples",
+};
+
 }  // namespace
 
 constinit const EffectDefinition spikes_effect = {
@@ -68,6 +145,7 @@ constinit const EffectDefinition spikes_effect = {
     .params = params,
     .make = make,
     .noise_only = true,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

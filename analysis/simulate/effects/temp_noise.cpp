@@ -12,15 +12,22 @@ struct OfTemperature {
     double per_C;
     double reference_C;
 
-    double operator()(const SampleBlock& block, std::size_t i) const {
+    double operator()(const SampleBlock& block, std::size_t i) const { return at(block.die_C[i]); }
+
+    double at(double temperature_C) const {
         // However far the temperature goes, some noise is left.
-        return std::max(0.05, 1.0 + per_C * (block.die_C[i] - reference_C));
+        return std::max(0.05, 1.0 + per_C * (temperature_C - reference_C));
     }
 };
 
+OfTemperature of_temperature(const EffectUse& use) { return {use["per_C"], reference_C(use)}; }
+
 std::unique_ptr<Stage> make(const EffectUse& use) {
-    return std::make_unique<WhiteNoiseGain<OfTemperature>>(use,
-                                                           OfTemperature{use["per_C"], reference_C(use)});
+    return std::make_unique<WhiteNoiseGain<OfTemperature>>(use, of_temperature(use));
+}
+
+WhiteGain white_gain(const EffectUse& use) {
+    return [gain = of_temperature(use)](double, double temperature_C) { return gain.at(temperature_C); };
 }
 
 constexpr EffectParam params[] = {
@@ -31,6 +38,15 @@ constexpr EffectParam params[] = {
     reference_C_param,
 };
 
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::variance_of,
+    .place = PlaceKind::temperature,
+    .needs_temperature = true,
+    .white_gain = white_gain,
+    .words = "The white noise's standard deviation changes by {per_C} with each degree.",
+    .decided_by = "one sweep of the temperature up and down by 10 degC or more",
+};
+
 }  // namespace
 
 constinit const EffectDefinition temp_noise_effect = {
@@ -39,6 +55,7 @@ constinit const EffectDefinition temp_noise_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog

@@ -11,17 +11,30 @@ struct Change {
     double ramp_samples;
 
     double operator()(const SampleBlock& block, std::size_t i) const {
-        const double since = static_cast<double>(block.first_index + i) - at_samples;
+        return after(static_cast<double>(block.first_index + i));
+    }
+
+    double after(double samples) const {
+        const double since = samples - at_samples;
         if (since < 0.0) { return 1.0; }
         const double share = since < ramp_samples ? since / ramp_samples : 1.0;
         return 1.0 + (factor - 1.0) * share;
     }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+Change change_of(const EffectUse& use) {
     const double rate_hz = use.context().rate_hz;
-    return std::make_unique<WhiteNoiseGain<Change>>(
-        use, Change{use["factor"], use["at_s"] * rate_hz, use["ramp_s"] * rate_hz});
+    return {use["factor"], use["at_s"] * rate_hz, use["ramp_s"] * rate_hz};
+}
+
+std::unique_ptr<Stage> make(const EffectUse& use) {
+    return std::make_unique<WhiteNoiseGain<Change>>(use, change_of(use));
+}
+
+WhiteGain white_gain(const EffectUse& use) {
+    return [change = change_of(use), rate_hz = use.context().rate_hz](double time_s, double) {
+        return change.after(time_s * rate_hz);
+    };
 }
 
 constexpr EffectParam params[] = {
@@ -39,6 +52,16 @@ constexpr EffectParam params[] = {
      .otherwise = 0.0},
 };
 
+constexpr EffectSignature signature = {
+    .method = EvidenceMethod::variance_course,
+    .place = PlaceKind::time,
+    .white_gain = white_gain,
+    .words =
+        "From {at_s} after the start on the white noise changes within {ramp_s} to {factor} times its "
+        "standard deviation.",
+    .decided_by = "a second recording, with the same temperatures at other times",
+};
+
 }  // namespace
 
 constinit const EffectDefinition variance_change_effect = {
@@ -47,6 +70,7 @@ constinit const EffectDefinition variance_change_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .signature = &signature,
 };
 
 }  // namespace gyrolog
