@@ -21,7 +21,7 @@ LineShape::Pair LineShape::at(std::size_t k) const {
     const double mirrored = 1.0 / (2.0 * std::sin(half_step_ * (place_ + number)));
     const double away = place_ - number;
     if (std::fabs(away) < 1e-6) {
-        const double peak = 0.5 * pi / half_step_ / pi;
+        const double peak = 0.5 * pi / half_step_;  // n
         return {half_scale_ * (peak + sine * mirrored), half_scale_ * versine * mirrored};
     }
     const double direct = 1.0 / (2.0 * std::sin(half_step_ * away));

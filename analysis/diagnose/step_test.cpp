@@ -18,11 +18,16 @@ constexpr std::size_t used_min = 512;
 constexpr std::size_t used_max = 32768;
 // A jump's power is taken off up to this multiple of the coefficients that the scan uses.
 constexpr std::size_t removed_beyond = 16;
-constexpr double worth_refining_nats = 3.0;
+constexpr double worth_refining_nats = 5.0;
 // Closer to an end a jump is a few odd samples.
 constexpr std::size_t edge_samples = 16;
-// A moment known better than this is looked for among the samples.
-constexpr double coarse_places = 4.0;
+// A moment known to fewer places of a scan than this is looked for by a finer one, in the end among the
+// samples.
+constexpr double places_min = 6.0;
+constexpr std::size_t finer = 8;
+constexpr std::size_t finest_used = 131072;
+// An axis has the jump or has it not.
+const double axis_cost_nats = std::log(2.0);
 
 class StepTest final : public EffectTest {
 public:
@@ -40,15 +45,13 @@ public:
         Seen seen(observation);
         for (const std::size_t axis : baseline_->axes()) {
             seen.density[axis] = observation.axis(axis).density;
-            seen.fits[axis] = scan.fit(observation.axis(axis).cosines, weights(seen.density[axis]));
+            seen.fits[axis] = fit(scan, seen, axis);
         }
         if (!locate(scan, seen) || gain_at(seen, seen.place) < worth_refining_nats) { return std::nullopt; }
         // What the jump raised the random walk by is given back; then it may show better elsewhere.
         for (int round = 0; round < 2; ++round) {
             for (const std::size_t axis : baseline_->axes()) { refit_noise(scan, axis, seen); }
-            for (const std::size_t axis : baseline_->axes()) {
-                seen.fits[axis] = scan.fit(observation.axis(axis).cosines, weights(seen.density[axis]));
-            }
+            for (const std::size_t axis : baseline_->axes()) { seen.fits[axis] = fit(scan, seen, axis); }
             locate(scan, seen);
         }
         return finding_of(scan, seen);
@@ -80,17 +83,15 @@ private:
         return used;
     }
 
-    // Of coefficients 1, 2, ...
-    std::vector<double> weights(const std::vector<double>& density) const {
-        std::vector<double> out(used_);
-        for (std::size_t i = 0; i < density.size() && baseline_->bins()[i].first <= used_; ++i) {
+    StepScan::Fit fit(StepScan& scan, const Seen& seen, std::size_t axis) const {
+        std::vector<double> weights(scan.used());
+        const std::vector<double>& density = seen.density[axis];
+        for (std::size_t i = 0; i < density.size(); ++i) {
+            const SpectralBin& bin = baseline_->bins()[i];
             const double weight = 1.0 / (density[i] * baseline_->rate_hz());
-            for (std::size_t k = baseline_->bins()[i].first; k < baseline_->bins()[i].end && k <= used_;
-                 ++k) {
-                out[k - 1] = weight;
-            }
+            for (std::size_t k = bin.first; k < bin.end && k <= scan.used(); ++k) { weights[k - 1] = weight; }
         }
-        return out;
+        return scan.fit(seen.observation->axis(axis).cosines, weights);
     }
 
     double height_cost(const Seen& seen, std::size_t axis, std::size_t place) const {
@@ -185,21 +186,37 @@ private:
     }
 
     Moment moment(const StepScan& scan, const Seen& seen, const std::vector<std::size_t>& axes) const {
+        Moment now = moment_of_scan(scan, seen.fits, axes);
+        std::size_t used = scan.used();
+        double spacing = scan.spacing();
+        while (now.width < places_min * spacing) {
+            const std::size_t most = std::min(finest_used, baseline_->length() - 1);
+            if (used * finer > most) { return moment_among_samples(seen, axes, now.at, spacing); }
+            used *= finer;
+            StepScan finer_scan(baseline_->length(), used);
+            std::array<StepScan::Fit, 3> fits;
+            for (const std::size_t axis : axes) { fits[axis] = fit(finer_scan, seen, axis); }
+            now = moment_of_scan(finer_scan, fits, axes);
+            spacing = finer_scan.spacing();
+        }
+        return now;
+    }
+
+    Moment moment_of_scan(const StepScan& scan, const std::array<StepScan::Fit, 3>& fits,
+                          const std::vector<std::size_t>& axes) const {
         std::vector<double> gain(scan.places(), -1e300);
         for (std::size_t place = 0; place < scan.places(); ++place) {
             if (!inside(scan, place)) { continue; }
             gain[place] = 0.0;
-            for (const std::size_t axis : axes) { gain[place] += seen.fits[axis].gain_nats(place); }
+            for (const std::size_t axis : axes) { gain[place] += fits[axis].gain_nats(place); }
         }
-        const Moment coarse = moment_of(gain, scan.sample_at(0), scan.spacing());
-        if (coarse.width > coarse_places * scan.spacing()) { return coarse; }
-        return moment_among_samples(scan, seen, axes, coarse.at);
+        return moment_of(gain, scan.sample_at(0), scan.spacing());
     }
 
     // White noise about the two levels, which are those of the samples around.
-    Moment moment_among_samples(const StepScan& scan, const Seen& seen, const std::vector<std::size_t>& axes,
-                                double about) const {
-        const auto half = static_cast<std::size_t>(std::ceil(2.0 * scan.spacing())) + 8;
+    Moment moment_among_samples(const Seen& seen, const std::vector<std::size_t>& axes, double about,
+                                double spacing) const {
+        const auto half = static_cast<std::size_t>(std::ceil(2.0 * spacing)) + 8;
         const std::size_t length = baseline_->length();
         const auto middle = static_cast<std::size_t>(std::lround(about));
         const std::size_t first = middle > half ? middle - half : 0;
@@ -212,8 +229,8 @@ private:
                 for (std::size_t i = from; i < to; ++i) { sum += static_cast<double>(samples[i]); }
                 return to > from ? sum / static_cast<double>(to - from) : 0.0;
             };
-            const double before = mean(first > 2 * half ? first - 2 * half : 0, first);
-            const double after = mean(end, std::min(length, end + 2 * half));
+            const double before = mean(first > 8 * half ? first - 8 * half : 0, first);
+            const double after = mean(end, std::min(length, end + 8 * half));
             const double height = after - before;
             const double variance = seen.density[axis].back() * baseline_->rate_hz();
             double sum = 0.0;
@@ -225,20 +242,46 @@ private:
         return moment_of(likelihood, static_cast<double>(first), 1.0);
     }
 
-    std::optional<Finding> finding_of(const StepScan& scan, const Seen& seen) const {
-        std::vector<AxesFit> fits;
+    // Of axes that jump by heights of their own, or all by the same.
+    AxesFit own_fit(const Seen& seen, std::size_t axis) const {
+        const double sd_dps = deg_per_rad / std::sqrt(seen.fits[axis].information[seen.place]);
+        AxesFit fit;
+        fit.axes = {axis};
+        fit.gain_nats = {seen.gain_nats[axis]};
+        fit.params = {{"step_dps", seen.fits[axis].height(seen.place) * deg_per_rad}};
+        fit.sd = {{"step_dps", sd_dps}};
+        fit.cost_nats = occam_cost_nats(height_, 0.0, sd_dps) + axis_cost_nats;
+        return fit;
+    }
+
+    AxesFit shared_fit(const Seen& seen) const {
+        double pull = 0.0;
+        double information = 0.0;
         for (const std::size_t axis : baseline_->axes()) {
-            if (!(seen.gain_nats[axis] > 0.0)) { continue; }
-            const double sd_dps = deg_per_rad / std::sqrt(seen.fits[axis].information[seen.place]);
-            AxesFit fit;
-            fit.axes = {axis};
-            fit.gain_nats = {seen.gain_nats[axis]};
-            fit.params = {{"step_dps", seen.fits[axis].height(seen.place) * deg_per_rad}};
-            fit.sd = {{"step_dps", sd_dps}};
-            fit.cost_nats = occam_cost_nats(height_, 0.0, sd_dps);
-            fits.push_back(std::move(fit));
+            pull += seen.fits[axis].pull[seen.place];
+            information += seen.fits[axis].information[seen.place];
         }
-        std::optional<Finding> finding = best_of(effect_, fits, 0.0, std::nullopt);
+        const double height = pull / information;
+        const double sd_dps = deg_per_rad / std::sqrt(information);
+        AxesFit fit;
+        fit.axes = baseline_->axes();
+        for (const std::size_t axis : fit.axes) {
+            const double off = seen.fits[axis].height(seen.place) - height;
+            fit.gain_nats.push_back(seen.gain_nats[axis] -
+                                    0.5 * off * off * seen.fits[axis].information[seen.place]);
+        }
+        fit.params = {{"step_dps", height * deg_per_rad}};
+        fit.sd = {{"step_dps", sd_dps}};
+        fit.cost_nats = occam_cost_nats(height_, 0.0, sd_dps) + axis_cost_nats;
+        return fit;
+    }
+
+    std::optional<Finding> finding_of(const StepScan& scan, const Seen& seen) const {
+        std::vector<AxesFit> own;
+        for (const std::size_t axis : baseline_->axes()) { own.push_back(own_fit(seen, axis)); }
+        std::optional<AxesFit> shared;
+        if (own.size() > 1) { shared = shared_fit(seen); }
+        std::optional<Finding> finding = best_of(effect_, own, 0.0, shared);
         if (!finding) { return std::nullopt; }
         const Moment when = moment(scan, seen, finding->where.axes);
         // A sample at the moment itself has jumped already.

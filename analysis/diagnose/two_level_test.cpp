@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -31,10 +32,13 @@ constexpr double averages_per_dwell_min = 6.0;
 constexpr double averages_per_dwell_max = 40.0;
 constexpr double levels_apart = 2.0;
 constexpr double averages_max = 40000.0;
+// Two levels so much less likely than Gauss-Markov noise with the same spectrum are not refined.
+constexpr double hopeless_nats = 30.0;
 constexpr double averages_min = 64.0;
 
-// How far parameters may leave their plausible ranges.
-constexpr double beyond_plausible = 3.0;
+// How far parameters may leave their plausible ranges; and at least so many dwell times make a telegraph.
+constexpr double beyond_plausible = 1.5;
+constexpr double dwells_min = 8.0;
 
 // Logarithms of the distance in rad/s and of the dwell times in s.
 using Point = std::vector<double>;
@@ -77,7 +81,7 @@ public:
         }
         if (single.empty()) { return std::nullopt; }
         std::optional<AxesFit> shared;
-        if (moved.size() > 1) { shared = fit_axes(observation, moved, middle_of(single)); }
+        if (moved.size() > 1 && alike(single)) { shared = fit_axes(observation, moved, middle_of(single)); }
         std::optional<Finding> finding = best_of(effect_, single, 0.0, shared);
         if (finding) { place(observation, *finding); }
         return finding;
@@ -139,7 +143,8 @@ private:
         double best_gain = 0.0;
         Point best;
         for (double tau_s = correlation_from_s;
-             tau_s < std::min(correlation_to_s, 0.1 * baseline_->duration_s()); tau_s *= correlation_ratio) {
+             tau_s < std::min(correlation_to_s, 0.4 * baseline_->duration_s() / dwells_min);
+             tau_s *= correlation_ratio) {
             double score = 0.0;
             double information = 0.0;
             Eigen::Vector3d shared = Eigen::Vector3d::Zero();
@@ -188,19 +193,20 @@ private:
             return value > lowest(name) && value < highest(name);
         };
         return inside("amplitude_dps", at.distance * deg_per_rad) && inside("dwell_high_s", at.high_s) &&
-               inside("dwell_low_s", at.low_s) && at.correlation_s() * baseline_->rate_hz() > 1.0;
+               inside("dwell_low_s", at.low_s) && at.correlation_s() * baseline_->rate_hz() > 1.0 &&
+               std::max(at.high_s, at.low_s) * dwells_min < baseline_->duration_s();
     }
 
-    Averages averages_for(const Observation& observation, std::size_t axis,
-                          const Telegraph& telegraph) const {
+    Averages averages_for(const Observation& observation, std::size_t axis, const Telegraph& telegraph,
+                          double per_dwell_max) const {
         const AxisObservation& seen = observation.axis(axis);
         const double duration_s = baseline_->duration_s();
         const double dwell_s = 2.0 * telegraph.correlation_s();
         const double levels_show_s =
             levels_apart * levels_apart * seen.density.back() / (telegraph.distance * telegraph.distance);
-        const double wanted_s = std::clamp(
-            std::clamp(levels_show_s, dwell_s / averages_per_dwell_max, dwell_s / averages_per_dwell_min),
-            duration_s / averages_max, duration_s / averages_min);
+        const double wanted_s =
+            std::clamp(std::clamp(levels_show_s, dwell_s / per_dwell_max, dwell_s / averages_per_dwell_min),
+                       duration_s / averages_max, duration_s / averages_min);
         const auto length =
             std::max<std::size_t>(1, static_cast<std::size_t>(wanted_s * baseline_->rate_hz()));
         Averages out;
@@ -219,6 +225,18 @@ private:
         return spectral_gain(observation, axis, telegraph) +
                telegraph_log_likelihood(averages.values, averages.step_s, averages.noise, telegraph) -
                gauss_markov_log_likelihood(averages.values, averages.step_s, averages.noise, telegraph);
+    }
+
+    // Whether one set of parameters can hold for all.
+    static bool alike(const std::vector<AxesFit>& fits) {
+        constexpr double sds_apart = 5.0;
+        for (const auto& [name, value] : fits.front().params) {
+            for (const AxesFit& fit : fits) {
+                const double sd = std::hypot(fit.sd.at(name), fits.front().sd.at(name));
+                if (std::fabs(fit.params.at(name) - value) > sds_apart * sd) { return false; }
+            }
+        }
+        return true;
     }
 
     static Point middle_of(const std::vector<AxesFit>& fits) {
@@ -240,13 +258,18 @@ private:
                 std::log(correlation_s / (1.0 - share)), std::log(correlation_s / share)};
     }
 
+    // With short averages only where long ones show levels: where they do not, another effect has more to
+    // say.
     AxesFit fit_axes(const Observation& observation, const std::vector<std::size_t>& axes,
                      const Point& from) const {
         std::vector<Averages> averages;
-        for (const std::size_t axis : axes) {
-            averages.push_back(averages_for(observation, axis, telegraph_at(from)));
-        }
-        const auto objective = [&](const std::vector<double>& logs) {
+        const auto take_averages = [&](const Point& logs, double per_dwell_max) {
+            averages.clear();
+            for (const std::size_t axis : axes) {
+                averages.push_back(averages_for(observation, axis, telegraph_at(logs), per_dwell_max));
+            }
+        };
+        const auto objective = [&](const Point& logs) {
             if (!plausible(logs)) { return minus_infinity; }
             double sum = 0.0;
             for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -254,9 +277,10 @@ private:
             }
             return sum;
         };
+        take_averages(from, averages_per_dwell_min);
         Point start = from;
         double best = objective(start);
-        for (const double share : {0.5, 0.2, 0.8}) {
+        for (const double share : {0.2, 0.8}) {
             const Point other = with_share(from, share);
             const double value = objective(other);
             if (value > best) {
@@ -264,7 +288,21 @@ private:
                 start = other;
             }
         }
-        const SimplexMaximum maximum = simplex_maximum(objective, start, 0.2, 0.02, 120);
+        const auto spectral = [&](const Point& logs) {
+            double sum = 0.0;
+            for (const std::size_t axis : axes) {
+                sum += spectral_gain(observation, axis, telegraph_at(logs));
+            }
+            return sum;
+        };
+        SimplexMaximum maximum{start, best};
+        if (best > spectral(start) - hopeless_nats) {
+            maximum = simplex_maximum(objective, start, 0.2, 0.02, 120);
+        }
+        if (maximum.value > spectral(maximum.at)) {
+            take_averages(maximum.at, averages_per_dwell_max);
+            maximum = simplex_maximum(objective, maximum.at, 0.05, 0.02, 80);
+        }
         AxesFit fit;
         fit.axes = axes;
         const Telegraph telegraph = telegraph_at(maximum.at);
