@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/allan/confidence.hpp"
+#include "analysis/noise/curve_scatter.hpp"
 
 namespace gyrolog {
 namespace {
@@ -158,70 +159,13 @@ Candidate fitted_from(const Target& target, const std::vector<CurveTerm>& start,
     return candidate;
 }
 
-// The likelihood of residuals as curve_model.hpp takes them: reading errors and a smooth part.
-class ResidualScatter {
-public:
-    ResidualScatter(const Target& target, double reading_sd_db)
-        : reading_variance_(reading_sd_db * reading_sd_db) {
-        const Index n = target.points();
-        MatrixXd correlation(n, n);
-        for (Index i = 0; i < n; ++i) {
-            for (Index j = 0; j < n; ++j) {
-                const double octaves = std::log2(target.tau_s[static_cast<std::size_t>(i)] /
-                                                 target.tau_s[static_cast<std::size_t>(j)]);
-                correlation(i, j) = std::exp(-std::abs(octaves));
-            }
-        }
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(correlation);
-        vectors_ = solver.eigenvectors();
-        values_ = solver.eigenvalues().cwiseMax(0.0);
-    }
-
-    struct Fit {
-        double minus_two_log_likelihood = std::numeric_limits<double>::infinity();  // without its constant
-        double smooth_sd_db = 0.0;
-    };
-
-    // A grid: the criterion needs the likelihood's height, and steps of a quarter octave give it to 0.1.
-    Fit fit(const VectorXd& residuals) const {
-        const VectorXd powers = (vectors_.transpose() * residuals).cwiseAbs2();
-        constexpr int steps = 40;
-        constexpr double smallest_db = 0.01;
-        constexpr double octaves_per_step = 0.25;  // up to 10 dB
-        Fit best{minus_two_log_likelihood(powers, 0.0), 0.0};
-        for (int i = 0; i <= steps; ++i) {
-            const double sd_db = smallest_db * std::exp2(octaves_per_step * i);
-            const double value = minus_two_log_likelihood(powers, sd_db);
-            if (value < best.minus_two_log_likelihood) { best = {value, sd_db}; }
-        }
-        return best;
-    }
-
-    MatrixXd covariance(double smooth_sd_db) const {
-        return vectors_ * variances(smooth_sd_db).asDiagonal() * vectors_.transpose();
-    }
-
-private:
-    VectorXd variances(double smooth_sd_db) const {
-        return (smooth_sd_db * smooth_sd_db * values_).array() + reading_variance_;
-    }
-    double minus_two_log_likelihood(const VectorXd& powers, double smooth_sd_db) const {
-        const VectorXd variance = variances(smooth_sd_db);
-        return variance.array().log().sum() + powers.cwiseQuotient(variance).sum();
-    }
-
-    double reading_variance_;
-    MatrixXd vectors_;  // of the smooth part's correlation
-    VectorXd values_;
-};
-
 struct Judged {
     Candidate candidate;
     double criterion = std::numeric_limits<double>::infinity();
     double smooth_sd_db = 0.0;
 };
 
-Judged judged(const ResidualScatter& scatter, Candidate candidate) {
+Judged judged(const CurveScatter& scatter, Candidate candidate) {
     if (candidate.terms.empty()) { return {}; }
     const auto fit = scatter.fit(candidate.residuals);
     const double penalty = static_cast<double>(parameters_of(candidate.terms)) *
@@ -303,7 +247,7 @@ CurveResidual residual_of(const Target& target, const VectorXd& residuals) {
 class TermSearch {
 public:
     TermSearch(const Target& target, double reading_sd_db)
-        : target_(target), scatter_(target, reading_sd_db) {}
+        : target_(target), scatter_(target.tau_s, reading_sd_db) {}
 
     void run() {
         start();
@@ -311,7 +255,7 @@ public:
     }
 
     const Judged& result() const { return now_; }
-    const ResidualScatter& scatter() const { return scatter_; }
+    const CurveScatter& scatter() const { return scatter_; }
     std::vector<CurveFitStep> steps;
     std::vector<RejectedTerm> rejected;
 
@@ -382,7 +326,7 @@ private:
     }
 
     const Target& target_;
-    ResidualScatter scatter_;
+    CurveScatter scatter_;
     Judged now_;
 };
 

@@ -1,0 +1,454 @@
+#include "analysis/noise/curve_diagnosis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unsupported/Eigen/NonLinearOptimization>
+#include <unsupported/Eigen/NumericalDiff>
+#include <utility>
+
+#include "analysis/noise/curve_scatter.hpp"
+
+namespace gyrolog {
+namespace {
+
+using Kind = CurveTerm::Kind;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double db_per_neper = 10.0 / std::numbers::ln10;  // of a variance
+constexpr double margin_to_enter = 10.0;
+constexpr double margin_to_stay = 2.0;
+constexpr std::size_t changes_max = 6;
+constexpr double first_smooth_sd_db = 0.3;
+constexpr int rounds = 3;  // of fit and scatter
+constexpr std::array all_kinds = {Kind::N,       Kind::B, Kind::K, Kind::Q, Kind::R, Kind::gauss_markov,
+                                  Kind::sinusoid};
+
+bool has_shape(Kind kind) { return kind == Kind::gauss_markov || kind == Kind::sinusoid; }
+
+double total_variance(const std::vector<CurveTerm>& terms, double tau_s) {
+    double sum = 0.0;
+    for (const CurveTerm& term : terms) { sum += term.allan_variance(tau_s); }
+    return sum;
+}
+
+struct Target {
+    std::vector<double> tau_s;
+    std::vector<double> deviation;
+
+    explicit Target(const AllanCurve& curve) {
+        for (const AllanPoint& point : curve.points) {
+            if (!(point.deviation > 0.0 && point.tau_s > 0.0)) { continue; }
+            tau_s.push_back(point.tau_s);
+            deviation.push_back(point.deviation);
+        }
+    }
+
+    VectorXd residuals_db(const std::vector<CurveTerm>& terms) const {
+        VectorXd residuals(static_cast<Index>(tau_s.size()));
+        for (std::size_t i = 0; i < tau_s.size(); ++i) {
+            const double model = std::max(total_variance(terms, tau_s[i]), 1e-300);
+            residuals[static_cast<Index>(i)] =
+                db_per_neper * (2.0 * std::log(deviation[i]) - std::log(model));
+        }
+        return residuals;
+    }
+};
+
+CurveResidual residual_of(const Target& target, const std::vector<CurveTerm>& terms) {
+    const VectorXd residuals = target.residuals_db(terms);
+    CurveResidual residual;
+    residual.rms_db = std::sqrt(residuals.squaredNorm() / static_cast<double>(residuals.size()));
+    Index worst = 0;
+    residuals.cwiseAbs().maxCoeff(&worst);
+    residual.worst_db = residuals[worst];
+    residual.worst_tau_s = target.tau_s[static_cast<std::size_t>(worst)];
+    return residual;
+}
+
+// A term of the description, and how free it is.
+struct Slot {
+    ModelledTerm modelled;
+    bool in_model = true;
+    bool changed = false;  // free without a prior; true for all that are not in the model
+    CurveTerm now{};
+
+    bool is_free() const { return changed || modelled.sd_rel > 0.0; }
+    bool frees_shape() const { return !in_model && has_shape(now.kind); }
+};
+
+std::vector<CurveTerm> terms_of(const std::vector<Slot>& slots) {
+    std::vector<CurveTerm> terms;
+    for (const Slot& slot : slots) { terms.push_back(slot.now); }
+    return terms;
+}
+
+VectorXd logarithms_of(const std::vector<Slot>& slots) {
+    std::vector<double> logs;
+    for (const Slot& slot : slots) {
+        if (slot.is_free()) { logs.push_back(std::log(slot.now.size)); }
+        if (slot.frees_shape()) { logs.push_back(std::log(slot.now.shape)); }
+    }
+    return Eigen::Map<const VectorXd>(logs.data(), static_cast<Index>(logs.size()));
+}
+
+void put_logarithms(std::vector<Slot>& slots, const VectorXd& logs) {
+    Index at = 0;
+    for (Slot& slot : slots) {
+        if (slot.is_free()) { slot.now.size = std::exp(std::clamp(logs[at++], -100.0, 100.0)); }
+        if (slot.frees_shape()) { slot.now.shape = std::exp(std::clamp(logs[at++], -30.0, 30.0)); }
+    }
+}
+
+// Departures of sizes from the model's, in stated standard deviations.
+std::vector<double> prior_residuals(const std::vector<Slot>& slots) {
+    std::vector<double> residuals;
+    for (const Slot& slot : slots) {
+        if (slot.changed || !(slot.modelled.sd_rel > 0.0)) { continue; }
+        residuals.push_back(std::log(slot.now.size / slot.modelled.term.size) / slot.modelled.sd_rel);
+    }
+    return residuals;
+}
+
+// What Eigen's Levenberg-Marquardt asks for: residuals of unit variance.
+struct Problem {
+    using Scalar = double;
+    using InputType = VectorXd;
+    using ValueType = VectorXd;
+    using JacobianType = Eigen::MatrixXd;
+    enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+
+    const Target* target;
+    const CurveScatter* scatter;
+    const std::vector<Slot>* slots;
+    double smooth_sd_db;
+
+    int inputs() const { return static_cast<int>(logarithms_of(*slots).size()); }
+    int values() const { return static_cast<int>(target->tau_s.size() + prior_residuals(*slots).size()); }
+    int operator()(const VectorXd& logs, VectorXd& residuals) const {
+        std::vector<Slot> here = *slots;
+        put_logarithms(here, logs);
+        const std::vector<double> prior = prior_residuals(here);
+        const VectorXd of_curve = scatter->whitened(target->residuals_db(terms_of(here)), smooth_sd_db);
+        residuals.resize(of_curve.size() + static_cast<Index>(prior.size()));
+        residuals << of_curve, Eigen::Map<const VectorXd>(prior.data(), static_cast<Index>(prior.size()));
+        return 0;
+    }
+};
+
+struct Judged {
+    std::vector<Slot> slots;
+    double criterion = std::numeric_limits<double>::infinity();
+    double smooth_sd_db = first_smooth_sd_db;
+};
+
+class ChangeSearch {
+public:
+    ChangeSearch(const Target& target, const std::vector<ModelledTerm>& model, double reading_sd_db)
+        : target_(target), scatter_(target.tau_s, reading_sd_db) {
+        std::vector<Slot> slots;
+        for (const ModelledTerm& modelled : model) {
+            if (modelled.term.size > 0.0) { slots.push_back({modelled, true, false, modelled.term}); }
+        }
+        now_ = fitted(std::move(slots), first_smooth_sd_db, rounds);
+    }
+
+    void run() {
+        while (changes() < changes_max && make_best_change()) { take_back_idle_changes(); }
+    }
+
+    const Judged& result() const { return now_; }
+
+    // The result without that slot's change.
+    Judged without(std::size_t slot) const {
+        std::vector<Slot> slots = now_.slots;
+        take_back(slots, slot);
+        return fitted(std::move(slots), now_.smooth_sd_db, rounds);
+    }
+
+    // The best change of every kind that a description may have made instead.
+    std::vector<Judged> alternatives(const Judged& from) const {
+        std::vector<Judged> found;
+        for (const Kind kind : all_kinds) {
+            Judged with = with_change(from, kind);
+            if (std::isfinite(with.criterion)) { found.push_back(std::move(with)); }
+        }
+        return found;
+    }
+
+    // Standard deviations of the logarithms, in the order of logarithms_of().
+    VectorXd log_sd() const {
+        const Problem problem{&target_, &scatter_, &now_.slots, now_.smooth_sd_db};
+        Eigen::NumericalDiff<Problem, Eigen::Central> differentiated(problem, 1e-10);
+        Eigen::MatrixXd jacobian(problem.values(), problem.inputs());
+        differentiated.df(logarithms_of(now_.slots), jacobian);
+        const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
+        return information.completeOrthogonalDecomposition()
+            .pseudoInverse()
+            .diagonal()
+            .cwiseMax(0.0)
+            .cwiseSqrt();
+    }
+
+private:
+    std::size_t changes() const {
+        return static_cast<std::size_t>(std::ranges::count_if(now_.slots, &Slot::changed));
+    }
+
+    static void take_back(std::vector<Slot>& slots, std::size_t slot) {
+        if (slots[slot].in_model) {
+            slots[slot].changed = false;
+            slots[slot].now = slots[slot].modelled.term;
+        } else {
+            slots.erase(slots.begin() + static_cast<std::ptrdiff_t>(slot));
+        }
+    }
+
+    // Fit and scatter in turns, which together climb the likelihood of both.
+    Judged fitted(std::vector<Slot> slots, double smooth_sd_db, int turns) const {
+        Judged judged{std::move(slots), 0.0, smooth_sd_db};
+        CurveScatter::Fit scatter;
+        for (int turn = 0; turn < turns; ++turn) {
+            VectorXd logs = logarithms_of(judged.slots);
+            if (logs.size() > 0) {
+                Eigen::NumericalDiff<Problem> problem(
+                    Problem{&target_, &scatter_, &judged.slots, judged.smooth_sd_db});
+                Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Problem>> search(problem);
+                search.parameters.maxfev = 300;
+                search.minimize(logs);
+                put_logarithms(judged.slots, logs);
+            }
+            scatter = scatter_.fit(target_.residuals_db(terms_of(judged.slots)));
+            judged.smooth_sd_db = scatter.smooth_sd_db;
+        }
+        judged.criterion = scatter.minus_two_log_likelihood + penalty(judged.slots);
+        return judged;
+    }
+
+    // The prior's part of the likelihood, and Schwarz's price of what was changed.
+    double penalty(const std::vector<Slot>& slots) const {
+        double parameters = 0.0;
+        for (const Slot& slot : slots) {
+            if (slot.changed) { parameters += slot.frees_shape() ? 2.0 : 1.0; }
+        }
+        double sum = parameters * std::log(static_cast<double>(target_.tau_s.size()));
+        for (const double residual : prior_residuals(slots)) { sum += residual * residual; }
+        return sum;
+    }
+
+    // A size at which a new term is a third of what the curve has where it is closest to it.
+    double size_below_curve(Kind kind, double shape) const {
+        const CurveTerm unit{kind, 1.0, shape};
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < target_.tau_s.size(); ++i) {
+            const double variance = unit.allan_variance(target_.tau_s[i]);
+            if (variance > 0.0) { least = std::min(least, target_.deviation[i] / std::sqrt(variance)); }
+        }
+        return std::sqrt(0.3) * least;
+    }
+
+    // Shapes of which the curve has the hump.
+    std::vector<double> shapes_to_try(Kind kind) const {
+        if (!has_shape(kind)) { return {0.0}; }
+        const double hump_s = CurveTerm{kind, 1.0, 1.0}.hump_tau_s();
+        const double first_s = target_.tau_s.front();
+        const double octaves = std::log2(target_.tau_s.back() / first_s);
+        const double per_octave = kind == Kind::sinusoid ? 3.0 : 1.0;
+        const int steps = std::max(2, static_cast<int>(std::ceil(octaves * per_octave)));
+        std::vector<double> shapes;
+        for (int i = 0; i < steps; ++i) {
+            const double tau_s = first_s * std::exp2(octaves * (i + 0.5) / steps);
+            shapes.push_back(kind == Kind::sinusoid ? hump_s / tau_s : tau_s / hump_s);
+        }
+        return shapes;
+    }
+
+    bool within_curve(const CurveTerm& term) const {
+        if (!has_shape(term.kind)) { return true; }
+        return term.hump_tau_s() >= target_.tau_s.front() && term.hump_tau_s() <= target_.tau_s.back();
+    }
+
+    // A term of the model that has this kind and may become free; else a new one.
+    Judged with_change(const Judged& from, Kind kind) const {
+        for (std::size_t i = 0; i < from.slots.size(); ++i) {
+            const Slot& slot = from.slots[i];
+            if (slot.now.kind != kind || !slot.modelled.may_change) { continue; }
+            if (!slot.changed && slot.in_model) {
+                std::vector<Slot> slots = from.slots;
+                slots[i].changed = true;
+                return fitted(std::move(slots), from.smooth_sd_db, rounds);
+            }
+            if (!has_shape(kind)) { return {}; }
+        }
+        return with_new(from, kind);
+    }
+
+    Judged with_new(const Judged& from, Kind kind) const {
+        Judged best;
+        for (const double shape : shapes_to_try(kind)) {
+            std::vector<Slot> slots = from.slots;
+            slots.push_back({{}, false, true, {kind, size_below_curve(kind, shape), shape}});
+            Judged judged = fitted(std::move(slots), from.smooth_sd_db, 1);
+            if (within_curve(judged.slots.back().now) && judged.criterion < best.criterion) {
+                best = std::move(judged);
+            }
+        }
+        if (!std::isfinite(best.criterion)) { return best; }
+        Judged refined = fitted(best.slots, best.smooth_sd_db, rounds);
+        return within_curve(refined.slots.back().now) && refined.criterion < best.criterion ? refined : best;
+    }
+
+    bool make_best_change() {
+        Judged best;
+        for (Judged& with : alternatives(now_)) {
+            if (with.criterion < best.criterion) { best = std::move(with); }
+        }
+        if (!(best.criterion < now_.criterion - margin_to_enter)) { return false; }
+        now_ = std::move(best);
+        return true;
+    }
+
+    void take_back_idle_changes() {
+        for (std::size_t i = 0; i < now_.slots.size();) {
+            Judged without_it = now_.slots[i].changed ? without(i) : Judged{};
+            if (without_it.criterion < now_.criterion + margin_to_stay) {
+                now_ = std::move(without_it);
+                i = 0;
+            } else {
+                ++i;
+            }
+        }
+    }
+
+    const Target& target_;
+    CurveScatter scatter_;
+    Judged now_;
+};
+
+double shrink_of(double before_rms, double after_rms, double floor_rms) {
+    const double before = before_rms * before_rms - floor_rms * floor_rms;
+    if (!(before > 0.0)) { return 0.0; }
+    return std::min(1.0, 1.0 - (after_rms * after_rms - floor_rms * floor_rms) / before);
+}
+
+// Where the change makes most of what it makes at all.
+void put_place(CurveCause& cause, const Target& target, const std::vector<CurveTerm>& corrected) {
+    std::vector<double> change_db;
+    for (const double tau_s : target.tau_s) {
+        const double with = total_variance(corrected, tau_s);
+        const double without = with - cause.term.allan_variance(tau_s) +
+                               (cause.in_model ? cause.in_model->allan_variance(tau_s) : 0.0);
+        change_db.push_back(std::abs(db_per_neper * std::log(std::max(without, 1e-300) / with)));
+    }
+    const auto most = std::ranges::max_element(change_db);
+    auto first = most;
+    auto last = most;
+    while (first != change_db.begin() && *(first - 1) >= 0.5 * *most) { --first; }
+    while (last + 1 != change_db.end() && *(last + 1) >= 0.5 * *most) { ++last; }
+    cause.from_tau_s = target.tau_s[static_cast<std::size_t>(first - change_db.begin())];
+    cause.to_tau_s = target.tau_s[static_cast<std::size_t>(last - change_db.begin())];
+}
+
+void put_rivals(CurveCause& cause, const ChangeSearch& search, std::size_t slot) {
+    const double criterion = search.result().criterion;
+    const Judged without = search.without(slot);
+    cause.criterion_gain = without.criterion - criterion;
+    double sum = 1.0 + std::exp(-0.5 * cause.criterion_gain);
+    for (const Judged& instead : search.alternatives(without)) {
+        // The change is the slot that is free here and not there.
+        CurveTerm term = instead.slots.back().now;
+        for (std::size_t i = 0; i < without.slots.size(); ++i) {
+            if (instead.slots[i].changed && !without.slots[i].changed) { term = instead.slots[i].now; }
+        }
+        if (term.kind == cause.term.kind) { continue; }
+        const double behind = instead.criterion - criterion;
+        sum += std::exp(-0.5 * behind);
+        if (behind < curve_tie_margin) { cause.rivals.push_back({term, behind}); }
+    }
+    cause.probability = 1.0 / sum;
+    std::ranges::sort(cause.rivals, {}, &CurveRival::criterion_behind);
+}
+
+double shrink_alone(const CurveCause& cause, const Target& target, const std::vector<ModelledTerm>& model,
+                    const CurveDiagnosis& diagnosis) {
+    std::vector<CurveTerm> terms;
+    for (const ModelledTerm& modelled : model) {
+        const bool replaced = cause.in_model && modelled.may_change &&
+                              modelled.term.kind == cause.in_model->kind &&
+                              modelled.term.shape == cause.in_model->shape;
+        if (!replaced) { terms.push_back(modelled.term); }
+    }
+    terms.push_back(cause.term);
+    return shrink_of(diagnosis.before.rms_db, residual_of(target, terms).rms_db, diagnosis.floor_db);
+}
+
+void put_causes(CurveDiagnosis& diagnosis, const ChangeSearch& search, const Target& target,
+                const std::vector<ModelledTerm>& model) {
+    const std::vector<Slot>& slots = search.result().slots;
+    if (std::ranges::none_of(slots, &Slot::changed)) { return; }
+    const VectorXd sd = search.log_sd();
+    Index at = 0;
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        CurveCause cause;
+        cause.term = slots[i].now;
+        if (slots[i].is_free()) { cause.size_sd_rel = sd[at++]; }
+        if (slots[i].frees_shape()) { cause.shape_sd_rel = sd[at++]; }
+        if (!slots[i].changed) { continue; }
+        if (slots[i].in_model) { cause.in_model = slots[i].modelled.term; }
+        put_rivals(cause, search, i);
+        put_place(cause, target, diagnosis.corrected);
+        cause.shrink_alone = shrink_alone(cause, target, model, diagnosis);
+        diagnosis.causes.push_back(std::move(cause));
+    }
+    std::ranges::sort(diagnosis.causes, std::ranges::greater(), &CurveCause::criterion_gain);
+}
+
+std::vector<CurveGapStretch> stretches_of(const Target& target, const std::vector<CurveTerm>& model) {
+    AllanCurve sensor;
+    AllanCurve modelled;
+    for (std::size_t i = 0; i < target.tau_s.size(); ++i) {
+        AllanPoint point;
+        point.tau_s = target.tau_s[i];
+        point.deviation = target.deviation[i];
+        sensor.points.push_back(point);
+        point.deviation = std::sqrt(total_variance(model, point.tau_s));
+        modelled.points.push_back(point);
+    }
+    auto gap = compare_curves(sensor, {}, modelled, {});
+    return gap ? std::move(gap->stretches) : std::vector<CurveGapStretch>{};
+}
+
+}  // namespace
+
+CurveDiagnosis diagnose_curve(const AllanCurve& curve, const std::vector<ModelledTerm>& model,
+                              const CurveFitOptions& options) {
+    const Target target(curve);
+    std::vector<CurveTerm> as_it_is;
+    for (const ModelledTerm& modelled : model) { as_it_is.push_back(modelled.term); }
+    CurveDiagnosis diagnosis;
+    diagnosis.points = target.tau_s.size();
+    const double reading_sd_db = 2.0 * db_per_neper * options.reading_error;
+    diagnosis.floor_db = std::max(reading_sd_db, fit_curve_model(curve, options).residual.rms_db);
+    diagnosis.before = residual_of(target, as_it_is);
+    diagnosis.stretches = stretches_of(target, as_it_is);
+
+    ChangeSearch search(target, model, reading_sd_db);
+    search.run();
+    diagnosis.corrected = terms_of(search.result().slots);
+    diagnosis.after = residual_of(target, diagnosis.corrected);
+    put_causes(diagnosis, search, target, model);
+    diagnosis.shrink = diagnosis.causes.empty()
+                           ? 0.0
+                           : shrink_of(diagnosis.before.rms_db, diagnosis.after.rms_db, diagnosis.floor_db);
+    using Verdict = CurveDiagnosis::Verdict;
+    const bool closed = diagnosis.in_floors(diagnosis.after) <= curve_floors_closed;
+    diagnosis.verdict = !closed                    ? Verdict::unexplained
+                        : diagnosis.causes.empty() ? Verdict::none
+                                                   : Verdict::known;
+    return diagnosis;
+}
+
+}  // namespace gyrolog
