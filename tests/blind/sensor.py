@@ -195,6 +195,8 @@ def filtered(series, gain_of_f, rate_hz):
 def record(context, effects, noise_name="noise"):
     """Columns of a recording: dict of name to array, in the order of the file. effects: Acting."""
     sensor, n, rate = context.sensor, context.n, context.rate_hz
+    # A filter comes after all that shapes the white noise.
+    effects = sorted(effects, key=lambda e: e.name == "lowpass")
     rng = stream(context.seed, noise_name)
     instants = np.arange(n) / (rate * (1.0 + sensor.rate_rel))
     stamps = instants
