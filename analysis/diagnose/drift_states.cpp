@@ -11,7 +11,7 @@ namespace gyrolog {
 namespace {
 
 constexpr std::size_t terms = drift_parts + 1;  // white noise is the last
-constexpr double spacing = 8.0;
+constexpr double spacing = 16.0;
 constexpr int rounds = 60;
 
 struct Place {

@@ -7,11 +7,11 @@
 
 namespace gyrolog {
 
-inline constexpr std::size_t drift_parts = 5;
+inline constexpr std::size_t drift_parts = 4;
 
 // Of averages over `step_s`: white noise, a random walk (the last part), and Gauss-Markov processes with
-// correlation times a factor of eight apart, the first twice the step; together they follow flicker noise to
-// a few percent (A. van der Ziel, Physica 16 (1950) 359).
+// correlation times a factor of sixteen apart, the first twice the step; together they follow flicker noise
+// to a seventh (A. van der Ziel, Physica 16 (1950) 359).
 struct DriftStates {
     double white_variance = 0.0;                   // of one average
     std::array<double, drift_parts> kept{};        // from one average to the next
@@ -21,7 +21,7 @@ struct DriftStates {
 
 // `density`: two-sided, at f_hz. Weighted alike in every octave up to 1 / (2 step_s); coefficients by
 // multiplicative updates of the Itakura-Saito distance (C. Fevotte, N. Bertin, J.-L. Durrieu, Neural
-// Computation 21 (2009) 793, eq. 3.12), which is Whittle's likelihood.
+// Computation 21 (2009) 793), which is Whittle's likelihood.
 DriftStates drift_states(std::span<const double> f_hz, std::span<const double> density, double step_s,
                          double duration_s);
 

@@ -8,7 +8,7 @@
 //
 // Cost: Laplace's factor of the frequency, uniform from 0 to half the rate. With the standard deviation of a
 // line of gain z that is ln(1.02 n/2 sqrt(z)), n the samples: what noise alone exceeds by chance somewhere in
-// a spectrum (R. V. Baluev, MNRAS 385 (2008) 1279, eq. 6). Then those of each axis' amplitude and phase.
+// a spectrum (R. V. Baluev, MNRAS 385 (2008) 1279). Then those of each axis' amplitude and phase.
 //
 // The frequency is that of the samples, below half the rate: the true one may be folded.
 #pragma once

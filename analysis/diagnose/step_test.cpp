@@ -13,12 +13,13 @@ namespace gyrolog {
 namespace {
 
 // Of the least that a jump could show in all coefficients, no more than this is left out of the scan.
-constexpr double left_out = 0.01;
+constexpr double left_out = 0.03;
 constexpr std::size_t used_min = 512;
-constexpr std::size_t used_max = 32768;
+constexpr std::size_t used_max = 16384;
 // A jump's power is taken off up to this multiple of the coefficients that the scan uses.
 constexpr std::size_t removed_beyond = 16;
 constexpr double worth_refining_nats = 5.0;
+constexpr double worth_rescanning_nats = 10.0;
 // Closer to an end a jump is a few odd samples.
 constexpr std::size_t edge_samples = 16;
 // A moment known to fewer places of a scan than this is looked for by a finer one, in the end among the
@@ -49,10 +50,11 @@ public:
         }
         if (!locate(scan, seen) || gain_at(seen, seen.place) < worth_refining_nats) { return std::nullopt; }
         // What the jump raised the random walk by is given back; then it may show better elsewhere.
-        for (int round = 0; round < 2; ++round) {
-            for (const std::size_t axis : baseline_->axes()) { refit_noise(scan, axis, seen); }
+        refit_noise(scan, seen);
+        for (int round = 0; round < 2 && total_gain(seen) > worth_rescanning_nats; ++round) {
             for (const std::size_t axis : baseline_->axes()) { seen.fits[axis] = fit(scan, seen, axis); }
             locate(scan, seen);
+            refit_noise(scan, seen);
         }
         return finding_of(scan, seen);
     }
@@ -135,6 +137,16 @@ private:
         return best > -1e300;
     }
 
+    double total_gain(const Seen& seen) const {
+        double sum = 0.0;
+        for (const std::size_t axis : baseline_->axes()) { sum += seen.gain_nats[axis]; }
+        return sum;
+    }
+
+    void refit_noise(const StepScan& scan, Seen& seen) const {
+        for (const std::size_t axis : baseline_->axes()) { refit_noise(scan, axis, seen); }
+    }
+
     void refit_noise(const StepScan& scan, std::size_t axis, Seen& seen) const {
         const AxisObservation& observed = seen.observation->axis(axis);
         const double height = seen.fits[axis].height(seen.place);
@@ -167,7 +179,6 @@ private:
     static Moment moment_of(const std::vector<double>& log_likelihood, double first, double spacing) {
         const auto best = std::ranges::max_element(log_likelihood);
         double weight = 0.0;
-        double mean = 0.0;
         double square = 0.0;
         for (std::size_t i = 0; i < log_likelihood.size(); ++i) {
             const double share = std::exp(log_likelihood[i] - *best);
@@ -175,7 +186,6 @@ private:
             weight += share;
             // Far off it is another jump.
             if (share < 1e-4) { continue; }
-            mean += share * away;
             square += share * away * away;
         }
         Moment moment;

@@ -297,11 +297,11 @@ private:
         };
         SimplexMaximum maximum{start, best};
         if (best > spectral(start) - hopeless_nats) {
-            maximum = simplex_maximum(objective, start, 0.2, 0.02, 120);
+            maximum = simplex_maximum(objective, start, 0.2, 0.1, 100);
         }
         if (maximum.value > spectral(maximum.at)) {
             take_averages(maximum.at, averages_per_dwell_max);
-            maximum = simplex_maximum(objective, maximum.at, 0.05, 0.02, 80);
+            maximum = simplex_maximum(objective, maximum.at, 0.05, 0.05, 60);
         }
         AxesFit fit;
         fit.axes = axes;
@@ -377,6 +377,10 @@ private:
 }  // namespace
 
 MadeTest make_two_level_test(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline) {
+    if (baseline->moves()) {
+        return {nullptr,
+                "the sensor moves, and what a model misses of the motion goes to and fro like two levels"};
+    }
     return {std::make_unique<TwoLevelTest>(effect, std::move(baseline)), {}};
 }
 

@@ -67,9 +67,9 @@ TEST(TelegraphFilter, OfGaussMarkovNoiseIsTheNormalDensity) {
     constexpr double step_s = 0.5;
     DriftStates noise;
     noise.white_variance = 0.6;
-    noise.kept = {0.9, 0.0, 0.0, 0.0, 1.0};
-    noise.innovation = {0.5 * (1.0 - 0.81), 0.0, 0.0, 0.0, 0.02};
-    noise.start = {0.5, 0.0, 0.0, 0.0, 3.0};
+    noise.kept = {0.9, 0.0, 0.0, 1.0};
+    noise.innovation = {0.5 * (1.0 - 0.81), 0.0, 0.0, 0.02};
+    noise.start = {0.5, 0.0, 0.0, 3.0};
     Eigen::MatrixXd covariance(count, count);
     for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t j = 0; j < count; ++j) {
