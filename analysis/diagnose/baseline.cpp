@@ -168,6 +168,38 @@ void Baseline::read_motion() {
     }
 }
 
+double Baseline::read_white_course(std::size_t axis) {
+    std::vector<WhiteGain> gains;
+    const StageContext context{model_, rate_hz_, 0, nullptr};
+    for (const EffectModel& entry : model_.effects) {
+        const EffectDefinition* effect = find_effect(entry.effect);
+        if (effect->signature != nullptr && effect->signature->white_gain != nullptr && acts_on(entry, axis)) {
+            gains.push_back(effect->signature->white_gain(EffectUse(context, *effect, entry, 0)));
+        }
+    }
+    if (gains.empty()) { return 1.0; }
+    const double reference_C =
+        model_.temperature ? model_.temperature->reference_C : TemperatureModel{}.reference_C;
+    std::vector<double> variance(length_, 1.0);
+    double sum = 0.0;
+    for (std::size_t slot = 0; slot < length_; ++slot) {
+        const double time_s = static_cast<double>(slot) / rate_hz_;
+        const double temperature_C =
+            temperature_C_.empty() ? reference_C : static_cast<double>(temperature_C_[slot]);
+        for (const WhiteGain& gain : gains) {
+            const double factor = gain(time_s, temperature_C);
+            variance[slot] *= factor * factor;
+        }
+        sum += variance[slot];
+    }
+    const double mean = sum / static_cast<double>(length_);
+    // A factor of zero throughout leaves nothing to be scaled.
+    if (!(mean > 0.0)) { return 0.0; }
+    for (double& each : variance) { each /= mean; }
+    white_course_[axis].assign(variance.begin(), variance.end());
+    return mean;
+}
+
 void Baseline::expect_spectrum() {
     for (const SpectralBin& bin : bins_) { f_hz_.push_back(bin.f_hz); }
     for (const std::size_t axis : axes_) {
@@ -180,6 +212,8 @@ void Baseline::expect_spectrum() {
                 signature->spectrum(f_hz_, rate_hz_, EffectValues(entry, axis), parts_[axis]);
             }
         }
+        const double white = read_white_course(axis);
+        for (SpectralParts& part : parts_[axis]) { part.white *= white; }
     }
 }
 

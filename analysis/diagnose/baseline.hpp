@@ -65,6 +65,10 @@ public:
     // Two-sided densities at the bins' middles under the model, rate's unit squared per Hz.
     const std::vector<SpectralParts>& parts(std::size_t axis) const { return parts_[axis]; }
 
+    // By slot, the variance of the white noise as a multiple of its mean over the record; empty where the model
+    // has it constant.
+    const std::vector<float>& white_course(std::size_t axis) const { return white_course_[axis]; }
+
     // The same world, another model.
     std::shared_ptr<const Baseline> with(const SensorModel& model) const;
     // Shared by all baselines that come from one.
@@ -73,6 +77,8 @@ public:
 private:
     void read_temperature();
     void read_motion();
+    // Mean square of the factors on the axis' white noise.
+    double read_white_course(std::size_t axis);
     void expect_spectrum();
 
     std::shared_ptr<const RecordedWorld> world_;
@@ -86,6 +92,7 @@ private:
     std::array<std::vector<float>, 3> true_rate_rad_s_;
     std::array<std::vector<float>, 3> response_change_rad_s2_;
     std::array<std::vector<UncertainResponse>, 3> uncertain_;
+    std::array<std::vector<float>, 3> white_course_;
     SpectralBins bins_;
     std::vector<double> f_hz_;
     std::array<std::vector<SpectralParts>, 3> parts_;

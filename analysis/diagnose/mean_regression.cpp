@@ -39,6 +39,11 @@ MeanRegression::MeanRegression(const Observation& observation, std::size_t axis,
         information(u, u) += 1.0 / (direction.sd * direction.sd);
     }
     information_.compute(information);
+    pull_ = uncertain_.transpose() * head_of(observation.axis(axis).cosines, count);
+    for (Eigen::Index u = 0; u < directions; ++u) {
+        const double sd = uncertain[static_cast<std::size_t>(u)].sd;
+        pull_[u] -= observation.axis(axis).uncertain_fit[static_cast<std::size_t>(u)] / (sd * sd);
+    }
 }
 
 NormalEquations MeanRegression::equations(std::span<const std::vector<float>> responses) const {
@@ -50,12 +55,12 @@ NormalEquations MeanRegression::equations(std::span<const std::vector<float>> re
     }
     const Eigen::MatrixXd weighted = G.array().colwise() * weight_;
     equations.A = weighted.transpose() * G;
-    // The uncertain responses' most likely values were taken off Y: they pull no further.
     equations.b = G.transpose() * weighted_;
     if (uncertain_.cols() > 0) {
         const Eigen::MatrixXd cross = uncertain_.transpose() * G;
         equations.shift = -information_.solve(cross);
         equations.A += cross.transpose() * equations.shift;
+        equations.b += equations.shift.transpose() * pull_;
     }
     return equations;
 }
@@ -71,7 +76,7 @@ MeanRegression::Rest MeanRegression::rest(std::span<const std::vector<float>> re
     }
     Rest rest;
     if (!uncertain.empty()) {
-        const Eigen::VectorXd shift = equations.shift * c;
+        const Eigen::VectorXd shift = equations.shift * c + information_.solve(pull_);
         for (Eigen::Index u = 0; u < shift.size(); ++u) {
             const UncertainResponse& direction = uncertain[static_cast<std::size_t>(u)];
             left -= shift[u] * head_of(direction.cosines, weight_.size());

@@ -40,6 +40,7 @@ private:
     Eigen::ArrayXd weight_;                     // 1 / (S_k rate) by coefficient, 0 for k = 0
     Eigen::VectorXd weighted_;                  // Y_k times it
     Eigen::MatrixXd uncertain_;                 // responses by column, weighted
+    Eigen::VectorXd pull_;                      // what is left to gain from the uncertain responses alone
     Eigen::LDLT<Eigen::MatrixXd> information_;  // of the uncertain responses, with their prior
 };
 

@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/diagnose/lag_course.hpp"
+#include "analysis/diagnose/white_share.hpp"
+#include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/counter_random.hpp"
 
 namespace gyrolog {
@@ -16,8 +19,8 @@ constexpr std::uint32_t stand_in_stream = 0x03000000;
 
 // Calls take(slot, row) for every row on the grid.
 template <typename Take>
-void for_each_slot(const Recording& recording, std::int64_t origin, std::size_t length, Take take) {
-    for (const Segment& segment : recording.segments) {
+void for_each_slot(const std::vector<Segment>& segments, std::int64_t origin, std::size_t length, Take take) {
+    for (const Segment& segment : segments) {
         for (std::size_t i = 0; i < segment.count; ++i) {
             const auto slot = static_cast<std::size_t>(segment.first_index - origin) + i;
             if (slot >= length) { return; }
@@ -26,7 +29,64 @@ void for_each_slot(const Recording& recording, std::int64_t origin, std::size_t 
     }
 }
 
-// A straight line across every hole, with white noise on it.
+std::vector<bool> judged_rows(const Recording& recording, const SensorModel& model) {
+    std::vector<bool> judged(recording.rows(), true);
+    for (const EffectModel& entry : model.effects) {
+        const EffectSignature* signature = find_effect(entry.effect)->signature;
+        if (signature == nullptr || signature->unjudged == nullptr) { continue; }
+        signature->unjudged(recording, entry, judged);
+    }
+    return judged;
+}
+
+// Where the rows belong on the grid: where their stamps have them, or where the motion has them if the model
+// knows of losses that the stamps hide.
+std::vector<Segment> placed_rows(const Baseline& baseline, const Recording& recording) {
+    const bool hidden = std::ranges::any_of(baseline.model().effects, [](const EffectModel& entry) {
+        const EffectSignature* signature = find_effect(entry.effect)->signature;
+        return signature != nullptr && signature->hides_losses != nullptr &&
+               signature->hides_losses(EffectValues(entry));
+    });
+    if (!hidden || !baseline.moves()) { return recording.segments; }
+    const std::int64_t origin = baseline.world().recording().segments.front().first_index;
+    std::vector<Segment> placed;
+    std::int64_t late = 0;
+    const std::vector<LagStep> steps = LagCourse(baseline, recording).steps();
+    auto step = steps.begin();
+    for (Segment segment : recording.segments) {
+        for (; step != steps.end(); ++step) {
+            const std::int64_t before = origin + static_cast<std::int64_t>(step->slot) - segment.first_index;
+            if (before >= static_cast<std::int64_t>(segment.count)) { break; }
+            const std::size_t count = before > 0 ? static_cast<std::size_t>(before) : 0;
+            if (count > 0) { placed.push_back({segment.first, count, segment.first_index + late}); }
+            segment = {segment.first + count, segment.count - count,
+                       segment.first_index + static_cast<std::int64_t>(count)};
+            late += step->samples;
+        }
+        placed.push_back({segment.first, segment.count, segment.first_index + late});
+    }
+    return placed;
+}
+
+// How many samples on either side say what the level in a hole is.
+constexpr std::size_t level_samples = 16;
+
+double mean_of_present(const std::vector<float>& values, const std::vector<bool>& present, std::size_t from,
+                       bool backwards) {
+    double sum = 0.0;
+    double count = 0.0;
+    const std::size_t reach = 4 * level_samples;
+    for (std::size_t i = 0; i < reach && count < static_cast<double>(level_samples); ++i) {
+        if (backwards ? i > from : from + i >= values.size()) { break; }
+        const std::size_t slot = backwards ? from - i : from + i;
+        if (!present[slot]) { continue; }
+        sum += static_cast<double>(values[slot]);
+        count += 1.0;
+    }
+    return count > 0.0 ? sum / count : std::nan("");
+}
+
+// Between the levels on either side of every hole a straight line, with white noise on it.
 void fill_holes(std::vector<float>& values, const std::vector<bool>& present, double sd,
                 const RandomStream& noise) {
     const std::size_t length = values.size();
@@ -37,17 +97,23 @@ void fill_holes(std::vector<float>& values, const std::vector<bool>& present, do
         }
         std::size_t end = begin;
         while (end < length && !present[end]) { ++end; }
-        const float before = begin > 0 ? values[begin - 1] : end < length ? values[end] : 0.0F;
-        const float after = end < length ? values[end] : before;
+        double before = begin > 0 ? mean_of_present(values, present, begin - 1, true) : std::nan("");
+        double after = end < length ? mean_of_present(values, present, end, false) : std::nan("");
+        if (std::isnan(before)) { before = std::isnan(after) ? 0.0 : after; }
+        if (std::isnan(after)) { after = before; }
+        // Next to a short hole both levels are those of one place.
+        const bool is_short = end - begin <= level_samples;
         for (std::size_t slot = begin; slot < end; ++slot) {
-            const auto share = static_cast<float>(slot - begin + 1) / static_cast<float>(end - begin + 1);
-            values[slot] = before + share * (after - before) + static_cast<float>(sd * noise.normal(slot));
+            const double share =
+                is_short ? 0.5 : static_cast<double>(slot - begin + 1) / static_cast<double>(end - begin + 1);
+            values[slot] = static_cast<float>(before + share * (after - before) + sd * noise.normal(slot));
         }
         begin = end;
     }
 }
 
-void take_mean_off(std::vector<float>& values, const std::vector<bool>& present) {
+// Returns the mean.
+double take_mean_off(std::vector<float>& values, const std::vector<bool>& present) {
     double sum = 0.0;
     std::size_t count = 0;
     for (std::size_t slot = 0; slot < values.size(); ++slot) {
@@ -59,12 +125,14 @@ void take_mean_off(std::vector<float>& values, const std::vector<bool>& present)
     for (std::size_t slot = 0; slot < values.size(); ++slot) {
         if (present[slot]) { values[slot] -= mean; }
     }
+    return static_cast<double>(mean);
 }
 
-// Takes the most likely of the model's uncertain responses off the coefficients; returns their parameters.
-std::vector<double> take_uncertain_off(const std::vector<UncertainResponse>& uncertain,
-                                       const SpectralBins& bins, const std::vector<double>& density,
-                                       double rate_hz, std::vector<float>& cosines) {
+// Moves `fit`, the parameters of the model's uncertain responses that were taken off the coefficients, to
+// their most likely values.
+void take_uncertain_off(const std::vector<UncertainResponse>& uncertain, const SpectralBins& bins,
+                        const std::vector<double>& density, double rate_hz, std::vector<float>& cosines,
+                        std::vector<double>& fit) {
     const auto count = static_cast<Eigen::Index>(uncertain.size());
     const auto column = [&](Eigen::Index a, std::size_t k) {
         return static_cast<double>(uncertain[static_cast<std::size_t>(a)].cosines[k]);
@@ -81,18 +149,31 @@ std::vector<double> take_uncertain_off(const std::vector<UncertainResponse>& unc
             }
         }
     }
+    fit.resize(uncertain.size(), 0.0);
     for (Eigen::Index a = 0; a < count; ++a) {
         const double sd = uncertain[static_cast<std::size_t>(a)].sd;
         information(a, a) += 1.0 / (sd * sd);
+        pull[a] -= fit[static_cast<std::size_t>(a)] / (sd * sd);
     }
     const Eigen::MatrixXd full = information.selfadjointView<Eigen::Lower>();
-    const Eigen::VectorXd best = full.ldlt().solve(pull);
+    const Eigen::VectorXd step = full.ldlt().solve(pull);
     for (Eigen::Index a = 0; a < count; ++a) {
+        fit[static_cast<std::size_t>(a)] += step[a];
         for (std::size_t k = 1; k < cosines.size(); ++k) {
-            cosines[k] -= static_cast<float>(best[a] * column(a, k));
+            cosines[k] -= static_cast<float>(step[a] * column(a, k));
         }
     }
-    return {best.data(), best.data() + best.size()};
+}
+
+// White noise whose level the model has go with time has the same variance throughout afterwards.
+void even_out(const Baseline& baseline, std::size_t axis, std::vector<float>& whitened) {
+    const std::vector<float>& course = baseline.white_course(axis);
+    if (course.empty()) { return; }
+    const double share = white_share(baseline, axis).variance;
+    for (std::size_t slot = 0; slot < whitened.size(); ++slot) {
+        const double variance = 1.0 + share * (static_cast<double>(course[slot]) - 1.0);
+        whitened[slot] = static_cast<float>(static_cast<double>(whitened[slot]) / std::sqrt(variance));
+    }
 }
 
 void measure_power(const SpectralBins& bins, double rate_hz, const std::vector<float>& cosines,
@@ -112,11 +193,15 @@ void measure_power(const SpectralBins& bins, double rate_hz, const std::vector<f
 
 Observation::Observation(std::shared_ptr<const Baseline> baseline, std::shared_ptr<const Recording> recording,
                          std::uint64_t seed)
-    : baseline_(std::move(baseline)), recording_(std::move(recording)) {
+    : baseline_(std::move(baseline)),
+      recording_(std::move(recording)),
+      segments_(placed_rows(*baseline_, *recording_)) {
     const std::size_t length = baseline_->length();
     const std::int64_t origin = baseline_->world().recording().segments.front().first_index;
     present_.assign(length, false);
-    for_each_slot(*recording_, origin, length, [&](std::size_t slot, std::size_t) { present_[slot] = true; });
+    const std::vector<bool> judged = judged_rows(*recording_, baseline_->model());
+    for_each_slot(segments_, origin, length,
+                  [&](std::size_t slot, std::size_t row) { present_[slot] = judged[row]; });
     CosineTransform transform(length);
     for (const std::size_t axis : baseline_->axes()) { observe(axis, seed, transform); }
 }
@@ -132,10 +217,10 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
 
     std::vector<float>& residual = seen.residual_rad_s;
     residual.assign(length, 0.0F);
-    for_each_slot(*recording_, origin, length, [&](std::size_t slot, std::size_t row) {
+    for_each_slot(segments_, origin, length, [&](std::size_t slot, std::size_t row) {
         residual[slot] = static_cast<float>(column.value(row) - static_cast<double>(response[slot]));
     });
-    take_mean_off(residual, present_);
+    seen.mean_rad_s = take_mean_off(residual, present_);
     const double white = baseline.parts(axis).back().sum();
     fill_holes(residual, present_, std::sqrt(white * rate_hz),
                RandomStream(seed, stand_in_stream + static_cast<std::uint32_t>(axis)));
@@ -153,9 +238,12 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     };
     fit_noise();
     if (!baseline.uncertain(axis).empty()) {
-        seen.uncertain_fit = take_uncertain_off(baseline.uncertain(axis), baseline.bins(), seen.density,
-                                                rate_hz, seen.cosines);
-        fit_noise();
+        // What they explain was noise to the first fit.
+        for (int round = 0; round < 3; ++round) {
+            take_uncertain_off(baseline.uncertain(axis), baseline.bins(), seen.density, rate_hz, seen.cosines,
+                               seen.uncertain_fit);
+            fit_noise();
+        }
         std::copy(seen.cosines.begin(), seen.cosines.end(), work.begin());
         transform.inverse(work);
         residual.assign(work.begin(), work.end());
@@ -167,6 +255,7 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     }
     transform.inverse(work);
     seen.whitened.assign(work.begin(), work.end());
+    even_out(baseline, axis, seen.whitened);
 }
 
 }  // namespace gyrolog

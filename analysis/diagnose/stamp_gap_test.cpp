@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/lag_test.hpp"
 #include "analysis/diagnose/stamp_evidence.hpp"
 
 namespace gyrolog {
@@ -90,12 +91,13 @@ std::optional<Finding> find_gaps(const EffectDefinition& effect, const Baseline&
 MadeTest make_stamp_gap_test(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline) {
     const Recording& recording = baseline->world().recording();
     if (recording.stamps == StampKind::none) {
-        return make_stamp_test({}, "the recording has no time stamps", nullptr);
+        return make_stamp_test({}, "the recording has no time stamps", make_lag_step_test(effect, baseline));
     }
     if (recording.stamps == StampKind::arrival) {
-        return make_stamp_test({}, "the time stamps are arrival times: they show no gaps", nullptr);
+        return make_stamp_test({}, "the time stamps are arrival times: they show no gaps",
+                               make_lag_step_test(effect, baseline));
     }
-    return make_stamp_test(find_gaps(effect, *baseline), {}, nullptr);
+    return make_stamp_test(find_gaps(effect, *baseline), {}, make_lag_step_test(effect, baseline));
 }
 
 }  // namespace gyrolog

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/lag_test.hpp"
 #include "analysis/diagnose/stamp_evidence.hpp"
 
 namespace gyrolog {
@@ -45,13 +46,14 @@ Finding find_rate(const EffectDefinition& effect, const Baseline& baseline, doub
 MadeTest make_stamp_rate_test(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline) {
     const Recording& recording = baseline->world().recording();
     if (recording.stamps == StampKind::none) {
-        return make_stamp_test({}, "the recording has no time stamps", nullptr);
+        return make_stamp_test({}, "the recording has no time stamps", make_lag_slope_test(effect, baseline));
     }
     const double rel = recording.rate_hz / expected_rate_hz(*baseline, effect) - 1.0;
     if (std::fabs(rel) > clock_error_most) {
-        return make_stamp_test({}, "the recording was taken at another rate than the model's", nullptr);
+        return make_stamp_test({}, "the recording was taken at another rate than the model's",
+                               make_lag_slope_test(effect, baseline));
     }
-    return make_stamp_test(find_rate(effect, *baseline, rel), {}, nullptr);
+    return make_stamp_test(find_rate(effect, *baseline, rel), {}, make_lag_slope_test(effect, baseline));
 }
 
 }  // namespace gyrolog

@@ -67,7 +67,10 @@ public:
             }
         }
         std::optional<Finding> finding = best_of(effect_, single, 0.0, shared);
-        if (finding) { locate(profiles, *finding); }
+        if (!finding) { return std::nullopt; }
+        // Of the freedom to choose the axes.
+        finding->evidence_nats -= std::log(std::exp2(static_cast<double>(baseline_->axes().size())) - 1.0);
+        locate(profiles, *finding);
         return finding;
     }
 

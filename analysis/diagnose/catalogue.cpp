@@ -1,0 +1,78 @@
+#include "analysis/diagnose/catalogue.hpp"
+
+#include "analysis/diagnose/code_grid_test.hpp"
+#include "analysis/diagnose/line_test.hpp"
+#include "analysis/diagnose/outlier_test.hpp"
+#include "analysis/diagnose/repeat_test.hpp"
+#include "analysis/diagnose/response_test.hpp"
+#include "analysis/diagnose/shared_noise_test.hpp"
+#include "analysis/diagnose/spectrum_test.hpp"
+#include "analysis/diagnose/stamp_gap_test.hpp"
+#include "analysis/diagnose/stamp_rate_test.hpp"
+#include "analysis/diagnose/stamp_spread_test.hpp"
+#include "analysis/diagnose/step_test.hpp"
+#include "analysis/diagnose/tail_test.hpp"
+#include "analysis/diagnose/two_level_test.hpp"
+#include "analysis/diagnose/variance_course_test.hpp"
+#include "analysis/diagnose/variance_of_test.hpp"
+#include "analysis/simulate/chain.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+struct MethodMaker {
+    EvidenceMethod method;
+    TestMaker make;
+};
+
+constexpr MethodMaker makers[] = {
+    {EvidenceMethod::response, make_response_test},
+    {EvidenceMethod::spectrum, make_spectrum_test},
+    {EvidenceMethod::line, make_line_test},
+    {EvidenceMethod::step, make_step_test},
+    {EvidenceMethod::two_levels, make_two_level_test},
+    {EvidenceMethod::tails, make_tail_test},
+    {EvidenceMethod::outliers, make_outlier_test},
+    {EvidenceMethod::variance_course, make_variance_course_test},
+    {EvidenceMethod::variance_of, make_variance_of_test},
+    {EvidenceMethod::shared_noise, make_shared_noise_test},
+    {EvidenceMethod::repeats, make_repeat_test},
+    {EvidenceMethod::code_grid, make_code_grid_test},
+    {EvidenceMethod::stamp_gaps, make_stamp_gap_test},
+    {EvidenceMethod::stamp_rate, make_stamp_rate_test},
+    {EvidenceMethod::stamp_spread, make_stamp_spread_test},
+};
+
+std::string lacking(const EffectSignature& signature, const Baseline& baseline) {
+    if (signature.needs_temperature && baseline.temperature_C().empty()) {
+        return "the recording has no temperature";
+    }
+    if (signature.needs_reference && !baseline.moves()) { return "the recording has no reference rate"; }
+    if (signature.needs_specific_force && !baseline.world().has_specific_force()) {
+        return "the recording has no specific force";
+    }
+    return {};
+}
+
+}  // namespace
+
+std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline) {
+    std::vector<CatalogueEntry> catalogue;
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
+        CatalogueEntry entry;
+        entry.effect = link.effect;
+        entry.untestable = lacking(*link.effect->signature, *baseline);
+        for (const MethodMaker& maker : makers) {
+            if (!entry.untestable.empty() || maker.method != link.effect->signature->method) { continue; }
+            MadeTest made = maker.make(*link.effect, baseline);
+            entry.test = std::move(made.test);
+            entry.untestable = std::move(made.untestable);
+        }
+        catalogue.push_back(std::move(entry));
+    }
+    return catalogue;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,21 @@
+// The estimators by the method that an effect's signature names, one line each.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/effect_test.hpp"
+
+namespace gyrolog {
+
+struct CatalogueEntry {
+    const EffectDefinition* effect = nullptr;
+    std::unique_ptr<EffectTest> test;
+    std::string untestable;  // why there is no test
+};
+
+// Every effect that has a signature, in the order of the signal chain.
+std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline);
+
+}  // namespace gyrolog

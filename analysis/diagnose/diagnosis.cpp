@@ -1,0 +1,228 @@
+#include "analysis/diagnose/diagnosis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/diagnose/effect_search.hpp"
+#include "analysis/diagnose/evidence_tail.hpp"
+#include "analysis/diagnose/gap_measure.hpp"
+#include "analysis/diagnose/gap_report.hpp"
+#include "analysis/diagnose/null_simulations.hpp"
+#include "analysis/simulate/chain.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+// A gap is called where chance would have it in no more than one recording of a hundred.
+constexpr double none_above_p = 0.01;
+// What the causes leave is called unexplained below this,
+constexpr double unexplained_below_p = 0.003;
+// unless it is so little of the gap that an estimate's own error may leave it.
+constexpr double tolerated_share = 0.02;
+constexpr double tie_nats = 4.0;
+constexpr std::size_t tie_most = 4;
+constexpr std::size_t simulations_after_most = 100;
+
+bool judged_by_stamps(const Finding& finding) {
+    const EvidenceMethod method = find_effect(finding.effect)->signature->method;
+    return method == EvidenceMethod::stamp_gaps || method == EvidenceMethod::stamp_rate ||
+           method == EvidenceMethod::stamp_spread;
+}
+
+class Diagnoser {
+public:
+    Diagnoser(std::shared_ptr<const Recording> recording, const SensorModel& model,
+              const DiagnosisOptions& options)
+        : recording_(std::move(recording)), options_(options), answer_() {
+        const auto world = std::make_shared<const RecordedWorld>(recording_);
+        answer_.warnings = world->warnings();
+        baseline_ = with_own_bias(std::make_shared<const Baseline>(world, model));
+    }
+
+    std::optional<Diagnosis> run(const std::string& model_name) {
+        describe(model_name);
+        if (!told("looking for effects", 0.0)) { return std::nullopt; }
+        first_ = examine(baseline_, recording_, options_.seed, options_.threads);
+        for (const CatalogueEntry& entry : first_.catalogue) {
+            if (!entry.untestable.empty()) {
+                answer_.untestable.push_back({std::string(entry.effect->name), entry.untestable});
+            }
+        }
+        if (!simulate_before() || !search() || !simulate_after()) { return std::nullopt; }
+        decide();
+        return std::move(answer_);
+    }
+
+private:
+    bool told(const char* what, double share) const {
+        return !options_.on_progress || options_.on_progress(what, share);
+    }
+
+    // A turn-on bias is free; where the output clips, and where it lies between two codes, it matters.
+    std::shared_ptr<const Baseline> with_own_bias(const std::shared_ptr<const Baseline>& baseline) const {
+        const Observation observation(baseline, recording_, options_.seed);
+        SensorModel model = baseline->model();
+        for (const std::size_t axis : baseline->axes()) {
+            model.axes[axis].bias_rad_s += observation.axis(axis).mean_rad_s;
+        }
+        return baseline->with(model);
+    }
+
+    void describe(const std::string& model_name) {
+        answer_.recording_name = recording_->name;
+        answer_.model_name = model_name;
+        answer_.rate_hz = recording_->rate_hz;
+        answer_.duration_s = recording_->duration_s();
+        answer_.samples = recording_->rows();
+        answer_.simulations = options_.simulations;
+        answer_.seed = options_.seed;
+        answer_.axes = baseline_->axes();
+        answer_.held_out = "";
+    }
+
+    bool simulate_before() {
+        NullSimulationOptions options{options_.simulations, options_.seed, options_.threads, {}};
+        options.on_progress = [&](double share) { return told("simulating the model", 0.1 + 0.5 * share); };
+        std::optional<NullSimulations> null = simulate_null(baseline_, &first_.catalogue, options);
+        if (!null) { return false; }
+        before_ = gap_reference(null->curves);
+        std::vector<double> surprises;
+        for (std::size_t i = 0; i < null->curves.size(); ++i) {
+            surprises.push_back(surprise(null->curves[i], before_));
+        }
+        evidence_tail_.emplace(std::move(null->evidence_nats));
+        surprise_tail_.emplace(std::move(surprises));
+        const std::vector<GapCurve> curves = gap_curves(*first_.observation);
+        answer_.p_none = probability_of_none(curves);
+        before_curves_ = curves;
+        return true;
+    }
+
+    static double surprise(const std::vector<GapCurve>& curves, const GapReference& reference) {
+        double worst = 0.0;
+        for (std::size_t c = 0; c < curves.size(); ++c) {
+            worst = std::max(worst, gap_of(curves[c], reference, c).surprise_nats);
+        }
+        return worst;
+    }
+
+    // Of the best effect, the worst curve and the stamps: three looks, each with its own chance.
+    double probability_of_none(const std::vector<GapCurve>& curves) const {
+        double evidence = -50.0;
+        double stamps = 0.0;
+        for (const std::optional<Finding>& finding : first_.findings) {
+            if (!finding) { continue; }
+            double& best = judged_by_stamps(*finding) ? stamps : evidence;
+            best = std::max(best, finding->evidence_nats);
+        }
+        const double p_effects = evidence_tail_->probability(evidence);
+        const double p_curves = surprise_tail_->probability(surprise(curves, before_));
+        const double p_stamps = std::exp(-stamps);
+        // The smallest of three: exact where they are independent, a little cautious where they are not.
+        const double least = std::min({p_effects, p_curves, p_stamps});
+        return -std::expm1(3.0 * std::log1p(-std::min(least, 1.0 - 1e-15)));
+    }
+
+    bool search() {
+        SearchOptions options;
+        // A single effect, in one recording of two hundred by chance.
+        options.evidence_min_nats = std::max(evidence_tail_->threshold_nats(0.005), 3.0);
+        options.seed = options_.seed;
+        options.threads = options_.threads;
+        options.on_progress = [&](double share) { return told("looking for causes", 0.6 + 0.2 * share); };
+        if (answer_.p_none >= none_above_p) {
+            answer_.corrected = baseline_->model();
+            return true;
+        }
+        std::optional<SearchResult> result = search_effects(first_, recording_, options);
+        if (!result) { return false; }
+        answer_.corrected = result->corrected;
+        found_ = std::move(*result);
+        return true;
+    }
+
+    bool simulate_after() {
+        if (!found_ || found_->causes.empty()) { return true; }
+        NullSimulationOptions options{
+            std::min(options_.simulations, simulations_after_most), options_.seed + 1, options_.threads, {}};
+        options.on_progress = [&](double share) {
+            return told("simulating the corrected model", 0.8 + 0.2 * share);
+        };
+        const std::optional<NullSimulations> null = simulate_null(found_->last.baseline, nullptr, options);
+        if (!null) { return false; }
+        after_ = gap_reference(null->curves);
+        after_curves_ = gap_curves(*found_->last.observation);
+        std::vector<double> surprises;
+        for (const auto& curves : null->curves) { surprises.push_back(surprise(curves, *after_)); }
+        answer_.p_left = EvidenceTail(std::move(surprises)).probability(surprise(after_curves_, *after_));
+        return true;
+    }
+
+    void decide() {
+        const GapSummary before = summarise(before_curves_, before_);
+        const GapSummary after = after_ ? summarise(after_curves_, *after_) : before;
+        answer_.gap_before = before.gap;
+        answer_.gap_after = after.gap;
+        if (answer_.p_none >= none_above_p) {
+            answer_.verdict = Verdict::none;
+            return;
+        }
+        const double excess_before = before.gap.value * before.gap.value - 1.0;
+        const double excess_after = std::max(after.gap.value * after.gap.value - 1.0, 0.0);
+        answer_.shrink = excess_before > 0.0 ? std::clamp(1.0 - excess_after / excess_before, 0.0, 1.0) : 0.0;
+        answer_.shrink_lo = answer_.shrink_hi = answer_.shrink;
+        const bool explained = after_ && (answer_.p_left >= unexplained_below_p ||
+                                          excess_after < tolerated_share * excess_before);
+        answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
+        if (found_) {
+            for (const FoundCause& found : found_->causes) {
+                answer_.causes.push_back(cause_of(found, explained));
+            }
+        }
+        answer_.where = answer_.causes.empty() ? before.where : answer_.causes.front().finding.where;
+    }
+
+    // The evidence of all effects as their probabilities, equal before the recording was seen.
+    Cause cause_of(const FoundCause& found, bool explained) const {
+        Cause cause{found.finding, 0.0, {}, answer_.shrink, {}};
+        double sum = 1.0;
+        for (const Finding& rival : found.rivals) {
+            if (rival.effect == found.finding.effect) { continue; }
+            const double behind = found.finding.evidence_nats - rival.evidence_nats;
+            sum += std::exp(-behind);
+            if (behind < tie_nats && cause.tie_group.size() < tie_most) {
+                cause.tie_group.push_back({rival.effect, behind});
+            }
+        }
+        if (!cause.tie_group.empty()) {
+            cause.tie_group.insert(cause.tie_group.begin(), {found.finding.effect, 0.0});
+        }
+        cause.score = (explained ? 1.0 : 0.3) / sum;
+        const EffectSignature& signature = *find_effect(found.finding.effect)->signature;
+        if (!cause.tie_group.empty()) { cause.decided_by = signature.decided_by; }
+        return cause;
+    }
+
+    std::shared_ptr<const Recording> recording_;
+    DiagnosisOptions options_;
+    std::shared_ptr<const Baseline> baseline_;
+    Diagnosis answer_;
+    Hypotheses first_;
+    GapReference before_;
+    std::vector<GapCurve> before_curves_;
+    std::optional<EvidenceTail> evidence_tail_;
+    std::optional<EvidenceTail> surprise_tail_;
+    std::optional<SearchResult> found_;
+    std::optional<GapReference> after_;
+    std::vector<GapCurve> after_curves_;
+};
+
+}  // namespace
+
+std::optional<Diagnosis> diagnose(std::shared_ptr<const Recording> recording, const SensorModel& model,
+                                  const std::string& model_name, const DiagnosisOptions& options) {
+    return Diagnoser(std::move(recording), model, options).run(model_name);
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,56 @@
+// Which effects, alone or together, a recording calls for.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "analysis/diagnose/catalogue.hpp"
+
+namespace gyrolog {
+
+// A recording under one model, and what every effect of the catalogue could do beyond it.
+struct Hypotheses {
+    std::shared_ptr<const Baseline> baseline;
+    std::shared_ptr<const Observation> observation;
+    std::vector<CatalogueEntry> catalogue;
+    std::vector<std::optional<Finding>> findings;  // by entry of the catalogue
+
+    const Finding* best() const;  // by evidence; null where there is none
+};
+
+// `seed` for what stands in holes.
+Hypotheses examine(const std::shared_ptr<const Baseline>& baseline,
+                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads);
+
+struct FoundCause {
+    Finding finding;
+    // The findings of all effects with the other causes in the model, this one not: its rivals.
+    std::vector<Finding> rivals;
+};
+
+struct SearchResult {
+    std::vector<FoundCause> causes;  // by evidence
+    SensorModel corrected;
+    Hypotheses last;  // under the corrected model
+};
+
+struct SearchOptions {
+    double evidence_min_nats = 5.0;  // for a further cause
+    std::size_t causes_most = 4;
+    std::uint64_t seed = 1;
+    unsigned threads = 0;
+    std::function<bool(double)> on_progress{};  // false ends the work
+};
+
+// Greedily by evidence; after each new cause all are fitted again, one by one, with the others in the model,
+// and those that the others made needless are dropped. `first` is under the model as it was given.
+std::optional<SearchResult> search_effects(const Hypotheses& first,
+                                           const std::shared_ptr<const Recording>& recording,
+                                           const SearchOptions& options);
+
+// The model with one more cause.
+SensorModel with_cause(SensorModel model, const Finding& finding);
+
+}  // namespace gyrolog

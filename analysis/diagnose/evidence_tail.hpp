@@ -1,0 +1,27 @@
+// The chance that simulations of a model have as much evidence against it as a recording.
+#pragma once
+
+#include <vector>
+
+namespace gyrolog {
+
+class EvidenceTail {
+public:
+    // Of at least twenty simulations.
+    explicit EvidenceTail(std::vector<double> simulated_nats);
+
+    // Within the simulations by rank, (1 + number as large) / (1 + number); beyond their largest tenth by an
+    // exponential tail fitted to it, which falls no faster than exp(-nats), as the tail of log likelihood
+    // ratios does (S. S. Wilks, Ann. Math. Statist. 9 (1938) 60).
+    double probability(double nats) const;
+    // With probability() = p.
+    double threshold_nats(double p) const;
+
+private:
+    std::vector<double> sorted_nats_;
+    double tail_from_nats_ = 0.0;
+    double tail_probability_ = 0.0;
+    double tail_scale_nats_ = 1.0;
+};
+
+}  // namespace gyrolog

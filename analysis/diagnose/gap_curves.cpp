@@ -1,0 +1,201 @@
+#include "analysis/diagnose/gap_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gyrolog {
+
+namespace {
+
+constexpr std::size_t course_blocks = 32;
+constexpr double bands_per_octave = 3.0;
+constexpr std::size_t value_bins = 12;
+constexpr double sigmas[] = {0.5, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0};
+
+double square(double value) { return value * value; }
+
+// Bins of one band each: first bin of every band, and the end.
+std::vector<std::size_t> band_edges(const SpectralBins& bins) {
+    std::vector<std::size_t> edges;
+    double next_hz = 0.0;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        if (bins[i].f_hz < next_hz) { continue; }
+        edges.push_back(i);
+        next_hz = bins[i].f_hz * std::exp2(1.0 / bands_per_octave) * 0.999;
+    }
+    edges.push_back(bins.size());
+    return edges;
+}
+
+GapCurve spectrum_curve(const Observation& observation, std::size_t axis) {
+    const SpectralBins& bins = observation.baseline().bins();
+    const AxisObservation& seen = observation.axis(axis);
+    const std::vector<std::size_t> edges = band_edges(bins);
+    GapCurve curve{GapDomainKind::spectrum, axis, axis, {}, {}};
+    for (std::size_t band = 0; band + 1 < edges.size(); ++band) {
+        double count = 0.0;
+        double ratio = 0.0;
+        for (std::size_t i = edges[band]; i < edges[band + 1]; ++i) {
+            count += bins[i].count();
+            ratio += bins[i].count() * seen.power[i] / seen.density[i];
+        }
+        curve.x.push_back(std::sqrt(bins[edges[band]].f_hz * bins[edges[band + 1] - 1].f_hz));
+        // The cube root of a chi-square is nearly normal, the logarithm of one with one degree is not (E. B.
+        // Wilson, M. M. Hilferty, PNAS 17 (1931) 684).
+        curve.value.push_back(3.0 * (std::cbrt(ratio / count) - 1.0));
+    }
+    return curve;
+}
+
+GapCurve allan_curve(const Observation& observation, std::size_t axis) {
+    const Baseline& baseline = observation.baseline();
+    const std::vector<float>& residual = observation.axis(axis).residual_rad_s;
+    std::vector<double> integral(residual.size() + 1, 0.0);
+    for (std::size_t i = 0; i < residual.size(); ++i) {
+        integral[i + 1] = integral[i] + static_cast<double>(residual[i]);
+    }
+    GapCurve curve{GapDomainKind::allan, axis, axis, {}, {}};
+    for (std::size_t m = 1; 4 * m <= residual.size(); m *= 2) {
+        double sum = 0.0;
+        const std::size_t stride = std::max<std::size_t>(1, m / 8);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i + 2 * m < integral.size(); i += stride, ++count) {
+            sum += square(integral[i + 2 * m] - 2.0 * integral[i + m] + integral[i]);
+        }
+        const auto span = static_cast<double>(m);
+        curve.x.push_back(span / baseline.rate_hz());
+        curve.value.push_back(0.5 * std::log(sum / (2.0 * static_cast<double>(count) * span * span)));
+    }
+    return curve;
+}
+
+void course_and_drift(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
+    const std::vector<float>& white = observation.axis(axis).whitened;
+    GapCurve course{GapDomainKind::course, axis, axis, {}, {}};
+    GapCurve drift{GapDomainKind::drift, axis, axis, {}, {}};
+    for (std::size_t block = 0; block < course_blocks; ++block) {
+        const std::size_t first = block * white.size() / course_blocks;
+        const std::size_t end = (block + 1) * white.size() / course_blocks;
+        double sum = 0.0;
+        double squares = 0.0;
+        double count = 0.0;
+        for (std::size_t slot = first; slot < end; ++slot) {
+            if (!observation.present()[slot]) { continue; }
+            sum += static_cast<double>(white[slot]);
+            squares += square(static_cast<double>(white[slot]));
+            count += 1.0;
+        }
+        const double at_s = 0.5 * static_cast<double>(first + end) / observation.baseline().rate_hz();
+        course.x.push_back(at_s);
+        drift.x.push_back(at_s);
+        course.value.push_back(count > 0.0 ? std::log(std::max(squares / count, 1e-12)) : 0.0);
+        drift.value.push_back(count > 0.0 ? sum / std::sqrt(count) : 0.0);
+    }
+    curves.push_back(std::move(course));
+    curves.push_back(std::move(drift));
+}
+
+GapCurve amplitude_curve(const Observation& observation, std::size_t axis) {
+    GapCurve curve{GapDomainKind::amplitude, axis, axis, {std::begin(sigmas), std::end(sigmas)}, {}};
+    std::vector<double> beyond(curve.x.size(), 0.0);
+    double skewness = 0.0;
+    double count = 0.0;
+    const std::vector<float>& white = observation.axis(axis).whitened;
+    for (std::size_t slot = 0; slot < white.size(); ++slot) {
+        if (!observation.present()[slot]) { continue; }
+        const auto value = static_cast<double>(white[slot]);
+        count += 1.0;
+        skewness += value * value * value;
+        for (std::size_t i = 0; i < beyond.size() && std::fabs(value) > curve.x[i]; ++i) { beyond[i] += 1.0; }
+    }
+    for (const double number : beyond) { curve.value.push_back(2.0 * std::sqrt(number + 0.375)); }
+    curve.x.push_back(0.0);
+    curve.value.push_back(skewness / std::sqrt(15.0 * std::max(count, 1.0)));
+    return curve;
+}
+
+// Means of the whitened samples, in standard deviations, by equal ranges of what `at` has by slot.
+GapCurve mean_curve(const Observation& observation, std::size_t axis, GapDomainKind kind, std::size_t other,
+                    const std::vector<float>& at, double range_from, double range_to) {
+    GapCurve curve{kind, axis, other, {}, {}};
+    std::vector<double> sum(value_bins, 0.0);
+    std::vector<double> count(value_bins, 0.0);
+    const double width = (range_to - range_from) / static_cast<double>(value_bins);
+    const std::vector<float>& white = observation.axis(axis).whitened;
+    for (std::size_t slot = 0; slot < white.size(); ++slot) {
+        if (!observation.present()[slot] || !(width > 0.0)) { continue; }
+        const double place = (static_cast<double>(at[slot]) - range_from) / width;
+        const auto bin =
+            static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(value_bins) - 1.0));
+        sum[bin] += static_cast<double>(white[slot]);
+        count[bin] += 1.0;
+    }
+    for (std::size_t bin = 0; bin < value_bins; ++bin) {
+        curve.x.push_back(range_from + (static_cast<double>(bin) + 0.5) * width);
+        curve.value.push_back(count[bin] > 30.0 ? sum[bin] / std::sqrt(count[bin]) : 0.0);
+    }
+    return curve;
+}
+
+GapCurve correlation_curve(const Observation& observation, std::size_t axis, std::size_t other) {
+    const SpectralBins& bins = observation.baseline().bins();
+    const AxisObservation& a = observation.axis(axis);
+    const AxisObservation& b = observation.axis(other);
+    const std::vector<std::size_t> edges = band_edges(bins);
+    GapCurve curve{GapDomainKind::cross_axis, axis, other, {}, {}};
+    for (std::size_t band = 0; band + 1 < edges.size(); ++band) {
+        double product = 0.0;
+        double squares_a = 0.0;
+        double squares_b = 0.0;
+        double count = 0.0;
+        for (std::size_t i = edges[band]; i < edges[band + 1]; ++i) {
+            for (std::size_t k = bins[i].first; k < bins[i].end; ++k) {
+                product += static_cast<double>(a.cosines[k]) * static_cast<double>(b.cosines[k]);
+                squares_a += square(static_cast<double>(a.cosines[k]));
+                squares_b += square(static_cast<double>(b.cosines[k]));
+                count += 1.0;
+            }
+        }
+        if (count < 8.0) { continue; }
+        curve.x.push_back(std::sqrt(bins[edges[band]].f_hz * bins[edges[band + 1] - 1].f_hz));
+        curve.value.push_back(product / std::sqrt(std::max(squares_a * squares_b, 1e-300)) *
+                              std::sqrt(count));
+    }
+    return curve;
+}
+
+void add_mean_curve(const Observation& observation, std::size_t axis, GapDomainKind kind, std::size_t other,
+                    const std::vector<float>& at, std::vector<GapCurve>& curves) {
+    if (at.empty()) { return; }
+    const auto [least, most] = std::ranges::minmax(at);
+    if (!(most > least)) { return; }
+    curves.push_back(mean_curve(observation, axis, kind, other, at, static_cast<double>(least),
+                                static_cast<double>(most)));
+}
+
+}  // namespace
+
+std::vector<GapCurve> gap_curves(const Observation& observation) {
+    const Baseline& baseline = observation.baseline();
+    std::vector<GapCurve> curves;
+    for (const std::size_t axis : baseline.axes()) {
+        curves.push_back(allan_curve(observation, axis));
+        curves.push_back(spectrum_curve(observation, axis));
+        course_and_drift(observation, axis, curves);
+        curves.push_back(amplitude_curve(observation, axis));
+        add_mean_curve(observation, axis, GapDomainKind::temperature, axis, baseline.temperature_C(), curves);
+        for (const std::size_t other : baseline.axes()) {
+            if (other > axis) { curves.push_back(correlation_curve(observation, axis, other)); }
+            if (!baseline.moves()) { continue; }
+            add_mean_curve(observation, axis, GapDomainKind::rate, other, baseline.true_rate_rad_s(other),
+                           curves);
+        }
+        if (baseline.moves()) {
+            add_mean_curve(observation, axis, GapDomainKind::acceleration, axis,
+                           baseline.response_change_rad_s2(axis), curves);
+        }
+    }
+    return curves;
+}
+
+}  // namespace gyrolog

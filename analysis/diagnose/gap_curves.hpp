@@ -1,0 +1,46 @@
+// Numbers in which a recording may differ from its simulations, by domain: what lies outside the simulations
+// shows where the gap is, whatever its cause.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/observation.hpp"
+
+namespace gyrolog {
+
+enum class GapDomainKind {
+    allan,
+    spectrum,
+    course,
+    drift,
+    amplitude,
+    temperature,
+    cross_axis,
+    rate,
+    acceleration
+};
+
+// `value` is on a scale on which chance is nearly normal; x is SI.
+struct GapCurve {
+    GapDomainKind kind = GapDomainKind::spectrum;
+    std::size_t axis = 0;
+    std::size_t other = 0;  // cross_axis: the other axis; rate: the axis whose rate x is
+    std::vector<double> x;
+    std::vector<double> value;
+};
+
+// Of one observation: the same curves, of the same x, for every observation of a baseline.
+//   allan        ln of the Allan deviation of the residual over averaging times, over the model's
+//   spectrum     ln of the power over the fitted density, thirds of octaves
+//   course       ln of the whitened samples' variance over time
+//   drift        mean of the whitened samples over time, in standard deviations
+//   amplitude    ln of the share of whitened samples beyond x standard deviations
+//   temperature  mean of the whitened samples by temperature
+//   cross_axis   correlation of two axes by frequency
+//   rate         mean of the whitened samples by reference rate
+//   acceleration mean of the whitened samples by change of the rate
+std::vector<GapCurve> gap_curves(const Observation& observation);
+
+}  // namespace gyrolog

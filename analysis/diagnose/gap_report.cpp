@@ -1,0 +1,87 @@
+#include "analysis/diagnose/gap_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gyrolog {
+
+namespace {
+
+// Points further off than this many standard deviations are where the gap is.
+constexpr double outside_sigma = 3.0;
+
+std::optional<Span> outside(const GapCurve& curve, const std::vector<double>& z) {
+    std::optional<Span> span;
+    double worst = 0.0;
+    for (const double value : z) { worst = std::max(worst, std::fabs(value)); }
+    const double limit = std::min(outside_sigma, 0.7 * worst);
+    for (std::size_t i = 0; i < z.size(); ++i) {
+        if (std::fabs(z[i]) < limit) { continue; }
+        if (!span) { span = Span{curve.x[i], curve.x[i]}; }
+        span->from = std::min(span->from, curve.x[i]);
+        span->to = std::max(span->to, curve.x[i]);
+    }
+    return span;
+}
+
+void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
+    const std::optional<Span> span = outside(curve, z);
+    switch (curve.kind) {
+        case GapDomainKind::allan:
+            where.tau_s = span;
+            break;
+        case GapDomainKind::spectrum:
+            where.freq_hz = span;
+            break;
+        case GapDomainKind::course:
+        case GapDomainKind::drift:
+            where.time_s = span;
+            break;
+        case GapDomainKind::amplitude:
+            where.amplitude_sigma = span;
+            break;
+        case GapDomainKind::temperature:
+            where.temperature = true;
+            break;
+        case GapDomainKind::cross_axis:
+            where.structure = "cross_axis";
+            where.freq_hz = span;
+            break;
+        case GapDomainKind::rate:
+            where.rate_rad_s = span;
+            break;
+        case GapDomainKind::acceleration:
+            where.acceleration = true;
+            break;
+    }
+}
+
+}  // namespace
+
+GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& reference) {
+    GapSummary summary;
+    std::vector<CurveGap> gaps;
+    std::size_t worst = 0;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        gaps.push_back(gap_of(curves[c], reference, c));
+        if (gaps[c].surprise_nats > gaps[worst].surprise_nats) { worst = c; }
+    }
+    const double value = gaps[worst].distance;
+    const auto points = static_cast<double>(std::max<std::size_t>(gaps[worst].z.size(), 1));
+    // Of a noncentral chi-square with as many degrees of freedom as points, its root.
+    const double sd = std::sqrt((2.0 * value * value - 1.0 > 0.0 ? 2.0 * value * value - 1.0 : 1.0) /
+                                (2.0 * points * value * value + 1e-12));
+    summary.gap = {value, 1.0, std::max(0.0, value - 1.96 * sd), value + 1.96 * sd};
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        if (curves[c].kind != curves[worst].kind || gaps[c].surprise_nats < 7.0) { continue; }
+        summary.where.axes.push_back(curves[c].axis);
+    }
+    if (summary.where.axes.empty()) { summary.where.axes.push_back(curves[worst].axis); }
+    std::ranges::sort(summary.where.axes);
+    const auto repeated = std::ranges::unique(summary.where.axes);
+    summary.where.axes.erase(repeated.begin(), repeated.end());
+    place(curves[worst], gaps[worst].z, summary.where);
+    return summary;
+}
+
+}  // namespace gyrolog

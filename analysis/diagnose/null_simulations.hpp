@@ -1,0 +1,33 @@
+// What a recording would look like by chance: simulations of a model, like it in everything but the noise.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "analysis/diagnose/catalogue.hpp"
+#include "analysis/diagnose/gap_curves.hpp"
+
+namespace gyrolog {
+
+struct NullSimulations {
+    std::vector<std::vector<GapCurve>> curves;  // by simulation
+    std::vector<double> evidence_nats;  // by simulation: the best of all effects; empty unless asked for
+};
+
+struct NullSimulationOptions {
+    std::size_t simulations = 200;
+    std::uint64_t seed = 1;
+    unsigned threads = 0;
+    std::function<bool(double)> on_progress{};  // with the share that is done; false ends the work
+};
+
+// Sensors are drawn within the model's stated uncertainty. `catalogue`: of the same baseline, or null where
+// only curves are wanted. No value when ended early.
+std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Baseline>& baseline,
+                                             const std::vector<CatalogueEntry>* catalogue,
+                                             const NullSimulationOptions& options);
+
+}  // namespace gyrolog
