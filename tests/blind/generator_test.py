@@ -22,7 +22,7 @@ from effects import (
     CATALOGUE, ArwScale, BiasStep, CommonMode, GaussMarkov, HeavyTail, Lowpass, RateRamp, Rtn, ScaleFactor, TempLinear,
     Tone, VarianceChange)
 from foreign import FOREIGN, SkewedNoise
-from sensor import LSB_DPS, Context, Sensor, draw_model, flicker, record, shaped, stream, walk
+from sensor import LSB_DPS, Context, Sensor, draw_model, flicker, record, refitted, shaped, stream, walk
 
 LIMIT = 4.5  # standard errors
 
@@ -381,6 +381,11 @@ class Judgement(unittest.TestCase):
         shrink, unread = judge.true_shrink(self.truth, self.model, answer, None)
         self.assertAlmostEqual(shrink, 1.0 - 0.2**2, delta=0.002)
         self.assertEqual(unread, [])
+        # The same, axis by axis, as a program gives what differs between them; no other params are read then.
+        effect = self.truth["effects"][0]
+        answer["causes"][0]["params_by_axis"] = {
+            a: {"c1_dps_per_C": c} for a, c in zip(effect["axes"], effect["params"]["c1_dps_per_C"])}
+        self.assertGreater(judge.true_shrink(self.truth, self.model, answer, None)[0], 0.999)
 
     def test_a_wrong_cause_shrinks_nothing_and_is_not_right(self):
         answer = answer_to(self.truth)
@@ -407,15 +412,25 @@ class Judgement(unittest.TestCase):
         self.assertEqual(place({}, ["x", "y"]), (False, False))
 
     def test_a_corrected_model_that_keeps_levels_fitted_to_the_effect_is_not_right(self):
-        case = generate.spec(5, [("gauss_markov", "clear")], False, 30.0, refitted=True)
-        _, model, truth = generate.make_case(case)
-        answer = answer_to(truth)
+        _, first, truth = generate.make_case(generate.spec(5, [("gauss_markov", "clear")], False, 15.0))
+        fitted = {**first, "axes": {a: {**e, "N": 1.1 * e["N"]} for a, e in first["axes"].items()}}
+        truth["refitted"] = True
         entry = {k: truth["effects"][0][k] for k in ("effect", "axes", "params")}
-        kept = judge.true_shrink(truth, model, answer, {**model, "effects": [entry]})[0]
-        first = generate.context_of(truth["made"]).first_model
-        mended = judge.true_shrink(truth, model, answer, {**model, "axes": first["axes"], "effects": [entry]})[0]
+        answer = answer_to(truth)
+        kept = judge.true_shrink(truth, fitted, answer, {**fitted, "effects": [entry]})[0]
+        mended = judge.true_shrink(truth, fitted, answer, {**first, "effects": [entry]})[0]
         self.assertGreater(mended, 0.95)
-        self.assertGreater(mended, kept)
+        self.assertLess(kept, 0.9)
+
+    def test_a_fit_to_the_very_recording_takes_up_what_it_can(self):
+        case = generate.spec(6, [("temp_linear", "clear")], False, 30.0)
+        context = generate.context_of(generate.world_for(case))
+        effect, _ = generate.draw_effect(context, "temp_linear", "clear")
+        model = refitted(context, record(context, [effect], "sister"))
+        for axis, a in enumerate("xyz"):
+            walk_there = model["axes"][a]["K"] / max(context.sensor.K[axis], 1e-6)
+            self.assertLess(abs(model["axes"][a]["N"] / context.sensor.N[axis] - 1.0), 0.02)
+            self.assertEqual(a in effect.axes, walk_there > 5.0, a)
 
     def test_malformed_answers_are_named(self):
         answer = answer_to(self.truth, p_none=float("nan"))

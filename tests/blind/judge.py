@@ -28,7 +28,8 @@ def complaints(answer):
     out = []
 
     def number(value, low=-math.inf, high=math.inf):
-        return isinstance(value, (int, float)) and not isinstance(value, bool) and low <= value <= high
+        right_type = isinstance(value, (int, float)) and not isinstance(value, bool)
+        return right_type and math.isfinite(value) and low <= value <= high
 
     if not isinstance(answer, dict):
         return ["not an object"]
@@ -152,7 +153,11 @@ def claimed_description(context, answer, corrected):
         entries = answer["causes"]
     for entry in entries:
         try:
-            _acting(context, entry["effect"], entry["params"], entry.get("axes", [])).describe(out)
+            params = dict(entry["params"])
+            for axis, own in entry.get("params_by_axis", {}).items():
+                for name, value in own.items():
+                    params[name] = {**(params[name] if isinstance(params.get(name), dict) else {}), axis: value}
+            _acting(context, entry["effect"], params, entry.get("axes", [])).describe(out)
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             unread.append(f"{entry.get('effect')}: {error}")
     return out, unread
