@@ -17,6 +17,8 @@ import numpy as np
 import evidence
 import generate
 import judge
+import run
+import score
 import textfile
 from effects import (
     CATALOGUE, ArwScale, BiasStep, CommonMode, GaussMarkov, HeavyTail, Lowpass, RateRamp, Rtn, ScaleFactor, TempLinear,
@@ -431,6 +433,25 @@ class Judgement(unittest.TestCase):
             walk_there = model["axes"][a]["K"] / max(context.sensor.K[axis], 1e-6)
             self.assertLess(abs(model["axes"][a]["N"] / context.sensor.N[axis] - 1.0), 0.02)
             self.assertEqual(a in effect.axes, walk_there > 5.0, a)
+
+    def test_a_program_that_fails_or_says_nothing_is_listed_and_counts_as_wrong(self):
+        with tempfile.TemporaryDirectory() as directory:
+            program = os.path.join(directory, "program")
+            with open(program, "w") as file:
+                file.write("#!/bin/sh\nexit 3\n")
+            os.chmod(program, 0o755)
+            cases = {"c1": generate.spec(1, [], False, 2.0), "c2": generate.spec(2, [("tone", "clear")], False, 2.0)}
+            run.run(program, directory, cases, 1, False, {})
+            self.assertFalse(os.path.exists(os.path.join(directory, "cases", "c1", "recording.csv")))
+            _, figures = score.score(directory)
+            self.assertEqual([r["problems"] for r in figures["invalid"]], [["exit 3", "no JSON"]] * 2)
+            self.assertEqual(figures["false_alarms"]["hits"], 1)
+            self.assertEqual(figures["by_class"]["clear"]["detected"]["of"], 1)
+            self.assertEqual(figures["by_class"]["clear"]["detected"]["hits"], 0)
+            with open(program, "a") as file:
+                file.write("# another\n")
+            with self.assertRaises(SystemExit):
+                run.run(program, directory, cases, 1, False, {})
 
     def test_malformed_answers_are_named(self):
         answer = answer_to(self.truth, p_none=float("nan"))

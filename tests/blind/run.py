@@ -4,12 +4,14 @@
 DIR/cases/ID        recording and model (the recordings of a panel made here are removed after use without --keep)
 DIR/sealed/ID.json  the truth
 DIR/answers/ID.json, ID.model.json, ID.log   what the program said
+DIR/answers/of.txt  of which panel and program, to take up a run that was stopped
 DIR/run.json        the panel's options, the program's version, seconds for each case
 
 Usage: run.py PROGRAM DIR [--existing] [--jobs N] [--keep] [options of generate.py]
 """
 
 import argparse
+import hashlib
 import json
 import multiprocessing
 import os
@@ -64,7 +66,18 @@ def output_of(command):
 
 def run(program, directory, cases, jobs, keep, about):
     """cases: ID to specification, or to None for one that is there."""
-    os.makedirs(os.path.join(directory, "answers"), exist_ok=True)
+    answers = os.path.join(directory, "answers")
+    os.makedirs(answers, exist_ok=True)
+    # What was answered is taken up only if it answers the same: this panel, by this very program.
+    with open(program, "rb") as file:
+        same = json.dumps({**about, "program": hashlib.sha256(file.read()).hexdigest()}, sort_keys=True)
+    mark = os.path.join(answers, "of.txt")
+    if os.path.exists(mark):
+        with open(mark) as file:
+            if file.read() != same:
+                sys.exit(f"{answers} holds answers to another panel or of another program: remove it first")
+    with open(mark, "w") as file:
+        file.write(same)
     options = ["--threads", "1"] if "--threads" in output_of([program, "diagnose", "--help"]) else []
     work = [(program, options, directory, case_id, case_spec, keep) for case_id, case_spec in cases.items()]
     outcomes = {}

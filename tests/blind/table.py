@@ -1,0 +1,37 @@
+#!/usr/bin/env python3
+"""The full table in one command: makes the panel, runs the program on it, then opens the truths.
+
+It can be stopped and started again; DIR keeps what was answered. The table goes to DIR/table.md and DIR/table.json.
+
+Usage: table.py PROGRAM DIR [--count 8] [--seed 1] [--jobs 2]
+"""
+
+import argparse
+import os
+import sys
+
+import numbers_or_skip  # noqa: F401
+
+import run
+import score
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("program")
+    parser.add_argument("directory")
+    parser.add_argument("--count", type=int, default=8, help="cases of each effect and class; 8: 200 without a gap")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=2)
+    arguments = parser.parse_args()
+    directory = arguments.directory
+    sys.argv = ["run.py", arguments.program, directory, "--panel", "full", "--count", str(arguments.count), "--seed",
+                str(arguments.seed), "--jobs", str(arguments.jobs)]
+    run.main()
+    sys.argv = ["score.py", directory, "--json", os.path.join(directory, "table.json"), "--markdown",
+                os.path.join(directory, "table.md")]
+    return score.main()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
