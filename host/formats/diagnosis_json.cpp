@@ -148,7 +148,9 @@ std::string_view name_of(Verdict verdict) {
     return "";
 }
 
-std::string diagnosis_json(const Diagnosis& diagnosis) {
+std::string diagnosis_json(const Diagnosis& diagnosis) { return json_text(diagnosis_object(diagnosis)); }
+
+Json diagnosis_object(const Diagnosis& diagnosis) {
     Json json;
     json["schema"] = "gyrolog-diagnosis/1";
     json["verdict"] = name_of(diagnosis.verdict);
@@ -174,7 +176,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
     }
     json["next_recordings"] = diagnosis.next_recordings;
     json["warnings"] = diagnosis.warnings;
-    return json_text(json);
+    return json;
 }
 
 }  // namespace gyrolog

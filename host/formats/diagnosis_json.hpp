@@ -23,6 +23,9 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "analysis/diagnose/diagnosis.hpp"
 
@@ -31,5 +34,6 @@ namespace gyrolog {
 std::string_view name_of(Verdict verdict);
 
 std::string diagnosis_json(const Diagnosis& diagnosis);
+nlohmann::ordered_json diagnosis_object(const Diagnosis& diagnosis);
 
 }  // namespace gyrolog

@@ -251,12 +251,12 @@ std::string place_text(const Place& place) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string verdict_sentence(const Diagnosis& diagnosis) {
+std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of) {
     const std::string causes = listed(cause_names(diagnosis));
     const bool one = diagnosis.causes.size() == 1;
     switch (diagnosis.verdict) {
         case Verdict::none:
-            return "no gap: the recording could have come from the model";
+            return fmt::format("no gap: the {} could have come from the model", of);
         case Verdict::known:
             return fmt::format("known: {} {} the gap", causes, one ? "explains" : "explain");
         case Verdict::unexplained:

@@ -4,13 +4,15 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "analysis/diagnose/diagnosis.hpp"
 
 namespace gyrolog {
 
-// "temp_lag on x explains the gap", "no gap: the recording could have come from the model"; no full stop.
-std::string verdict_sentence(const Diagnosis& diagnosis);
+// "known: temp_lag on x explains the gap", "no gap: the recording could have come from the model"; no full
+// stop. `of`: what was diagnosed.
+std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of = "recording");
 
 // "x axis, averaging times 60 s to 15 min"; "" for a place without anything.
 std::string place_text(const Place& place);
