@@ -50,7 +50,6 @@ struct Scan {
     double share = 1.0;
     WhitenedBlocks blocks;
     WhitenedBlocks coarse;
-    double dispersion = 1.0;
     // Gain less what a free factor costs.
     std::vector<double> step_nats;  // at the beginning of each block
     std::vector<double> ramp_nats;  // by Ramps
@@ -60,6 +59,7 @@ struct Factor {
     double log_value = 0.0;
     double log_sd = 1.0;
     double gain_nats = 0.0;
+    double dispersion = 1.0;  // by which the gain was divided
 };
 
 // Of a course for some axes.
@@ -104,7 +104,7 @@ double spread(const WhitenedBlocks& blocks, std::span<const double> reached) {
 }
 
 double log_factor_sd(const Scan& scan, double spread) {
-    return std::sqrt(scan.dispersion / std::max(2.0 * spread, 1e-9)) / std::max(scan.share, 1e-3);
+    return 1.0 / std::sqrt(std::max(2.0 * spread, 1e-9)) / std::max(scan.share, 1e-3);
 }
 
 // Golden section.
@@ -139,6 +139,10 @@ public:
         : effect_(effect), baseline_(std::move(baseline)) {
         const EffectParam& factor = effect_.params[0];
         log_factor_range_ = std::log(factor.plausible_to / factor.plausible_from);
+        const std::size_t length = WhitenedBlocks::length_for(baseline_->length());
+        for (std::size_t block = 0; block < baseline_->length() / length; ++block) {
+            steps_.push_back({static_cast<double>(block * length), 0.0});
+        }
         const double step = static_cast<double>(baseline_->length()) / static_cast<double>(ramp_ends);
         for (std::size_t from = 0; from < ramp_ends; ++from) {
             for (std::size_t to = from + 1; to <= ramp_ends; ++to) {
@@ -154,18 +158,24 @@ public:
         }
         std::vector<std::size_t> members(scans.size());
         std::iota(members.begin(), members.end(), std::size_t{0});
-        std::optional<Fit> best;
+        std::vector<const Scan*> best;
+        double most = -std::numeric_limits<double>::infinity();
         for (const std::vector<std::size_t>& subset : axis_subsets(members)) {
             std::vector<const Scan*> chosen;
             for (const std::size_t member : subset) { chosen.push_back(&scans[member]); }
-            Fit fit = rough_fit(chosen);
-            if (!best || fit.evidence_nats > best->evidence_nats) { best = std::move(fit); }
+            const double evidence = evidence_anywhere(chosen);
+            if (evidence > most) {
+                most = evidence;
+                best = std::move(chosen);
+            }
         }
-        if (!best) { return std::nullopt; }
-        if (gain_of(*best) < worth_refining_nats) { return std::nullopt; }
-        refine(observation, *best);
-        best->evidence_nats = evidence_of(*best);
-        return finding_of(observation, *best);
+        if (best.empty()) { return std::nullopt; }
+        Fit step = rough_fit(best, sum_of(best, &Scan::step_nats), steps_);
+        Fit ramp = rough_fit(best, sum_of(best, &Scan::ramp_nats), ramps_);
+        if (std::max(gain_of(step), gain_of(ramp)) < worth_refining_nats) { return std::nullopt; }
+        refine(observation, step);
+        refine(observation, ramp);
+        return finding_of(observation, step.evidence_nats > ramp.evidence_nats ? step : ramp);
     }
 
 private:
@@ -179,19 +189,18 @@ private:
         scan.blocks = with_tails(plain, observation, axis, nu);
         scan.coarse = joined(scan.blocks, ramp_blocks);
         look_everywhere(scan);
-        const Course course = best_course({&scan});
-        const Factor factor = factor_at(scan, scan.blocks, reached_by_block(scan.blocks, course));
-        if (factor.gain_nats < worth_tails_nats) { return scan; }
-        const std::vector<double> level =
-            levels(reached_by_block(scan.blocks, course), scan.share, factor.log_value);
-        const double beside = tails_beside(plain, observation, axis, level, nu);
+        if (highest(scan) < worth_tails_nats) { return scan; }
+        const double beside = tails_beside(plain, observation, axis, nu);
         if (beside != nu) {
             scan.blocks = with_tails(plain, observation, axis, beside);
             scan.coarse = joined(scan.blocks, ramp_blocks);
+            look_everywhere(scan);
         }
-        scan.dispersion = overdispersion(scan.blocks, level);
-        if (beside != nu || scan.dispersion > 1.0) { look_everywhere(scan); }
         return scan;
+    }
+
+    static double highest(const Scan& scan) {
+        return std::max(*std::ranges::max_element(scan.step_nats), *std::ranges::max_element(scan.ramp_nats));
     }
 
     void look_everywhere(Scan& scan) const {
@@ -226,7 +235,7 @@ private:
             const double gain =
                 0.5 * (all * std::log(all_square / all) - left * std::log(left_square / left) -
                        right * std::log(right_square / right));
-            scan.step_nats[i] = gain / scan.dispersion - factor_cost_nats(scan, left * right / all);
+            scan.step_nats[i] = gain - factor_cost_nats(scan, left * right / all);
         }
     }
 
@@ -254,17 +263,10 @@ private:
             const double across = xx - x * x / weight;
             const double along = xy - x * y / weight;
             const double gain = across > 0.0 ? 0.25 * along * along / across : 0.0;
-            scan.ramp_nats.push_back(gain / scan.dispersion - factor_cost_nats(scan, across));
+            scan.ramp_nats.push_back(gain - factor_cost_nats(scan, across));
         }
     }
 
-    // Sums over scans: each kind as likely as the other, all of a kind alike.
-    std::vector<double> sum_steps(const std::vector<const Scan*>& scans) const {
-        return sum_of(scans, &Scan::step_nats);
-    }
-    std::vector<double> sum_ramps(const std::vector<const Scan*>& scans) const {
-        return sum_of(scans, &Scan::ramp_nats);
-    }
     static std::vector<double> sum_of(const std::vector<const Scan*>& scans,
                                       std::vector<double> Scan::*nats) {
         std::vector<double> sum((scans.front()->*nats).size(), 0.0);
@@ -277,26 +279,20 @@ private:
         return log_sum_exp(nats) - std::log(static_cast<double>(nats.size()));
     }
 
-    Course best_course(const std::vector<const Scan*>& scans) const {
-        const std::vector<double> steps = sum_steps(scans);
-        const std::vector<double> ramps = sum_ramps(scans);
-        if (average(steps) >= average(ramps)) {
-            const auto block = static_cast<std::size_t>(std::ranges::max_element(steps) - steps.begin());
-            return {static_cast<double>(block * scans.front()->blocks.length), 0.0};
-        }
-        return ramps_[static_cast<std::size_t>(std::ranges::max_element(ramps) - ramps.begin())];
+    // Each kind as likely as the other, all of a kind alike.
+    static double evidence_anywhere(const std::vector<const Scan*>& scans) {
+        const std::array<double, 2> kinds = {average(sum_of(scans, &Scan::step_nats)),
+                                             average(sum_of(scans, &Scan::ramp_nats))};
+        return log_sum_exp(kinds) - std::log(2.0);
     }
 
-    Fit rough_fit(const std::vector<const Scan*>& scans) const {
+    static Fit rough_fit(const std::vector<const Scan*>& scans, const std::vector<double>& nats,
+                         const std::vector<Course>& courses) {
         Fit fit;
         fit.scans = scans;
-        fit.course = best_course(scans);
-        const std::vector<double> steps = sum_steps(scans);
-        const std::vector<double> ramps = sum_ramps(scans);
-        const std::array<double, 2> kinds = {average(steps), average(ramps)};
-        const double highest = *std::ranges::max_element(fit.course.length == 0.0 ? steps : ramps);
-        fit.evidence_nats = log_sum_exp(kinds) - std::log(2.0);
-        fit.place_cost_nats = highest - fit.evidence_nats;
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(nats) - nats.begin());
+        fit.course = courses[best];
+        fit.place_cost_nats = nats[best] - average(nats) + std::log(2.0);
         fit_factors(fit);
         return fit;
     }
@@ -317,7 +313,7 @@ private:
 
     static Factor factor_at(const Scan& scan, const WhitenedBlocks& blocks, std::span<const double> reached) {
         const auto gain = [&](double log_factor) {
-            return course_gain_nats(blocks, levels(reached, scan.share, log_factor)) / scan.dispersion;
+            return course_gain_nats(blocks, levels(reached, scan.share, log_factor));
         };
         Factor factor;
         factor.log_value = top_between(-log_factor_most, log_factor_most, gain);
@@ -345,6 +341,20 @@ private:
             fit.course = rough.course;
             fit.factors = rough.factors;
         }
+        allow_for_scatter(fit);
+        fit.evidence_nats = evidence_of(fit);
+    }
+
+    // A gain is worth less where the blocks scatter more about the course than chance has it.
+    static void allow_for_scatter(Fit& fit) {
+        for (std::size_t a = 0; a < fit.scans.size(); ++a) {
+            const Scan& scan = *fit.scans[a];
+            Factor& factor = fit.factors[a];
+            factor.dispersion = overdispersion(
+                scan.blocks, levels(reached_by_block(scan.blocks, fit.course), scan.share, factor.log_value));
+            factor.gain_nats /= factor.dispersion;
+            factor.log_sd *= std::sqrt(factor.dispersion);
+        }
     }
 
     // To the sample, within a block and a half of where the blocks have it.
@@ -361,7 +371,7 @@ private:
         const auto best = static_cast<std::size_t>(std::ranges::max_element(nats) - nats.begin());
         fit.course.at = static_cast<double>(from + best);
         const double fine = spread_of(nats, 1.0);
-        const double coarse = spread_of(sum_steps(fit.scans), static_cast<double>(length));
+        const double coarse = spread_of(sum_of(fit.scans, &Scan::step_nats), static_cast<double>(length));
         fit.course_sd = {std::max(fine, coarse > static_cast<double>(length) ? coarse : 0.0), 0.0};
     }
 
@@ -381,7 +391,7 @@ private:
                 const auto w = static_cast<double>(whitened[from + i]);
                 // An outlier tells nothing.
                 const double square = std::min(w * w, 9.0 * std::max(before, after));
-                sum += 0.5 * (std::log(after / before) + square / after - square / before) / scan.dispersion;
+                sum += 0.5 * (std::log(after / before) + square / after - square / before);
             }
             nats[i + 1] += sum;
         }
@@ -423,7 +433,12 @@ private:
                             -0.5 * cell, 0.01, 120);
         fit.course = {maximum.at[0] * slots, (maximum.at[1] - maximum.at[0]) * slots};
         fit.course_sd = ramp_sd(gain, maximum, 0.25 * cell);
-        for (double& sd : fit.course_sd) { sd *= slots; }
+        double narrow = std::log(2.0);
+        for (double& sd : fit.course_sd) {
+            narrow += parameter_cost_nats(1.0, sd);
+            sd *= slots;
+        }
+        fit.place_cost_nats = std::max(fit.place_cost_nats, narrow);
     }
 
     // Of start and length, from the curvature of the gain over start and end.
@@ -481,7 +496,9 @@ private:
             const Scan& scan = *fit.scans[a];
             const std::vector<double> level =
                 levels(reached_by_block(scan.blocks, fit.course), scan.share, sum / weight);
-            common.push_back({sum / weight, sd, course_gain_nats(scan.blocks, level) / scan.dispersion});
+            const double dispersion = fit.factors[a].dispersion;
+            common.push_back(
+                {sum / weight, sd, course_gain_nats(scan.blocks, level) / dispersion, dispersion});
             lost += fit.factors[a].gain_nats - common.back().gain_nats;
         }
         if (lost > saved) { return false; }
@@ -490,7 +507,7 @@ private:
         return true;
     }
 
-    std::optional<Finding> finding_of(const Observation& observation, Fit& fit) const {
+    std::optional<Finding> finding_of(const Observation& observation, Fit fit) const {
         const bool together = share_factor(fit);
         Finding finding;
         finding.effect = effect_.name;
@@ -536,6 +553,7 @@ private:
     const EffectDefinition& effect_;
     std::shared_ptr<const Baseline> baseline_;
     double log_factor_range_ = 0.0;
+    std::vector<Course> steps_;  // at the beginning of each block
     std::vector<Course> ramps_;
 };
 

@@ -9,6 +9,23 @@ namespace {
 
 // Chance exceeds this many standard deviations in one axis of ten thousand.
 constexpr double certain_sigma = 4.0;
+// Blocks on either side whose mean variance is the level around one.
+constexpr std::size_t reach = 8;
+
+std::vector<double> level_around(const WhitenedBlocks& blocks) {
+    std::vector<double> level;
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+        double weight = 0.0;
+        double sum = 0.0;
+        for (std::size_t i = block < reach ? 0 : block - reach;
+             i < std::min(block + reach + 1, blocks.size()); ++i) {
+            weight += blocks.weight[i];
+            sum += blocks.weight[i] * blocks.variance[i];
+        }
+        level.push_back(weight > 0.0 ? std::sqrt(sum / weight) : 0.0);
+    }
+    return level;
+}
 
 }  // namespace
 
@@ -75,11 +92,9 @@ double overdispersion(const WhitenedBlocks& blocks, std::span<const double> leve
 }
 
 double tails_beside(const WhitenedBlocks& blocks, const Observation& observation, std::size_t axis,
-                    std::span<const double> level, double model_nu) {
+                    double model_nu) {
     if (!std::isinf(model_nu)) { return model_nu; }
-    const double unit = unit_level(blocks, level);
-    std::vector<double> scale;
-    for (const double each : level) { scale.push_back(unit * std::sqrt(each)); }
+    const std::vector<double> scale = level_around(blocks);
     const WhitenedHistogram histogram = whitened_histogram(blocks, observation, axis, scale);
     // Outliers are no tails: what lies where hardly any sample of the distribution does is left out.
     double samples = 0.0;

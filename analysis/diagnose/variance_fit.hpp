@@ -26,9 +26,9 @@ double unit_level(const WhitenedBlocks& blocks, std::span<const double> level);
 // else 1. A gain is worth so many times less.
 double overdispersion(const WhitenedBlocks& blocks, std::span<const double> level);
 
-// Degrees of freedom of Student's t that the samples have when each block is divided by the level of the
-// course; infinity where they are as good as normal. `model_nu`: what the model says; then it stays.
+// Degrees of freedom of Student's t that the samples have when each is divided by the level of the blocks
+// around it; infinity where they are as good as normal. What the model says stays.
 double tails_beside(const WhitenedBlocks& blocks, const Observation& observation, std::size_t axis,
-                    std::span<const double> level, double model_nu);
+                    double model_nu);
 
 }  // namespace gyrolog

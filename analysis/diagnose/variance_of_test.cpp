@@ -77,7 +77,10 @@ public:
             }
         }
         std::optional<Finding> finding = best_of(effect_, single, 0.0, shared);
-        if (finding) { finding->where.temperature = true; }
+        if (!finding) { return std::nullopt; }
+        // Of the freedom to choose the axes.
+        finding->evidence_nats -= std::log(std::exp2(static_cast<double>(baseline_->axes().size())) - 1.0);
+        finding->where.temperature = true;
         return finding;
     }
 
@@ -158,11 +161,15 @@ private:
         slope.blocks = with_tails(plain, observation, axis, nu);
         climb(slope);
         if (slope.gain_nats < worth_tails_nats) { return slope; }
-        const std::vector<double> level = levels(warmth_by_block(slope.blocks), slope.share, slope.per_C);
-        const double beside = tails_beside(plain, observation, axis, level, nu);
-        if (beside != nu) { slope.blocks = with_tails(plain, observation, axis, beside); }
-        slope.dispersion = overdispersion(slope.blocks, level);
-        climb(slope);
+        const double beside = tails_beside(plain, observation, axis, nu);
+        if (beside != nu) {
+            slope.blocks = with_tails(plain, observation, axis, beside);
+            climb(slope);
+        }
+        slope.dispersion =
+            overdispersion(slope.blocks, levels(warmth_by_block(slope.blocks), slope.share, slope.per_C));
+        slope.gain_nats /= slope.dispersion;
+        slope.sd_per_C *= std::sqrt(slope.dispersion);
         return slope;
     }
 

@@ -78,12 +78,16 @@ std::size_t end_of(const WhitenedBlocks& blocks, const Observation& observation,
 
 }  // namespace
 
+std::size_t WhitenedBlocks::length_for(std::size_t slots) {
+    return std::max(block_least, slots / blocks_most);
+}
+
 bool WhitenedBlocks::has_noise() const { return level > dead_level && std::isfinite(level); }
 
 WhitenedBlocks whitened_blocks(const Observation& observation, std::size_t axis) {
     const std::size_t slots = observation.baseline().length();
     WhitenedBlocks blocks;
-    blocks.length = std::max(block_least, slots / blocks_most);
+    blocks.length = WhitenedBlocks::length_for(slots);
     const std::size_t count = slots / blocks.length;
     blocks.mean.resize(count);
     blocks.variance.resize(count);

@@ -11,6 +11,9 @@
 namespace gyrolog {
 
 struct WhitenedBlocks {
+    // Of a record with so many slots.
+    static std::size_t length_for(std::size_t slots);
+
     std::size_t length = 0;        // slots of a block
     std::vector<double> mean;      // by block
     std::vector<double> variance;  // about the mean, without outliers
