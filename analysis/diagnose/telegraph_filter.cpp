@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "analysis/noise/noise_model.hpp"
@@ -43,9 +44,8 @@ struct Parts {
     Eigen::Matrix<double, parts, 1> start;
 };
 
-template <int parts>
-Parts<parts> parts_of(const DriftStates& noise) {
-    Parts<parts> out;
+Parts<static_cast<int>(drift_parts)> parts_of(const DriftStates& noise) {
+    Parts<static_cast<int>(drift_parts)> out;
     for (std::size_t i = 0; i < drift_parts; ++i) {
         const auto at = static_cast<Eigen::Index>(i);
         out.kept[at] = noise.kept[i];
@@ -58,13 +58,21 @@ Parts<parts> parts_of(const DriftStates& noise) {
 constexpr int drift_size = static_cast<int>(drift_parts);
 using Level = Filter<drift_size>;
 
-// What is known on arriving at a level, from either of them with probabilities `from_low` and the rest.
-Level mixed(const Level& low, const Level& high, double from_low) {
-    Level out;
-    out.mean = from_low * low.mean + (1.0 - from_low) * high.mean;
-    const Level::Vector apart = high.mean - low.mean;
-    out.covariance = from_low * low.covariance + (1.0 - from_low) * high.covariance;
-    out.covariance.noalias() += (from_low * (1.0 - from_low) * apart) * apart.transpose();
+// One way to have come to a level, with how likely it is beside the others.
+struct Way {
+    Level level;
+    double weight = 0.0;
+};
+
+// Of two ways to the same level one: with their common mean and covariance.
+Way merged(const Way& a, const Way& b) {
+    Way out;
+    out.weight = a.weight + b.weight;
+    const double share = a.weight / out.weight;
+    out.level.mean = share * a.level.mean + (1.0 - share) * b.level.mean;
+    const Level::Vector apart = b.level.mean - a.level.mean;
+    out.level.covariance = share * a.level.covariance + (1.0 - share) * b.level.covariance;
+    out.level.covariance.noalias() += (share * (1.0 - share) * apart) * apart.transpose();
     return out;
 }
 
@@ -72,57 +80,111 @@ Level mixed(const Level& low, const Level& high, double from_low) {
 
 double telegraph_log_likelihood(std::span<const double> averages, double step_s, const DriftStates& noise,
                                 const Telegraph& telegraph) {
-    const Parts<drift_size> drift = parts_of<drift_size>(noise);
+    const Parts<drift_size> drift = parts_of(noise);
     const double share = telegraph.high_share();
     const double forgotten = -std::expm1(-step_s / telegraph.correlation_s());
     const double leave_high = (1.0 - share) * forgotten;
     const double leave_low = share * forgotten;
-    // About the mean of both.
+    // About the mean of both. A change within an average puts it anywhere between them.
     const double high_level = telegraph.distance * (1.0 - share);
     const double low_level = -telegraph.distance * share;
+    const double middle = 0.5 * (high_level + low_level);
+    const double between_variance = telegraph.distance * telegraph.distance / 12.0;
 
-    Level low;
-    low.covariance.diagonal() = drift.start;
-    Level high = low;
-    double in_high = share;
+    Way low;
+    low.level.covariance.diagonal() = drift.start;
+    low.weight = 1.0 - share;
+    Way high = low;
+    high.weight = share;
     double sum = 0.0;
     for (std::size_t i = 0; i < averages.size(); ++i) {
         if (i > 0) {
-            const double now_high = in_high * (1.0 - leave_high) + (1.0 - in_high) * leave_low;
-            const double low_to_high = (1.0 - in_high) * leave_low / now_high;
-            const double low_to_low = (1.0 - in_high) * (1.0 - leave_low) / (1.0 - now_high);
-            const Level next_low = mixed(low, high, low_to_low);
-            high = mixed(low, high, low_to_high);
-            low = next_low;
-            in_high = now_high;
-            low.predict(drift.kept, drift.innovation);
-            high.predict(drift.kept, drift.innovation);
+            low.level.predict(drift.kept, drift.innovation);
+            high.level.predict(drift.kept, drift.innovation);
         }
-        const double if_high = high.update(averages[i] - high_level, noise.white_variance);
-        const double if_low = low.update(averages[i] - low_level, noise.white_variance);
-        const double most = std::max(if_high, if_low);
-        const double high_weight = in_high * std::exp(if_high - most);
-        const double low_weight = (1.0 - in_high) * std::exp(if_low - most);
-        sum += most + std::log(high_weight + low_weight);
-        // Neither is ever ruled out: ratios of what is left would not be numbers.
-        in_high = std::clamp(high_weight / (high_weight + low_weight), 1e-12, 1.0 - 1e-12);
+        const double left_high = i > 0 ? leave_high : 0.0;
+        const double left_low = i > 0 ? leave_low : 0.0;
+        Way stayed_low{low.level, low.weight * (1.0 - left_low)};
+        Way stayed_high{high.level, high.weight * (1.0 - left_high)};
+        Way fell{high.level, high.weight * left_high};
+        Way rose{low.level, low.weight * left_low};
+        const double white = noise.white_variance;
+        const std::array<double, 4> log_density = {
+            stayed_low.level.update(averages[i] - low_level, white),
+            stayed_high.level.update(averages[i] - high_level, white),
+            fell.level.update(averages[i] - middle, white + between_variance),
+            rose.level.update(averages[i] - middle, white + between_variance)};
+        const double most = *std::ranges::max_element(log_density);
+        stayed_low.weight *= std::exp(log_density[0] - most);
+        stayed_high.weight *= std::exp(log_density[1] - most);
+        fell.weight *= std::exp(log_density[2] - most);
+        rose.weight *= std::exp(log_density[3] - most);
+        // Neither level is ever ruled out: what is left of it would not be a number.
+        stayed_low.weight += 1e-12 * fell.weight + 1e-100;
+        stayed_high.weight += 1e-12 * rose.weight + 1e-100;
+        low = merged(stayed_low, fell);
+        high = merged(stayed_high, rose);
+        const double all = low.weight + high.weight;
+        sum += most + std::log(all);
+        low.weight /= all;
+        high.weight /= all;
     }
     return sum;
 }
 
 double gauss_markov_log_likelihood(std::span<const double> averages, double step_s, const DriftStates& noise,
                                    const Telegraph& telegraph) {
-    Parts<drift_size + 1> all = parts_of<drift_size + 1>(noise);
-    const double kept = std::exp(-step_s / telegraph.correlation_s());
-    all.kept[drift_size] = kept;
-    all.start[drift_size] = telegraph.variance();
-    all.innovation[drift_size] = telegraph.variance() * (1.0 - kept * kept);
-    Filter<drift_size + 1> filter;
-    filter.covariance.diagonal() = all.start;
+    // Beside the drift: the noise's value at the end of a step, which is not measured, and its mean over it.
+    constexpr int value = drift_size;
+    constexpr int mean = drift_size + 1;
+    constexpr int size = drift_size + 2;
+    using Vector = Eigen::Matrix<double, size, 1>;
+    using Matrix = Eigen::Matrix<double, size, size>;
+    const Parts<drift_size> drift = parts_of(noise);
+    const double variance = telegraph.variance();
+    const double steps = step_s / telegraph.correlation_s();
+    const double lost = -std::expm1(-steps);
+    const double mean_of_value = lost / steps;
+    const double mean_variance = variance * 2.0 / steps * (1.0 - mean_of_value);
+
+    Matrix innovation = Matrix::Zero();
+    innovation.diagonal().head<drift_size>() = drift.innovation;
+    innovation(value, value) = variance * lost * (2.0 - lost);
+    innovation(mean, mean) = mean_variance - variance * mean_of_value * mean_of_value;
+    innovation(value, mean) = innovation(mean, value) = variance * mean_of_value * lost;
+    Vector measured = Vector::Ones();
+    measured[value] = 0.0;
+    // Of the old value both new ones are made; the drift's parts keep to themselves.
+    Vector kept = Vector::Zero();
+    kept.head<drift_size>() = drift.kept;
+    kept[value] = 1.0 - lost;
+
+    Vector state = Vector::Zero();
+    Matrix covariance = Matrix::Zero();
+    covariance.diagonal().head<drift_size>() = drift.start;
+    covariance(value, value) = variance;
+    covariance(mean, mean) = mean_variance;
+    covariance(value, mean) = covariance(mean, value) = variance * mean_of_value;
     double sum = 0.0;
     for (std::size_t i = 0; i < averages.size(); ++i) {
-        if (i > 0) { filter.predict(all.kept, all.innovation); }
-        sum += filter.update(averages[i], noise.white_variance);
+        if (i > 0) {
+            const double old_value = state[value];
+            const Vector with_value = covariance.col(value);
+            state = state.cwiseProduct(kept);
+            state[mean] = mean_of_value * old_value;
+            covariance = covariance.cwiseProduct(kept * kept.transpose());
+            const Vector with_mean = mean_of_value * with_value.cwiseProduct(kept);
+            covariance.col(mean) = with_mean;
+            covariance.row(mean) = with_mean.transpose();
+            covariance(mean, mean) = mean_of_value * mean_of_value * with_value[value];
+            covariance += innovation;
+        }
+        const Vector with_measured = covariance * measured;
+        const double expected_variance = with_measured.dot(measured) + noise.white_variance;
+        const double surprise = averages[i] - state.dot(measured);
+        state += with_measured * (surprise / expected_variance);
+        covariance.noalias() -= with_measured * (with_measured.transpose() / expected_variance);
+        sum -= 0.5 * (std::log(2.0 * pi * expected_variance) + surprise * surprise / expected_variance);
     }
     return sum;
 }

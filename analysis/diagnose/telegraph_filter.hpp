@@ -18,9 +18,11 @@ struct Telegraph {
     double correlation_s() const { return high_s * low_s / (high_s + low_s); }
 };
 
-// Two Kalman filters, one for each level, that exchange what they know at every step: the interacting
-// multiple model filter (H. A. P. Blom, Y. Bar-Shalom, IEEE Trans. AC-33 (1988) 780). Exact without drift;
-// then it is the forward recursion of a hidden Markov chain. In nats, with all constants.
+// Two Kalman filters, one for each level. At every step each goes on along both ways, staying and changing,
+// and what comes to the same level is merged: the generalised pseudo-Bayes filter of second order (Y.
+// Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to Tracking and Navigation,
+// 2001, 11.6.5). Exact without drift; then it is the forward recursion of a hidden Markov chain. In nats,
+// with all constants.
 double telegraph_log_likelihood(std::span<const double> averages, double step_s, const DriftStates& noise,
                                 const Telegraph& telegraph);
 

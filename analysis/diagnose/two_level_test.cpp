@@ -25,16 +25,16 @@ constexpr double correlation_to_s = 200.0;
 // Noise alone exceeds this about once in thirty axes.
 constexpr double spectral_gain_min_nats = 4.0;
 
-// A change within an average makes it lie between the levels, so averages are as short as still shows the
-// levels two standard deviations apart, a sixth to a fortieth of the dwell time; and not more of them than
-// take some milliseconds to filter.
+// Averages are as short as still shows the levels two standard deviations apart, a sixth to a twentieth of
+// the dwell time: then two changes within one are rare. Not more of them than take some milliseconds to
+// filter.
 constexpr double averages_per_dwell_min = 6.0;
-constexpr double averages_per_dwell_max = 40.0;
+constexpr double averages_per_dwell_max = 20.0;
 constexpr double levels_apart = 2.0;
 constexpr double averages_max = 40000.0;
+constexpr double averages_min = 64.0;
 // Two levels so much less likely than Gauss-Markov noise with the same spectrum are not refined.
 constexpr double hopeless_nats = 30.0;
-constexpr double averages_min = 64.0;
 
 // How far parameters may leave their plausible ranges; and at least so many dwell times make a telegraph.
 constexpr double beyond_plausible = 1.5;

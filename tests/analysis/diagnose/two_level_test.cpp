@@ -43,17 +43,20 @@ TEST(TelegraphFilter, SumsOverAllPathsWhereNothingDrifts) {
     double sum = 0.0;
     for (unsigned path = 0; path < 1U << count; ++path) {
         double probability = 1.0;
+        const unsigned flips = path ^ (path << 1U);
         for (std::size_t i = 0; i < count; ++i) {
             const bool high = (path >> i & 1U) != 0;
+            const bool changed = i > 0 && (flips >> i & 1U) != 0;
             const double stationary = high ? share : 1.0 - share;
             if (i == 0) {
                 probability *= stationary;
             } else {
-                const bool was_high = (path >> (i - 1) & 1U) != 0;
-                probability *= forgotten * stationary + (was_high == high ? 1.0 - forgotten : 0.0);
+                probability *= forgotten * stationary + (changed ? 0.0 : 1.0 - forgotten);
             }
-            const double left = values[i] - (high ? 1.3 * (1.0 - share) : -1.3 * share);
-            probability *= std::exp(-0.5 * left * left / 0.6) / std::sqrt(2.0 * pi * 0.6);
+            const double level = changed ? 1.3 * (0.5 - share) : high ? 1.3 * (1.0 - share) : -1.3 * share;
+            const double variance = changed ? 0.6 + 1.3 * 1.3 / 12.0 : 0.6;
+            const double left = values[i] - level;
+            probability *= std::exp(-0.5 * left * left / variance) / std::sqrt(2.0 * pi * variance);
         }
         sum += probability;
     }
@@ -70,6 +73,11 @@ TEST(TelegraphFilter, OfGaussMarkovNoiseIsTheNormalDensity) {
     noise.kept = {0.9, 0.0, 0.0, 1.0};
     noise.innovation = {0.5 * (1.0 - 0.81), 0.0, 0.0, 0.02};
     noise.start = {0.5, 0.0, 0.0, 3.0};
+    // Of means of exp(-|t| / T) over steps of u T: 2 (u - 1 + exp(-u)) / u^2 within one, and between two
+    // (2 sinh(u / 2) / u)^2 exp(-|i - j| u).
+    const double u = step_s / telegraph.correlation_s();
+    const double within = 2.0 * (u - 1.0 + std::exp(-u)) / (u * u);
+    const double between = 2.0 * std::sinh(0.5 * u) / u;
     Eigen::MatrixXd covariance(count, count);
     for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t j = 0; j < count; ++j) {
@@ -77,7 +85,7 @@ TEST(TelegraphFilter, OfGaussMarkovNoiseIsTheNormalDensity) {
             covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
                 (i == j ? 0.6 : 0.0) + 0.5 * std::pow(0.9, apart) + 3.0 +
                 0.02 * static_cast<double>(std::min(i, j)) +
-                telegraph.variance() * std::exp(-apart * step_s / telegraph.correlation_s());
+                telegraph.variance() * (i == j ? within : between * between * std::exp(-apart * u));
         }
     }
     const Eigen::LLT<Eigen::MatrixXd> root(covariance);
