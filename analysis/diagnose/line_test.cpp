@@ -67,8 +67,8 @@ public:
         std::vector<std::pair<double, double>> tried;  // gain, place
         tried.reserve(candidates.size());
         for (const Candidate& candidate : candidates) {
-            tried.push_back(best_place(observation, static_cast<double>(candidate.k),
-                                       static_cast<double>(candidate.k + window - 1), 0.5, coarse_reach));
+            tried.push_back(best_place(observation, static_cast<double>(candidate.k), 0.5,
+                                       2 * static_cast<int>(window) - 1, coarse_reach));
         }
         std::ranges::sort(tried, std::greater<>());
         tried.resize(std::min(tried.size(), refined_most));
@@ -186,20 +186,23 @@ private:
         return sum;
     }
 
-    // Gain and place.
-    std::pair<double, double> best_place(const Observation& observation, double from, double to, double step,
+    // Gain and place; of `count` places from `from` on.
+    std::pair<double, double> best_place(const Observation& observation, double from, double step, int count,
                                          std::size_t most) const {
         std::pair<double, double> best{-1.0, from};
         const double last = static_cast<double>(length()) - 1.0;
-        for (double place = from; place <= std::min(to, last); place += step) {
+        for (int i = 0; i < count; ++i) {
+            const double place = std::min(from + i * step, last);
             best = std::max(best, {gain_at(observation, place, most), place});
         }
         return best;
     }
 
     double refined_place(const Observation& observation, double place) const {
-        for (double step = 0.25; step > 1e-5; step *= 0.25) {
-            place = best_place(observation, place - 2.0 * step, place + 2.0 * step, step, reach).second;
+        double step = 0.25;
+        while (step > 1e-5) {
+            place = best_place(observation, place - 2.0 * step, step, 5, reach).second;
+            step *= 0.25;
         }
         return place;
     }

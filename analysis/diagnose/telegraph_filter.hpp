@@ -20,9 +20,10 @@ struct Telegraph {
 
 // Two Kalman filters, one for each level. At every step each goes on along both ways, staying and changing,
 // and what comes to the same level is merged: the generalised pseudo-Bayes filter of second order (Y.
-// Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to Tracking and Navigation,
-// 2001, 11.6.5). Exact without drift; then it is the forward recursion of a hidden Markov chain. In nats,
-// with all constants.
+// Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, 11.6).
+// Exact without drift, where it is the forward recursion of a hidden Markov chain, but for averages in which
+// the level changes more than once; one in which it changes is taken to lie anywhere between the levels. In
+// nats, with all constants.
 double telegraph_log_likelihood(std::span<const double> averages, double step_s, const DriftStates& noise,
                                 const Telegraph& telegraph);
 

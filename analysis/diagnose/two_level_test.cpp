@@ -142,9 +142,10 @@ private:
         const Eigen::LDLT<Eigen::Matrix3d> solver(nuisance);
         double best_gain = 0.0;
         Point best;
-        for (double tau_s = correlation_from_s;
-             tau_s < std::min(correlation_to_s, 0.4 * baseline_->duration_s() / dwells_min);
-             tau_s *= correlation_ratio) {
+        const double longest_s = std::min(correlation_to_s, 0.4 * baseline_->duration_s() / dwells_min);
+        double tau_s = correlation_from_s / correlation_ratio;
+        while (tau_s * correlation_ratio < longest_s) {
+            tau_s *= correlation_ratio;
             double score = 0.0;
             double information = 0.0;
             Eigen::Vector3d shared = Eigen::Vector3d::Zero();
@@ -321,7 +322,9 @@ private:
         constexpr double sd_max = 3.0;
         for (std::size_t i = 0; i < names.size(); ++i) {
             double curvature = 0.0;
-            for (double step = 0.02; step < 1.0; step *= 2.0) {
+            double step = 0.01;
+            for (int doubling = 0; doubling < 6; ++doubling) {
+                step *= 2.0;
                 Point less = maximum.at;
                 Point more = maximum.at;
                 less[i] -= step;
