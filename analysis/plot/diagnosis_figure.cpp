@@ -15,6 +15,7 @@ constexpr int fact_line_px = 30;
 constexpr int row_px = 350;
 constexpr int lone_panel_px = 640;
 constexpr std::size_t columns_most = 3;
+constexpr std::size_t rows_most = 6;
 
 // From light to dark in grey, too: band before, band after, recording.
 constexpr Colour before_colour = colours::orange;
@@ -196,35 +197,50 @@ private:
     std::string x_name_;
 };
 
-// By way of looking, then by axis, so that a row holds one and a column the other.
-std::vector<const GapDomain*> in_rows(const Diagnosis& diagnosis) {
-    std::vector<std::string> names;
+// One way of looking, on the axes that have it.
+struct Row {
+    std::string name;
+    std::vector<const GapDomain*> domains;  // by axis
+
+    double gap() const {
+        double most = 0.0;
+        for (const GapDomain* domain : domains) { most = std::max(most, domain->gap_before); }
+        return most;
+    }
+};
+
+std::vector<Row> rows_of(const Diagnosis& diagnosis) {
+    std::vector<Row> rows;
     for (const GapDomain& domain : diagnosis.domains) {
-        if (std::ranges::count(names, domain.name) == 0) { names.push_back(domain.name); }
+        auto row = std::ranges::find(rows, domain.name, &Row::name);
+        if (row == rows.end()) { row = rows.insert(rows.end(), {domain.name, {}}); }
+        row->domains.push_back(&domain);
     }
-    std::vector<const GapDomain*> domains;
-    for (const std::string& name : names) {
-        for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
-            for (const GapDomain& domain : diagnosis.domains) {
-                if (domain.name == name && domain.axis == axis) { domains.push_back(&domain); }
-            }
-        }
-    }
-    return domains;
+    for (Row& row : rows) { std::ranges::stable_sort(row.domains, {}, &GapDomain::axis); }
+    return rows;
 }
 
-// As many as axes where every way of looking has all of them.
-std::size_t columns_for(const std::vector<const GapDomain*>& domains) {
+std::size_t axes_in(const Diagnosis& diagnosis) {
     std::vector<std::size_t> axes;
-    for (const GapDomain* domain : domains) {
-        if (std::ranges::count(axes, domain->axis) == 0) { axes.push_back(domain->axis); }
-    }
-    const std::size_t most = std::clamp(domains.size(), std::size_t{1}, columns_most);
-    if (axes.size() < 2 || domains.size() % axes.size() != 0) { return most; }
-    for (std::size_t i = 0; i < domains.size(); ++i) {
-        if (domains[i]->name != domains[i - i % axes.size()]->name) { return most; }
+    for (const GapDomain& domain : diagnosis.domains) {
+        if (std::ranges::count(axes, domain.axis) == 0) { axes.push_back(domain.axis); }
     }
     return axes.size();
+}
+
+// The rows of the largest gaps, in their order, but whole ones before those that lack an axis.
+std::vector<Row> shown_rows(const Diagnosis& diagnosis) {
+    std::vector<Row> rows = rows_of(diagnosis);
+    std::vector<double> gaps;
+    for (const Row& row : rows) { gaps.push_back(row.gap()); }
+    std::ranges::sort(gaps, std::ranges::greater());
+    if (gaps.size() > rows_most) {
+        const double least = gaps[rows_most - 1];
+        std::erase_if(rows, [&](const Row& row) { return row.gap() < least; });
+    }
+    const std::size_t axes = axes_in(diagnosis);
+    std::ranges::stable_partition(rows, [&](const Row& row) { return row.domains.size() == axes; });
+    return rows;
 }
 
 // Each part is named once: two in the first panel, the others in the next one that has them. A lone panel
@@ -252,8 +268,12 @@ private:
 
 Figure figure_of(const DiagnosisFigure& request) {
     const Diagnosis& diagnosis = request.diagnosis;
-    const std::vector<const GapDomain*> domains = in_rows(diagnosis);
-    const std::size_t columns = columns_for(domains);
+    const std::vector<Row> shown = shown_rows(diagnosis);
+    std::vector<const GapDomain*> domains;
+    for (const Row& row : shown) { domains.insert(domains.end(), row.domains.begin(), row.domains.end()); }
+    const std::size_t axes = axes_in(diagnosis);
+    const bool by_axis = axes > 1 && shown.front().domains.size() == axes;
+    const std::size_t columns = by_axis ? axes : std::clamp(domains.size(), std::size_t{1}, columns_most);
     Figure figure;
     figure.title = request.title;
     figure.source = diagnosis.recording_name + "  |  " + diagnosis.model_name;

@@ -3,9 +3,9 @@
 // Points outside the first band are marked by disks, those outside the second, where there is one, by
 // diamonds.
 //
-// One column for each axis and one row for each way of looking where all axes have the same; else panels
-// follow each other. What has a logarithmic scale is shown over the middle of the first band, in dB of the
-// quantity: a gap of one decibel would not be seen on a curve of three decades.
+// One column for each axis and one row for each way of looking, the six with the largest gaps; those that
+// some axis lacks follow each other at the end. What has a logarithmic scale is shown over the middle of the
+// first band, in dB of the quantity: a gap of one decibel would not be seen on a curve of three decades.
 #pragma once
 
 #include <string>

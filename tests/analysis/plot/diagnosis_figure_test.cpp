@@ -96,9 +96,25 @@ TEST(DiagnosisFigure, HasAColumnForEachAxisAndARowForEachWayOfLooking) {
     EXPECT_EQ(figure.panels[3].caption, "x, gap 3.1 → 1.2: rate over time");
     EXPECT_EQ(figure.source, "night.csv  |  model.json");
     const Diagnosis uneven = diagnosis_of({allan_domain(0), time_domain(0), allan_domain(1)});
-    EXPECT_EQ(figure_of(DiagnosisFigure{uneven, "known", {}}).columns, 3);
+    EXPECT_EQ(figure_of(DiagnosisFigure{uneven, "known", {}}).columns, 2);
+    const Diagnosis single = diagnosis_of({allan_domain(0), time_domain(0)});
+    EXPECT_EQ(figure_of(DiagnosisFigure{single, "known", {}}).columns, 2);
     const Diagnosis two = diagnosis_of({allan_domain(0), allan_domain(1)});
     EXPECT_EQ(figure_of(DiagnosisFigure{two, "known", {}}).columns, 2);
+}
+
+TEST(DiagnosisFigure, ShowsTheSixWaysOfLookingWithTheLargestGaps) {
+    std::vector<GapDomain> domains;
+    for (int i = 0; i < 9; ++i) {
+        domains.push_back(time_domain(0));
+        domains.back().name = "way " + std::to_string(i);
+        domains.back().gap_before = i == 4 ? 0.5 : 10.0 - i;
+    }
+    const Diagnosis diagnosis = diagnosis_of(domains);
+    const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
+    ASSERT_EQ(figure.panels.size(), 6U);
+    EXPECT_EQ(figure.panels[0].caption, "x, gap 10 → 1.2: way 0");
+    EXPECT_EQ(figure.panels[4].caption, "x, gap 5.0 → 1.2: way 5");
 }
 
 TEST(DiagnosisFigure, ShowsALogarithmicQuantityInDecibelsOverTheMiddleOfTheModel) {
