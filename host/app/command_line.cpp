@@ -18,6 +18,7 @@ constexpr std::array commands{
     Command{"analyze", "Work out Allan deviation, noise coefficients and bias", setup_analyze},
     Command{"compare", "Hold a recording against a model's simulations, or against another one",
             setup_compare},
+    Command{"diagnose", "Find what a model lacks: where it parts from a recording, and why", setup_diagnose},
     Command{"simulate", "Make a recording of a simulated sensor", setup_simulate},
     Command{"export", "Write a recording or its noise for other programs", setup_export},
 };

@@ -1,0 +1,85 @@
+#include <memory>
+#include <string>
+
+#include "host/app/command.hpp"
+#include "host/app/curve_diagnosis_run.hpp"
+#include "host/app/option_check.hpp"
+#include "host/app/recording_diagnosis_run.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::size_t simulations_least = 20;
+constexpr std::size_t simulations_most = 10'000;
+constexpr unsigned threads_most = 1024;
+
+struct DiagnoseOptions {
+    RecordingDiagnosisRequest request;
+    std::string curve_path;
+};
+
+ExitCode diagnose_either(Console& console, const DiagnoseOptions& options) {
+    const RecordingDiagnosisRequest& request = options.request;
+    const auto wrong = [&](const char* problem) {
+        return report_error(console, "diagnose", {ErrorCode::invalid_argument, problem});
+    };
+    if (request.recording_path.empty() == options.curve_path.empty()) {
+        return wrong(options.curve_path.empty() ? "give a RECORDING, or --curve with an Allan curve"
+                                                : "give a RECORDING or --curve, not both");
+    }
+    if (!options.curve_path.empty()) {
+        return diagnose_curve_to_files(console, {options.curve_path, request.model_path, request.json_path,
+                                                 request.plot_path, request.model_out_path});
+    }
+    if (request.model_path.empty()) {
+        return wrong("give the --model that the recording is to be held against");
+    }
+    return diagnose_recording_to_files(console, request);
+}
+
+}  // namespace
+
+Action setup_diagnose(CLI::App& app) {
+    auto options = std::make_shared<DiagnoseOptions>();
+    RecordingDiagnosisRequest& request = options->request;
+    app.add_option("RECORDING", request.recording_path,
+                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
+    app.add_option("--model", request.model_path, "The sensor model (.json) whose gap is sought")
+        ->type_name("FILE");
+    CLI::Option* curve =
+        app.add_option("--curve", options->curve_path,
+                       "Instead of a recording: an Allan curve from print (tau_s,x_dps, ...); "
+                       "without --model against its own simulation_x_dps")
+            ->type_name("FILE.csv");
+    app.add_option("--json", request.json_path, "Write the diagnosis as JSON (- for standard output)")
+        ->type_name("FILE");
+    app.add_option("--plot", request.plot_path, "Draw where they part, before and after the causes are added")
+        ->type_name("FILE.png")
+        ->check(png_file());
+    app.add_option("--model-out", request.model_out_path, "Write the model with the causes added")
+        ->type_name("FILE");
+    app.add_option("--holdout", request.holdout_path,
+                   "A second recording of the sensor: the gap is measured on it")
+        ->type_name("RECORDING");
+    app.add_option("--simulations", request.simulations, "How many simulations tell a gap from chance")
+        ->type_name("N")
+        ->check(CLI::Range(simulations_least, simulations_most))
+        ->capture_default_str();
+    app.add_option("--seed", request.seed, "Other simulations of the same kind")
+        ->type_name("N")
+        ->check(seed_number())
+        ->capture_default_str();
+    app.add_option("--threads", request.threads, "0: all processors; the answer is the same")
+        ->type_name("N")
+        ->check(CLI::Range(0U, threads_most))
+        ->capture_default_str();
+    app.add_option("--lsb-dps", request.lsb_dps, "Scale of gyro columns that are counts (_lsb)")
+        ->type_name("DPS")
+        ->check(positive_number());
+    for (const char* of_recordings : {"--holdout", "--simulations", "--seed", "--threads", "--lsb-dps"}) {
+        curve->excludes(app.get_option(of_recordings));
+    }
+    return [options](Console& console) { return diagnose_either(console, *options); };
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,59 @@
+#include "host/app/diagnosis_output.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "analysis/plot/diagnosis_figure.hpp"
+#include "analysis/simulate/sensor_simulator.hpp"
+#include "host/base/file_output.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::size_t title_length_max = 80;
+
+}  // namespace
+
+Result<ModelFile> read_single_model(const std::string& path) {
+    GYROLOG_TRY(ModelFile file, read_model_file(path, 1));
+    if (file.is_drawn) {
+        return Error{
+            ErrorCode::unsupported,
+            fmt::format("'{0}': a data sheet is no single sensor; draw a unit with `gyrolog simulate {0} "
+                        "-o unit.csv --model-out unit.json` and diagnose with that",
+                        path)};
+    }
+    if (const auto refusal = simulation_refusal(file.model)) {
+        return Error{ErrorCode::failed, "simulate '" + path + "': " + *refusal};
+    }
+    return file;
+}
+
+Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string title, std::vector<std::string> facts,
+                            const std::string& path) {
+    if (title.size() > title_length_max && !diagnosis.causes.empty()) {
+        const std::size_t causes = diagnosis.causes.size();
+        const char* end = diagnosis.verdict == Verdict::known ? "the gap" : "a part of the gap";
+        facts.insert(facts.begin(), std::move(title));
+        title = causes == 1 ? fmt::format("{} explains {}", diagnosis.causes[0].finding.effect, end)
+                            : fmt::format("{} causes explain {}", causes, end);
+    }
+    const Rendering rendering = render(DiagnosisFigure{diagnosis, std::move(title), std::move(facts)});
+    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
+    return write_file(path, rendering.png);
+}
+
+void tell_warnings(Console& console, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) {
+        console.err << "gyrolog diagnose: warning: " << warning << '\n';
+    }
+}
+
+void tell_written(Console& console, const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) {
+        if (!path.empty() && path != "-") { console.err << "written: " << path << '\n'; }
+    }
+}
+
+}  // namespace gyrolog

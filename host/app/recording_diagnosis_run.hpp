@@ -1,0 +1,30 @@
+// From a recording and a model to what parts them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "host/app/console.hpp"
+#include "host/app/exit_code.hpp"
+
+namespace gyrolog {
+
+struct RecordingDiagnosisRequest {
+    std::string recording_path;
+    std::string model_path;
+    std::string holdout_path;  // a second recording, on which the gap is measured; empty: none
+    std::string json_path;     // "-" is standard output; empty: not wanted
+    std::string plot_path;
+    std::string model_out_path;  // the model with the causes added
+    std::optional<double> lsb_dps;
+    std::size_t simulations = 200;
+    std::uint64_t seed = 1;
+    unsigned threads = 0;  // 0: all processors
+};
+
+// Prints the report for people on `out`, unless the JSON goes there.
+ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisRequest& request);
+
+}  // namespace gyrolog
