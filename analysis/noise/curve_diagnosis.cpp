@@ -23,7 +23,8 @@ constexpr double margin_to_enter = 10.0;
 constexpr double margin_to_stay = 2.0;
 constexpr std::size_t changes_max = 6;
 constexpr double first_smooth_sd_db = 0.3;
-constexpr int rounds = 3;  // of fit and scatter
+constexpr int rounds = 3;        // of fit and scatter
+constexpr double coarse = 1e-3;  // tolerance of a fit that is only one of many starts
 constexpr std::array all_kinds = {Kind::N,       Kind::B, Kind::K, Kind::Q, Kind::R, Kind::gauss_markov,
                                   Kind::sinusoid};
 
@@ -207,7 +208,7 @@ private:
         }
     }
 
-    // Fit and scatter in turns, which together climb the likelihood of both.
+    // Fit and scatter in turns, which together climb the likelihood of both; a single turn is coarse.
     Judged fitted(std::vector<Slot> slots, double smooth_sd_db, int turns) const {
         Judged judged{std::move(slots), 0.0, smooth_sd_db};
         CurveScatter::Fit scatter;
@@ -218,6 +219,7 @@ private:
                     Problem{&target_, &scatter_, &judged.slots, judged.smooth_sd_db});
                 Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Problem>> search(problem);
                 search.parameters.maxfev = 300;
+                if (turns == 1) { search.parameters.ftol = search.parameters.xtol = coarse; }
                 search.minimize(logs);
                 put_logarithms(judged.slots, logs);
             }

@@ -16,11 +16,18 @@
 namespace gyrolog {
 namespace {
 
-std::string frequency_text(double f_hz) { return quantity_text("f_hz", f_hz, 0.0, nullptr); }
+// Four digits: lines are narrow.
+std::string frequency_text(double f_hz) {
+    if (f_hz < 0.1) { return fmt::format("{:.4g} mHz", f_hz * 1e3); }
+    return f_hz < 1000.0 ? fmt::format("{:.4g} Hz", f_hz) : fmt::format("{:.4g} kHz", f_hz / 1e3);
+}
 
+// "60 s to 15 min" behind `range`; where both ends read alike, one of them behind `point`.
 template <typename Text>
-std::string span_text(const Span& span, Text text) {
-    return span.from == span.to ? text(span.from) : text(span.from) + " to " + text(span.to);
+std::string span_text(const Span& span, Text text, const char* range, const char* point) {
+    const std::string from = text(span.from);
+    const std::string to = text(span.to);
+    return from == to ? point + from : fmt::format("{}{} to {}", range, from, to);
 }
 
 // "a", "a and b", "a, b and c"
@@ -151,14 +158,14 @@ std::string tie_sentence(const Cause& cause) {
     return text + ".";
 }
 
-std::string cause_text(const Cause& cause, std::size_t rank) {
+std::string cause_text(const Diagnosis& diagnosis, const Cause& cause, std::size_t rank) {
     const Finding& finding = cause.finding;
     std::string text = wrapped_text(
         fmt::format("  {}. ", rank),
         fmt::format("{}: probability {}, evidence {:.3g} nats, closes {} of the gap alone", cause_name(cause),
                     percent(cause.score), finding.evidence_nats, percent(cause.shrink_alone)));
     const std::string place = place_text(finding.where);
-    if (!place.empty()) { text += wrapped_text("     ", place); }
+    if (!place.empty() && place != place_text(diagnosis.where)) { text += wrapped_text("     ", place); }
     for (std::size_t entry = 0; entry < finding.entries.size(); ++entry) {
         const std::string values = entry_text(finding, entry);
         if (!values.empty()) { text += wrapped_text("     ", values); }
@@ -225,13 +232,11 @@ std::string place_text(const Place& place) {
         parts.push_back(axes_text(place.axes) + (place.axes.size() == 1 ? " axis" : " axes"));
     }
     if (place.tau_s) {
-        parts.push_back("averaging time" + std::string(place.tau_s->from == place.tau_s->to ? " " : "s ") +
-                        span_text(*place.tau_s, duration_text));
+        parts.push_back(span_text(*place.tau_s, duration_text, "averaging times ", "averaging time "));
     }
-    if (place.freq_hz) { parts.push_back(span_text(*place.freq_hz, frequency_text)); }
+    if (place.freq_hz) { parts.push_back(span_text(*place.freq_hz, frequency_text, "", "at ")); }
     if (place.time_s) {
-        parts.push_back((place.time_s->from == place.time_s->to ? "at " : "from ") +
-                        span_text(*place.time_s, duration_text) + " after the first sample");
+        parts.push_back(span_text(*place.time_s, duration_text, "from ", "at ") + " after the first sample");
     }
     if (place.temperature) { parts.emplace_back("with the temperature"); }
     if (place.acceleration) { parts.emplace_back("with the specific force"); }
@@ -272,7 +277,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     text += summary_text(diagnosis);
     if (!diagnosis.causes.empty()) { text += "\ncauses\n"; }
     for (std::size_t i = 0; i < diagnosis.causes.size(); ++i) {
-        text += cause_text(diagnosis.causes[i], i + 1);
+        text += cause_text(diagnosis, diagnosis.causes[i], i + 1);
     }
     text += domains_text(diagnosis);
     text += untestable_text(diagnosis);

@@ -63,6 +63,11 @@ CurveDiagnosisReport report_of(const SensorModel& model) {
     return report;
 }
 
+const CurveDiagnosisReport& quiet_report() {
+    static const CurveDiagnosisReport report = report_of(quiet_model());
+    return report;
+}
+
 const json* cause_of(const json& answer, const std::string& effect) {
     for (const json& cause : answer["causes"]) {
         if (cause["effect"] == effect) { return &cause; }
@@ -71,7 +76,7 @@ const json* cause_of(const json& answer, const std::string& effect) {
 }
 
 TEST(CurveDiagnosisReport, NamesFactorAndMissingTermUnderTheEffectsNames) {
-    const json answer = json::parse(curve_diagnosis_json(report_of(quiet_model())));
+    const json answer = json::parse(curve_diagnosis_json(quiet_report()));
     EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
     EXPECT_EQ(answer["verdict"], "known");
     const json* white = cause_of(answer, "arw_scale");
@@ -98,7 +103,7 @@ TEST(CurveDiagnosisReport, NamesFactorAndMissingTermUnderTheEffectsNames) {
 }
 
 TEST(CurveDiagnosisReport, SaysWhereTheModelErrsAndWhatDoesIt) {
-    const std::string text = curve_diagnosis_text(report_of(quiet_model()));
+    const std::string text = curve_diagnosis_text(quiet_report());
     EXPECT_THAT(text, StartsWith("known: "));
     EXPECT_THAT(text, HasSubstr("the model is too quiet by up to"));
     EXPECT_THAT(text, HasSubstr("the sensor's N is 1.4"));
@@ -107,7 +112,7 @@ TEST(CurveDiagnosisReport, SaysWhereTheModelErrsAndWhatDoesIt) {
 }
 
 TEST(CurveDiagnosisReport, MergesOneEffectOnSeveralAxes) {
-    CurveDiagnosisReport report = report_of(quiet_model());
+    CurveDiagnosisReport report = quiet_report();
     report.curves.push_back(report.curves.front());
     report.curves.back().name = "sensor_z";
     report.curves.back().axis = 2;
@@ -143,7 +148,7 @@ TEST(CurveEffect, AddsWhatTheModelLacksOfACoefficient) {
 
 TEST(CurveEffect, TheCorrectedModelHasTheCurve) {
     SensorModel model = quiet_model();
-    const CurveDiagnosisReport report = report_of(model);
+    const CurveDiagnosisReport& report = quiet_report();
     for (const CurveCause& cause : report.curves[0].diagnosis.causes) { correct(model, 0, cause); }
     const CurveDiagnosis again = diagnose_curve(report.curves[0].curve, curve_of_model(model, 0).terms);
     EXPECT_EQ(again.verdict, CurveDiagnosis::Verdict::none);

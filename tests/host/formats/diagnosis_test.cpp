@@ -319,6 +319,24 @@ TEST(DiagnosisText, TellsPlaceSizeAndHowFarTheGapCloses) {
     EXPECT_THAT(text, HasSubstr("x Allan deviation 5.2 1 2 of 3 0 of 3"));
 }
 
+TEST(DiagnosisText, SaysEveryKindOfPlace) {
+    Place place;
+    place.axes = {1, 2};
+    place.freq_hz = Span{40.0191, 40.0192};
+    place.time_s = Span{1500.0, 1500.0};
+    EXPECT_EQ(place_text(place), "y and z axes, at 40.02 Hz, at 25 min after the first sample");
+    place = {};
+    place.freq_hz = Span{0.01, 5.0};
+    place.acceleration = true;
+    place.rate_rad_s = Span{10.0 * rad_per_deg, 200.0 * rad_per_deg};
+    place.amplitude_sigma = Span{3.0, 9.0};
+    place.structure = "duplicated_samples";
+    EXPECT_EQ(place_text(place),
+              "10 mHz to 5 Hz, with the specific force, rates of 10 to 200 deg/s, samples 3 to 9 standard "
+              "deviations off, duplicated samples");
+    EXPECT_EQ(place_text({}), "");
+}
+
 TEST(DiagnosisText, OfNoGapClaimsNoPlaceAndNoCause) {
     const std::string text = diagnosis_text(none());
     EXPECT_THAT(text, HasSubstr("43 of 100 would differ as much (p = 0.43)"));
