@@ -45,14 +45,20 @@ private:
     }
 };
 
+// One course on one axis.
+struct Look {
+    double gain_nats = -std::numeric_limits<double>::infinity();
+    double log_factor = 0.0;
+    double log_sd = 1.0;
+};
+
 struct Scan {
     std::size_t axis = 0;
     double share = 1.0;
     WhitenedBlocks blocks;
     WhitenedBlocks coarse;
-    // Gain less what a free factor costs.
-    std::vector<double> step_nats;  // at the beginning of each block
-    std::vector<double> ramp_nats;  // by Ramps
+    std::vector<Look> steps;  // by course
+    std::vector<Look> ramps;
 };
 
 struct Factor {
@@ -103,8 +109,11 @@ double spread(const WhitenedBlocks& blocks, std::span<const double> reached) {
     return weight > 0.0 ? std::max(0.0, squares - sum * sum / weight) : 0.0;
 }
 
+// Without any white noise nothing is known.
+double share_of(const Scan& scan) { return std::max(scan.share, 1e-3); }
+
 double log_factor_sd(const Scan& scan, double spread) {
-    return 1.0 / std::sqrt(std::max(2.0 * spread, 1e-9)) / std::max(scan.share, 1e-3);
+    return 1.0 / std::sqrt(std::max(2.0 * spread, 1e-9)) / share_of(scan);
 }
 
 // Golden section.
@@ -170,8 +179,8 @@ public:
             }
         }
         if (best.empty()) { return std::nullopt; }
-        Fit step = rough_fit(best, sum_of(best, &Scan::step_nats), steps_);
-        Fit ramp = rough_fit(best, sum_of(best, &Scan::ramp_nats), ramps_);
+        Fit step = rough_fit(best, sum_of(best, &Scan::steps), steps_);
+        Fit ramp = rough_fit(best, sum_of(best, &Scan::ramps), ramps_);
         if (std::max(gain_of(step), gain_of(ramp)) < worth_refining_nats) { return std::nullopt; }
         refine(observation, step);
         refine(observation, ramp);
@@ -200,16 +209,13 @@ private:
     }
 
     static double highest(const Scan& scan) {
-        return std::max(*std::ranges::max_element(scan.step_nats), *std::ranges::max_element(scan.ramp_nats));
+        return std::max(std::ranges::max_element(scan.steps, {}, &Look::gain_nats)->gain_nats,
+                        std::ranges::max_element(scan.ramps, {}, &Look::gain_nats)->gain_nats);
     }
 
     void look_everywhere(Scan& scan) const {
         look_for_steps(scan);
         look_for_ramps(scan);
-    }
-
-    double factor_cost_nats(const Scan& scan, double spread) const {
-        return parameter_cost_nats(log_factor_range_, log_factor_sd(scan, spread));
     }
 
     void look_for_steps(Scan& scan) const {
@@ -220,7 +226,7 @@ private:
             all += blocks.weight[i];
             all_square += blocks.weight[i] * blocks.variance[i];
         }
-        scan.step_nats.assign(blocks.size(), -std::numeric_limits<double>::infinity());
+        scan.steps.assign(blocks.size(), {});
         double left = 0.0;
         double left_square = 0.0;
         for (std::size_t i = 1; i < blocks.size(); ++i) {
@@ -235,14 +241,15 @@ private:
             const double gain =
                 0.5 * (all * std::log(all_square / all) - left * std::log(left_square / left) -
                        right * std::log(right_square / right));
-            scan.step_nats[i] = gain - factor_cost_nats(scan, left * right / all);
+            scan.steps[i] = {gain, 0.5 * std::log(right_square / right * left / left_square) / share_of(scan),
+                             log_factor_sd(scan, left * right / all)};
         }
     }
 
     // By the regression of the logarithms of the variances.
     void look_for_ramps(Scan& scan) const {
         const WhitenedBlocks& blocks = scan.coarse;
-        scan.ramp_nats.clear();
+        scan.ramps.clear();
         for (const Course& ramp : ramps_) {
             const std::vector<double> reached = reached_by_block(blocks, ramp);
             double weight = 0.0;
@@ -263,26 +270,47 @@ private:
             const double across = xx - x * x / weight;
             const double along = xy - x * y / weight;
             const double gain = across > 0.0 ? 0.25 * along * along / across : 0.0;
-            scan.ramp_nats.push_back(gain - factor_cost_nats(scan, across));
+            scan.ramps.push_back({gain, across > 0.0 ? 0.5 * along / across / share_of(scan) : 0.0,
+                                  log_factor_sd(scan, across)});
         }
     }
 
-    static std::vector<double> sum_of(const std::vector<const Scan*>& scans,
-                                      std::vector<double> Scan::*nats) {
-        std::vector<double> sum((scans.front()->*nats).size(), 0.0);
+    // Of a course on some axes: gains less what the factors cost, one for all axes or each its own.
+    double worth_nats(const std::vector<const Scan*>& scans, std::vector<Look> Scan::*looks,
+                      std::size_t course) const {
+        double gain = 0.0;
+        double cost = 0.0;
+        double weight = 0.0;
+        double sum = 0.0;
+        double squares = 0.0;
         for (const Scan* scan : scans) {
-            for (std::size_t i = 0; i < sum.size(); ++i) { sum[i] += (scan->*nats)[i]; }
+            const Look& look = (scan->*looks)[course];
+            const double known = 1.0 / (look.log_sd * look.log_sd);
+            gain += look.gain_nats;
+            cost += parameter_cost_nats(log_factor_range_, look.log_sd);
+            weight += known;
+            sum += known * look.log_factor;
+            squares += known * look.log_factor * look.log_factor;
         }
-        return sum;
+        if (std::isinf(gain)) { return gain; }
+        const double common_cost = parameter_cost_nats(log_factor_range_, 1.0 / std::sqrt(weight)) +
+                                   0.5 * (squares - sum * sum / weight);
+        const std::array<double, 2> ways = {gain - cost, gain - common_cost};
+        return log_sum_exp(ways) - std::log(2.0);
+    }
+    std::vector<double> sum_of(const std::vector<const Scan*>& scans, std::vector<Look> Scan::*looks) const {
+        std::vector<double> nats((scans.front()->*looks).size());
+        for (std::size_t i = 0; i < nats.size(); ++i) { nats[i] = worth_nats(scans, looks, i); }
+        return nats;
     }
     static double average(const std::vector<double>& nats) {
         return log_sum_exp(nats) - std::log(static_cast<double>(nats.size()));
     }
 
     // Each kind as likely as the other, all of a kind alike.
-    static double evidence_anywhere(const std::vector<const Scan*>& scans) {
-        const std::array<double, 2> kinds = {average(sum_of(scans, &Scan::step_nats)),
-                                             average(sum_of(scans, &Scan::ramp_nats))};
+    double evidence_anywhere(const std::vector<const Scan*>& scans) const {
+        const std::array<double, 2> kinds = {average(sum_of(scans, &Scan::steps)),
+                                             average(sum_of(scans, &Scan::ramps))};
         return log_sum_exp(kinds) - std::log(2.0);
     }
 
@@ -371,7 +399,7 @@ private:
         const auto best = static_cast<std::size_t>(std::ranges::max_element(nats) - nats.begin());
         fit.course.at = static_cast<double>(from + best);
         const double fine = spread_of(nats, 1.0);
-        const double coarse = spread_of(sum_of(fit.scans, &Scan::step_nats), static_cast<double>(length));
+        const double coarse = spread_of(sum_of(fit.scans, &Scan::steps), static_cast<double>(length));
         fit.course_sd = {std::max(fine, coarse > static_cast<double>(length) ? coarse : 0.0), 0.0};
     }
 
