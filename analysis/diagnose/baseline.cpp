@@ -170,14 +170,21 @@ void Baseline::read_motion() {
 
 double Baseline::read_white_course(std::size_t axis) {
     std::vector<WhiteGain> gains;
+    double instant_variance_s2 = 0.0;
     const StageContext context{model_, rate_hz_, 0, nullptr};
     for (const EffectModel& entry : model_.effects) {
         const EffectDefinition* effect = find_effect(entry.effect);
         if (effect->signature != nullptr && effect->signature->white_gain != nullptr && acts_on(entry, axis)) {
             gains.push_back(effect->signature->white_gain(EffectUse(context, *effect, entry, 0)));
         }
+        if (effect->signature != nullptr && effect->signature->instant_sd_s != nullptr && moves()) {
+            const double sd_s = effect->signature->instant_sd_s(EffectValues(entry));
+            instant_variance_s2 += sd_s * sd_s;
+        }
     }
-    if (gains.empty()) { return 1.0; }
+    if (gains.empty() && instant_variance_s2 == 0.0) { return 1.0; }
+    const double N = model_.axes[axis].noise.N_rad_per_sqrt_s;
+    const double per_change_square = N > 0.0 ? instant_variance_s2 / (N * N * rate_hz_) : 0.0;
     const double reference_C =
         model_.temperature ? model_.temperature->reference_C : TemperatureModel{}.reference_C;
     std::vector<double> variance(length_, 1.0);
@@ -189,6 +196,11 @@ double Baseline::read_white_course(std::size_t axis) {
         for (const WhiteGain& gain : gains) {
             const double factor = gain(time_s, temperature_C);
             variance[slot] *= factor * factor;
+        }
+        if (per_change_square > 0.0) {
+            // A sample that is taken too early or too late is off by the rate's change meanwhile.
+            const auto change = static_cast<double>(response_change_rad_s2_[axis][slot]);
+            variance[slot] += per_change_square * change * change;
         }
         sum += variance[slot];
     }

@@ -36,16 +36,29 @@ public:
 private:
     struct Axis {
         std::vector<float> seen;  // by slot, without the bias
-        const std::vector<float>* expected;
-        double per_variance;
-        double drift_rows;  // so many samples' white noise has the variance of the drift
+        const std::vector<float>* expected = nullptr;
+        std::vector<float> smooth_seen;
+        std::vector<float> smooth_expected;
+        double per_variance = 0.0;
+        double drift_rows = 0.0;  // so many samples' white noise has the variance of the drift; 0: any
     };
 
+    std::size_t shifted(std::size_t slot, int lag) const;
     double misfit_nats(std::size_t begin, std::size_t end, int lag) const;
     void follow();
+    void take_bias_off();
     double nats_at(std::size_t window, double lag) const;
     double slope_nats(double rel) const;
-    std::size_t refined(std::size_t window, int before, int after) const;
+    struct Pair {
+        std::size_t first_slot = 0;
+        std::size_t second_slot = 0;
+        int middle = 0;  // the lag between
+    };
+    Pair best_pair(std::size_t first, std::size_t last, int before, int after) const;
+    std::size_t best_place(std::size_t first, std::size_t last, int before, int after) const;
+    double squares_nats(std::size_t slot, int lag) const;
+    double step_nats() const;
+    std::vector<LagStep> merged(std::vector<LagStep> steps) const;
 
     std::size_t length_;
     std::size_t window_slots_;

@@ -5,6 +5,7 @@
 
 #include "analysis/diagnose/stamp_evidence.hpp"
 #include "analysis/diagnose/stamp_scatter.hpp"
+#include "analysis/diagnose/timing_spread_test.hpp"
 
 namespace gyrolog {
 
@@ -84,14 +85,20 @@ std::optional<Finding> find_spread(const EffectDefinition& effect, const Baselin
 MadeTest make_stamp_spread_test(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline) {
     const Recording& recording = baseline->world().recording();
     if (recording.stamps == StampKind::none) {
-        return make_stamp_test({}, "the recording has no time stamps", nullptr);
+        return make_stamp_test({}, "the recording has no time stamps",
+                               make_timing_spread_test(effect, baseline));
     }
     const std::optional<StampScatter> seen = stamp_scatter(recording);
-    if (!seen) { return make_stamp_test({}, "the samples have no time stamps of their own", nullptr); }
-    if (recording.stamps == StampKind::arrival && seen->neighbour_correlation > burst_correlation) {
-        return make_stamp_test({}, "the time stamps are arrival times that come in bursts", nullptr);
+    if (!seen) {
+        return make_stamp_test({}, "the samples have no time stamps of their own",
+                               make_timing_spread_test(effect, baseline));
     }
-    return make_stamp_test(find_spread(effect, *baseline, *seen), {}, nullptr);
+    if (recording.stamps == StampKind::arrival && seen->neighbour_correlation > burst_correlation) {
+        return make_stamp_test({}, "the time stamps are arrival times that come in bursts",
+                               make_timing_spread_test(effect, baseline));
+    }
+    return make_stamp_test(find_spread(effect, *baseline, *seen), {},
+                           make_timing_spread_test(effect, baseline));
 }
 
 }  // namespace gyrolog

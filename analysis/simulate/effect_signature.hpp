@@ -101,6 +101,11 @@ struct EffectSignature {
     // By what factor an entry changes the standard deviation of the white noise.
     WhiteGain (*white_gain)(const EffectUse& use) = nullptr;
 
+    // Standard deviation of the sampling instants of an entry whose stamps do not show it; else 0.
+    double (*instant_sd_s)(const EffectValues& effect) = nullptr;
+    // An entry loses samples that the stamps do not tell of: where the others belong is read from the motion.
+    bool (*hides_losses)(const EffectValues& effect) = nullptr;
+
     // For the report: a sentence with {parameter} where a fitted value belongs, and the recording that would
     // tell the effect from its rivals.
     std::string_view words{};

@@ -42,6 +42,8 @@ constexpr EffectSignature signature = {
     .method = EvidenceMethod::stamp_spread,
     .place = PlaceKind::structure,
     .structure = "timestamp_jitter",
+    .instant_sd_s =
+        [](const EffectValues& effect) { return effect["in_stamps"] == 0.0 ? effect["sd_s"] : 0.0; },
     .words = "Single sampling times are off by {sd_s} (one sigma) beyond what the model says.",
     .decided_by = "stamps taken in the board's interrupt, or broadband motion under a reference rate",
 };

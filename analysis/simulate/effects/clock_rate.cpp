@@ -1,3 +1,4 @@
+#include "analysis/recording/recording.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 
 namespace gyrolog {
@@ -40,10 +41,26 @@ constexpr EffectParam params[] = {
      .otherwise = 1.0},
 };
 
+// A sensor that is slow for its stamps shows at the end what came after the last of them.
+void leave_out_the_future(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
+    const EffectValues values(entry);
+    if (values["in_stamps"] != 0.0 || values["rel"] >= 0.0 || recording.segments.empty()) { return; }
+    const std::int64_t origin = recording.segments.front().first_index;
+    const Segment& last = recording.segments.back();
+    const auto end = static_cast<double>(last.first_index - origin) + static_cast<double>(last.count) - 1.0;
+    for (const Segment& segment : recording.segments) {
+        for (std::size_t i = 0; i < segment.count; ++i) {
+            const double slot = static_cast<double>(segment.first_index - origin) + static_cast<double>(i);
+            if (slot > end * (1.0 + values["rel"])) { judged[segment.first + i] = false; }
+        }
+    }
+}
+
 constexpr EffectSignature signature = {
     .method = EvidenceMethod::stamp_rate,
     .place = PlaceKind::structure,
     .structure = "timestamp_rate",
+    .unjudged = leave_out_the_future,
     .words = "The sample clock is off by {rel} of its nominal rate.",
     .decided_by = "an hour of stamps from a disciplined clock, or a reference rate that never rests",
 };

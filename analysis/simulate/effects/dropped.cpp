@@ -81,6 +81,7 @@ constexpr EffectSignature signature = {
     .method = EvidenceMethod::stamp_gaps,
     .place = PlaceKind::structure,
     .structure = "timestamp_gaps",
+    .hides_losses = [](const EffectValues& effect) { return effect["in_stamps"] == 0.0; },
     .words = "Samples are lost {per_hour}, up to {longest} in a row.",
     .decided_by = "a recording with the board's sample counter, or with a reference rate that never rests",
 };

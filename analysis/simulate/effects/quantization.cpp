@@ -23,10 +23,18 @@ constexpr EffectParam params[] = {
      .plausible_to = 8.0 / 65.5},
 };
 
+// Of rounding alone: white, where the noise spreads over more than a step.
+void add_rounding(std::span<const double>, double rate_hz, const EffectValues& effect,
+                  std::span<SpectralParts> parts) {
+    const double lsb_rad_s = effect["lsb_dps"] * rad_per_deg;
+    for (SpectralParts& part : parts) { part.other += lsb_rad_s * lsb_rad_s / (12.0 * rate_hz); }
+}
+
 constexpr EffectSignature signature = {
     .method = EvidenceMethod::code_grid,
     .place = PlaceKind::structure,
     .structure = "code_grid",
+    .spectrum = add_rounding,
     .words = "The numbers come in steps of {lsb_dps}.",
     .decided_by = "raw counts from the sensor's registers",
 };

@@ -1,0 +1,146 @@
+#include "analysis/diagnose/timing_spread_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/diagnose/noise_nuisance.hpp"
+#include "analysis/diagnose/stamp_evidence.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+// Slots of like d^2 together; the likelihood needs no more than their number and sum of squares.
+struct Bin {
+    double change_square = 0.0;  // mean d^2
+    double count = 0.0;
+    double squares = 0.0;  // of whitened samples, in units of the model's own white noise
+};
+
+struct AxisBins {
+    std::vector<Bin> bins;
+    double white_variance = 0.0;  // of one sample
+    double level_sd = 0.0;        // of c about 1, from N's uncertainty
+};
+
+constexpr int bins_per_octave = 4;
+constexpr int octaves = 40;
+constexpr double trace_nats = 2.0;
+
+double log_likelihood_nats(const AxisBins& axis, double level, double sd_s) {
+    double nats = 0.0;
+    for (const Bin& bin : axis.bins) {
+        const double variance = level + sd_s * sd_s * bin.change_square / axis.white_variance;
+        nats -= 0.5 * (bin.count * std::log(variance) + bin.squares / variance);
+    }
+    const double z = (level - 1.0) / axis.level_sd;
+    return nats - 0.5 * z * z;
+}
+
+// The largest value of a function with one top between `low` and `high`.
+template <typename Function>
+double place_of_top(Function value, double low, double high) {
+    constexpr double golden = 0.6180339887498949;
+    for (int i = 0; i < 40; ++i) {
+        const double a = high - golden * (high - low);
+        const double b = low + golden * (high - low);
+        (value(a) < value(b) ? low : high) = value(a) < value(b) ? a : b;
+    }
+    return 0.5 * (low + high);
+}
+
+double best_level_nats(const AxisBins& axis, double sd_s) {
+    const auto nats = [&](double level) { return log_likelihood_nats(axis, level, sd_s); };
+    return nats(place_of_top(nats, 0.3, 4.0));
+}
+
+class TimingSpreadTest final : public EffectTest {
+public:
+    TimingSpreadTest(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline)
+        : effect_(&effect), baseline_(std::move(baseline)) {}
+
+    std::optional<Finding> find(const Observation& observation) const override {
+        if (is_known()) { return std::nullopt; }
+        std::vector<AxisBins> axes;
+        for (const std::size_t axis : baseline_->axes()) { axes.push_back(gathered(observation, axis)); }
+        const auto nats = [&](double sd_s) {
+            double sum = 0.0;
+            for (const AxisBins& axis : axes) { sum += best_level_nats(axis, sd_s); }
+            return sum;
+        };
+        const EffectParam& range = *std::ranges::find(effect_->params, "sd_s", &EffectParam::name);
+        const double without = nats(0.0);
+        const double log_sd =
+            place_of_top([&](double log_s) { return nats(std::exp(log_s)); },
+                         std::log(0.2 * range.plausible_from), std::log(3.0 * range.plausible_to));
+        const double sd_s = std::exp(log_sd);
+        const double gain_nats = nats(sd_s) - without;
+        if (gain_nats < trace_nats) { return std::nullopt; }
+        constexpr double step = 0.05;
+        const double curvature =
+            2.0 * nats(sd_s) - nats(sd_s * std::exp(step)) - nats(sd_s * std::exp(-step));
+        const double rel_sd = curvature > 0.0 ? std::min(1.0, step / std::sqrt(curvature)) : 1.0;
+        Finding finding = whole_sensor_finding(*effect_, *baseline_, {{"sd_s", sd_s}, {"in_stamps", 0.0}},
+                                               {{"sd_s", rel_sd * sd_s}});
+        finding.gain_nats = gain_nats;
+        for (std::size_t a = 0; a < axes.size(); ++a) {
+            finding.axis_gain_nats[baseline_->axes()[a]] =
+                best_level_nats(axes[a], sd_s) - best_level_nats(axes[a], 0.0);
+        }
+        finding.evidence_nats =
+            gain_nats - parameter_cost_nats(std::log(range.plausible_to / range.plausible_from), rel_sd);
+        return finding;
+    }
+
+private:
+    AxisBins gathered(const Observation& observation, std::size_t axis) const {
+        const AxisObservation& seen = observation.axis(axis);
+        const std::vector<float>& change = baseline_->response_change_rad_s2(axis);
+        AxisBins gathered;
+        gathered.white_variance = baseline_->parts(axis).back().sum() * baseline_->rate_hz();
+        const double sd_N = std::max(1e-4, noise_uncertainty(baseline_->model(), axis)[0]);
+        gathered.level_sd =
+            2.0 * sd_N * baseline_->parts(axis).back().white / baseline_->parts(axis).back().sum();
+        // Of the observation's fitted noise over the model's.
+        const double scale = seen.density.back() / baseline_->parts(axis).back().sum();
+        std::vector<Bin> bins(static_cast<std::size_t>(octaves * bins_per_octave));
+        for (std::size_t slot = 0; slot < change.size(); ++slot) {
+            if (!observation.present()[slot]) { continue; }
+            const double d = static_cast<double>(change[slot]);
+            const double white = static_cast<double>(seen.whitened[slot]);
+            // From a ten thousandth of a rad/s^2.
+            const double place = bins_per_octave * std::log2(1.0 + d * d * 1e8);
+            Bin& bin =
+                bins[static_cast<std::size_t>(std::min(place, static_cast<double>(bins.size()) - 1.0))];
+            bin.change_square += d * d;
+            bin.count += 1.0;
+            bin.squares += white * white * scale;
+        }
+        for (Bin& bin : bins) {
+            if (bin.count == 0.0) { continue; }
+            bin.change_square /= bin.count;
+            gathered.bins.push_back(bin);
+        }
+        return gathered;
+    }
+
+    // Then what it explains is no longer in the whitened samples.
+    bool is_known() const {
+        return std::ranges::any_of(baseline_->model().effects, [&](const EffectModel& entry) {
+            return entry.effect == effect_->name && EffectValues(entry)["in_stamps"] == 0.0;
+        });
+    }
+
+    const EffectDefinition* effect_;
+    std::shared_ptr<const Baseline> baseline_;
+};
+
+}  // namespace
+
+std::unique_ptr<EffectTest> make_timing_spread_test(const EffectDefinition& effect,
+                                                    std::shared_ptr<const Baseline> baseline) {
+    if (!baseline->moves()) { return nullptr; }
+    return std::make_unique<TimingSpreadTest>(effect, std::move(baseline));
+}
+
+}  // namespace gyrolog
