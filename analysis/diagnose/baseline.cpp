@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/diagnose/quiet_reference.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 
@@ -114,8 +115,11 @@ SensorModel without_noise(const SensorModel& model) {
 }
 
 Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
-                   std::shared_ptr<ResponseMemory> memory)
-    : world_(std::move(world)), model_(model), memory_(std::move(memory)) {
+                   std::shared_ptr<ResponseMemory> memory, std::shared_ptr<const RecordedWorld> quiet_world)
+    : world_(std::move(world)),
+      quiet_world_(std::move(quiet_world)),
+      model_(model),
+      memory_(std::move(memory)) {
     const Recording& recording = world_->recording();
     rate_hz_ = recording.rate_hz;
     length_ = fast_length(slots_of(recording));
@@ -137,7 +141,12 @@ void Baseline::read_temperature() {
 }
 
 void Baseline::read_motion() {
-    if (!moves()) { return; }
+    if (!moves()) {
+        quiet_world_ = world_;
+        return;
+    }
+    if (!quiet_world_) { quiet_world_ = without_reference_noise(*world_, model_.ref_noise_rad_s); }
+    quiet_response_rad_s_ = noise_free_response(*this, quiet_world_, model_);
     true_rate_rad_s_ = noise_free_response(*this, faultless(model_));
     SensorModel sooner = model_;
     SensorModel later = model_;
@@ -174,7 +183,8 @@ double Baseline::read_white_course(std::size_t axis) {
     const StageContext context{model_, rate_hz_, 0, nullptr};
     for (const EffectModel& entry : model_.effects) {
         const EffectDefinition* effect = find_effect(entry.effect);
-        if (effect->signature != nullptr && effect->signature->white_gain != nullptr && acts_on(entry, axis)) {
+        if (effect->signature != nullptr && effect->signature->white_gain != nullptr &&
+            acts_on(entry, axis)) {
             gains.push_back(effect->signature->white_gain(EffectUse(context, *effect, entry, 0)));
         }
         if (effect->signature != nullptr && effect->signature->instant_sd_s != nullptr && moves()) {
@@ -230,12 +240,18 @@ void Baseline::expect_spectrum() {
 }
 
 std::shared_ptr<const Baseline> Baseline::with(const SensorModel& model) const {
-    return std::make_shared<const Baseline>(world_, model, memory_);
+    return std::make_shared<const Baseline>(world_, model, memory_, quiet_world_);
 }
 
 std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline, const SensorModel& model) {
+    return noise_free_response(baseline, baseline.shared_world(), model);
+}
+
+std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline,
+                                                      std::shared_ptr<const RecordedWorld> world,
+                                                      const SensorModel& model) {
     SimulationRequest request;
-    request.like = baseline.shared_world();
+    request.like = std::move(world);
     RecordingSimulator simulator(without_noise(model), request);
     std::array<std::vector<float>, 3> response;
     for (const std::size_t axis : baseline.axes()) { response[axis].assign(baseline.length(), 0.0F); }

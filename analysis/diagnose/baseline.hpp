@@ -35,7 +35,8 @@ class Baseline {
 public:
     // `world`'s recording has no diagnosis_refusal(), `model` no simulation_refusal().
     Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
-             std::shared_ptr<ResponseMemory> memory = std::make_shared<ResponseMemory>());
+             std::shared_ptr<ResponseMemory> memory = std::make_shared<ResponseMemory>(),
+             std::shared_ptr<const RecordedWorld> quiet_world = nullptr);
 
     const RecordedWorld& world() const { return *world_; }
     std::shared_ptr<const RecordedWorld> shared_world() const { return world_; }
@@ -58,6 +59,14 @@ public:
     const std::vector<float>& response_change_rad_s2(std::size_t axis) const {
         return response_change_rad_s2_[axis];
     }
+    // The same world with the reference's noise filtered out as far as its spectrum allows: what a model
+    // misses of the motion is a function of the true rate, not of the noise. The world itself where nothing
+    // moves.
+    std::shared_ptr<const RecordedWorld> quiet_world() const { return quiet_world_; }
+    // The model's answer to it.
+    const std::vector<float>& quiet_response_rad_s(std::size_t axis) const {
+        return moves() ? quiet_response_rad_s_[axis] : response_rad_s_[axis];
+    }
     const std::vector<UncertainResponse>& uncertain(std::size_t axis) const { return uncertain_[axis]; }
 
     const SpectralBins& bins() const { return bins_; }
@@ -65,8 +74,8 @@ public:
     // Two-sided densities at the bins' middles under the model, rate's unit squared per Hz.
     const std::vector<SpectralParts>& parts(std::size_t axis) const { return parts_[axis]; }
 
-    // By slot, the variance of the white noise as a multiple of its mean over the record; empty where the model
-    // has it constant.
+    // By slot, the variance of the white noise as a multiple of its mean over the record; empty where the
+    // model has it constant.
     const std::vector<float>& white_course(std::size_t axis) const { return white_course_[axis]; }
 
     // The same world, another model.
@@ -82,6 +91,7 @@ private:
     void expect_spectrum();
 
     std::shared_ptr<const RecordedWorld> world_;
+    std::shared_ptr<const RecordedWorld> quiet_world_;
     SensorModel model_;
     std::shared_ptr<ResponseMemory> memory_;
     double rate_hz_ = 0.0;
@@ -89,6 +99,7 @@ private:
     std::vector<std::size_t> axes_;
     std::vector<float> temperature_C_;
     std::array<std::vector<float>, 3> response_rad_s_;
+    std::array<std::vector<float>, 3> quiet_response_rad_s_;
     std::array<std::vector<float>, 3> true_rate_rad_s_;
     std::array<std::vector<float>, 3> response_change_rad_s2_;
     std::array<std::vector<UncertainResponse>, 3> uncertain_;
@@ -101,6 +112,10 @@ private:
 // The model's answer to the world without noise, quantisation and whatever is drawn by chance, by slot; times
 // are those of the baseline's grid.
 std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline, const SensorModel& model);
+// The same of another world with the same grid.
+std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline,
+                                                      std::shared_ptr<const RecordedWorld> world,
+                                                      const SensorModel& model);
 
 // The model with nothing random left in it.
 SensorModel without_noise(const SensorModel& model);

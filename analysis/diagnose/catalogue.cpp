@@ -15,6 +15,7 @@
 #include "analysis/diagnose/two_level_test.hpp"
 #include "analysis/diagnose/variance_course_test.hpp"
 #include "analysis/diagnose/variance_of_test.hpp"
+#include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
@@ -57,21 +58,22 @@ std::string lacking(const EffectSignature& signature, const Baseline& baseline) 
 
 }  // namespace
 
-std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline) {
+std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline,
+                                           unsigned threads) {
     std::vector<CatalogueEntry> catalogue;
     for (const ChainLink& link : signal_chain()) {
         if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
-        CatalogueEntry entry;
-        entry.effect = link.effect;
-        entry.untestable = lacking(*link.effect->signature, *baseline);
+        catalogue.push_back({link.effect, nullptr, lacking(*link.effect->signature, *baseline)});
+    }
+    parallel_for(catalogue.size(), threads, [&](std::size_t i) {
+        CatalogueEntry& entry = catalogue[i];
         for (const MethodMaker& maker : makers) {
-            if (!entry.untestable.empty() || maker.method != link.effect->signature->method) { continue; }
-            MadeTest made = maker.make(*link.effect, baseline);
+            if (!entry.untestable.empty() || maker.method != entry.effect->signature->method) { continue; }
+            MadeTest made = maker.make(*entry.effect, baseline);
             entry.test = std::move(made.test);
             entry.untestable = std::move(made.untestable);
         }
-        catalogue.push_back(std::move(entry));
-    }
+    });
     return catalogue;
 }
 

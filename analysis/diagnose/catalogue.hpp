@@ -16,6 +16,7 @@ struct CatalogueEntry {
 };
 
 // Every effect that has a signature, in the order of the signal chain.
-std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline);
+std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline,
+                                           unsigned threads = 1);
 
 }  // namespace gyrolog

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/distributions/chi_squared.hpp>
+
 #include "analysis/diagnose/effect_search.hpp"
 #include "analysis/diagnose/evidence_tail.hpp"
 #include "analysis/diagnose/gap_measure.hpp"
+#include "analysis/diagnose/gap_domains.hpp"
 #include "analysis/diagnose/gap_report.hpp"
 #include "analysis/diagnose/null_simulations.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -159,19 +162,28 @@ private:
         return true;
     }
 
+    void describe_domains() {
+        const MeasuredGap before{before_curves_, before_};
+        if (!after_) {
+            answer_.domains = gap_domains(before, nullptr, answer_.band_probability);
+            return;
+        }
+        const MeasuredGap after{after_curves_, *after_};
+        answer_.domains = gap_domains(before, &after, answer_.band_probability);
+    }
+
     void decide() {
         const GapSummary before = summarise(before_curves_, before_);
         const GapSummary after = after_ ? summarise(after_curves_, *after_) : before;
         answer_.gap_before = before.gap;
         answer_.gap_after = after.gap;
+        describe_domains();
         if (answer_.p_none >= none_above_p) {
             answer_.verdict = Verdict::none;
             return;
         }
         const double excess_before = before.gap.value * before.gap.value - 1.0;
         const double excess_after = std::max(after.gap.value * after.gap.value - 1.0, 0.0);
-        answer_.shrink = excess_before > 0.0 ? std::clamp(1.0 - excess_after / excess_before, 0.0, 1.0) : 0.0;
-        answer_.shrink_lo = answer_.shrink_hi = answer_.shrink;
         const bool explained = after_ && (answer_.p_left >= unexplained_below_p ||
                                           excess_after < tolerated_share * excess_before);
         answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
@@ -180,7 +192,41 @@ private:
                 answer_.causes.push_back(cause_of(found, explained));
             }
         }
+        if (explained) {
+            close_by_causes();
+        } else {
+            const double shrink = excess_before > 0.0 ? 1.0 - excess_after / excess_before : 0.0;
+            answer_.shrink = answer_.shrink_lo = answer_.shrink_hi = std::clamp(shrink, 0.0, 1.0);
+        }
         answer_.where = answer_.causes.empty() ? before.where : answer_.causes.front().finding.where;
+    }
+
+    // Along what the causes change, the distance of a recording is sqrt(2 gain / parameters), a simulation's
+    // is 1 (twice a log likelihood ratio is chi-square with as many degrees of freedom as parameters). Of the
+    // distance, what the parameters' own error leaves is chi-square likewise.
+    void close_by_causes() {
+        double gain_nats = 0.0;
+        double parameters = 0.0;
+        for (Cause& cause : answer_.causes) {
+            const double own = std::max(1, cause.finding.parameters);
+            gain_nats += cause.finding.gain_nats;
+            parameters += own;
+        }
+        const boost::math::chi_squared error(parameters);
+        const auto left = [&](double square) {
+            return std::clamp(1.0 - square / (2.0 * gain_nats), 0.0, 1.0);
+        };
+        answer_.shrink = left(parameters);
+        answer_.shrink_lo = left(boost::math::quantile(error, 0.975));
+        answer_.shrink_hi = left(boost::math::quantile(error, 0.025));
+        for (Cause& cause : answer_.causes) {
+            cause.shrink_alone = answer_.shrink * cause.finding.gain_nats / gain_nats;
+        }
+        const double along = std::sqrt(1.0 + 2.0 * gain_nats / parameters);
+        if (along > answer_.gap_before.value) {
+            const double sd = std::sqrt((2.0 * along * along - 1.0) / (2.0 * parameters)) / along;
+            answer_.gap_before = {along, 1.0, std::max(1.0, along - 1.96 * sd), along + 1.96 * sd};
+        }
     }
 
     // The evidence of all effects as their probabilities, equal before the recording was seen.

@@ -24,7 +24,9 @@ std::array<std::vector<float>, 3> simulated_response(const Baseline& baseline, c
     }
     SensorModel with = without;
     with.effects.push_back(effect);
-    const auto changed = noise_free_response(baseline, with);
+    const std::shared_ptr<const RecordedWorld> world =
+        slow ? baseline.shared_world() : baseline.quiet_world();
+    const auto changed = noise_free_response(baseline, world, with);
     const auto unchanged =
         slow ? noise_free_response(baseline, without) : std::array<std::vector<float>, 3>{};
     const std::size_t kept = slow ? std::min(slow_coefficients, baseline.length()) : baseline.length();
@@ -36,7 +38,7 @@ std::array<std::vector<float>, 3> simulated_response(const Baseline& baseline, c
             cosines[axis] = cosines[baseline.axes().front()];
             continue;
         }
-        const std::vector<float>& before = slow ? unchanged[axis] : baseline.response_rad_s(axis);
+        const std::vector<float>& before = slow ? unchanged[axis] : baseline.quiet_response_rad_s(axis);
         for (std::size_t slot = 0; slot < work.size(); ++slot) {
             work[slot] = static_cast<double>(changed[axis][slot]) - static_cast<double>(before[slot]);
         }

@@ -124,7 +124,7 @@ Hypotheses examine(const std::shared_ptr<const Baseline>& baseline,
     Hypotheses hypotheses;
     hypotheses.baseline = baseline;
     hypotheses.observation = std::make_shared<const Observation>(baseline, recording, seed);
-    hypotheses.catalogue = make_catalogue(baseline);
+    hypotheses.catalogue = make_catalogue(baseline, threads);
     hypotheses.findings.resize(hypotheses.catalogue.size());
     parallel_for(hypotheses.catalogue.size(), threads, [&](std::size_t i) {
         if (hypotheses.catalogue[i].test) {

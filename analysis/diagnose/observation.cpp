@@ -68,14 +68,15 @@ std::vector<Segment> placed_rows(const Baseline& baseline, const Recording& reco
     return placed;
 }
 
-// How many samples on either side say what the level in a hole is.
-constexpr std::size_t level_samples = 16;
+// How many samples on either side say what the level in a hole is: so many that what they have in common with
+// the stand-ins is slower than the white noise reaches.
+constexpr std::size_t level_samples = 256;
 
 double mean_of_present(const std::vector<float>& values, const std::vector<bool>& present, std::size_t from,
                        bool backwards) {
     double sum = 0.0;
     double count = 0.0;
-    const std::size_t reach = 4 * level_samples;
+    const std::size_t reach = 2 * level_samples;
     for (std::size_t i = 0; i < reach && count < static_cast<double>(level_samples); ++i) {
         if (backwards ? i > from : from + i >= values.size()) { break; }
         const std::size_t slot = backwards ? from - i : from + i;

@@ -1,0 +1,96 @@
+#include "analysis/diagnose/quiet_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace gyrolog {
+
+namespace {
+
+// Over which a true motion without jerk is a straight line.
+constexpr double half_window_s = 0.25;
+// The scatter about a line through noise alone, from some fifty samples, is rarely this much larger than it
+// is.
+constexpr double margin = 1.6;
+
+struct Line {
+    double value;     // in the middle
+    double variance;  // about it
+};
+
+// Through values[first] ... values[end - 1], seen at `middle`.
+Line line_through(const std::vector<double>& values, std::size_t first, std::size_t end, std::size_t middle) {
+    double n = 0.0;
+    double x_sum = 0.0;
+    double y_sum = 0.0;
+    double xx = 0.0;
+    double xy = 0.0;
+    double yy = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+        const double x = static_cast<double>(i) - static_cast<double>(middle);
+        const double y = values[i] - values[middle];
+        n += 1.0;
+        x_sum += x;
+        y_sum += y;
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    const double x_scatter = xx - x_sum * x_sum / n;
+    const double slope = x_scatter > 0.0 ? (xy - x_sum * y_sum / n) / x_scatter : 0.0;
+    const double rest = std::max(0.0, yy - y_sum * y_sum / n - slope * slope * x_scatter);
+    return {values[middle] + (y_sum - slope * x_sum) / n, rest / std::max(n - 2.0, 1.0)};
+}
+
+// The widest window, of up to this many times the narrowest, in which there is nothing but noise about a
+// line.
+constexpr std::size_t widest = 16;
+
+double quieted(const std::vector<double>& values, const Segment& segment, std::size_t i,
+               double noise_variance, std::size_t reach) {
+    for (std::size_t factor = widest; factor > 0; factor /= 2) {
+        const std::size_t wanted = factor * reach;
+        const std::size_t first = i - std::min(wanted, i - segment.first);
+        const std::size_t end = std::min(i + wanted + 1, segment.first + segment.count);
+        const auto count = static_cast<double>(end - first);
+        if (count < 5.0) { return values[i]; }
+        const Line line = line_through(values, first, end, i);
+        if (!std::isfinite(line.variance)) { continue; }
+        const bool only_noise = line.variance <= noise_variance * (1.0 + 4.0 * std::sqrt(2.0 / count));
+        if (only_noise) { return line.value; }
+        if (factor == 1) {
+            const double kept = std::max(0.0, 1.0 - margin * noise_variance / line.variance);
+            return line.value + kept * (values[i] - line.value);
+        }
+    }
+    return values[i];
+}
+
+std::vector<double> filtered(const std::vector<double>& values, const std::vector<Segment>& segments,
+                             double noise_variance, std::size_t reach) {
+    std::vector<double> result = values;
+    for (const Segment& segment : segments) {
+        for (std::size_t i = segment.first; i < segment.first + segment.count; ++i) {
+            result[i] = quieted(values, segment, i, noise_variance, reach);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+std::shared_ptr<const RecordedWorld> without_reference_noise(const RecordedWorld& world,
+                                                             double noise_sd_rad_s) {
+    auto recording = std::make_shared<Recording>(world.recording());
+    const auto reach = static_cast<std::size_t>(std::max(4.0, half_window_s * recording->rate_hz));
+    for (Column& column : recording->columns) {
+        if (column.name != "ref_x" && column.name != "ref_y" && column.name != "ref_z") { continue; }
+        column.data = filtered(column.values(), recording->segments, noise_sd_rad_s * noise_sd_rad_s, reach);
+        column.scale = 1.0;
+        column.offset = 0.0;
+    }
+    return std::make_shared<const RecordedWorld>(std::move(recording));
+}
+
+}  // namespace gyrolog
