@@ -171,6 +171,7 @@ public:
         double most = -std::numeric_limits<double>::infinity();
         for (const std::vector<std::size_t>& subset : axis_subsets(members)) {
             std::vector<const Scan*> chosen;
+            chosen.reserve(subset.size());
             for (const std::size_t member : subset) { chosen.push_back(&scans[member]); }
             const double evidence = evidence_anywhere(chosen);
             if (evidence > most) {
