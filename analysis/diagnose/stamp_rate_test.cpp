@@ -33,7 +33,7 @@ Finding find_rate(const EffectDefinition& effect, const Baseline& baseline, doub
         std::max(clock_sd_rel_least, stated_uncertainty(baseline.model().sd_abs, "rate_rel", clock_sd_rel));
     const double sd = std::hypot(known_sd, stamps_sd);
     Finding finding = whole_sensor_finding(effect, baseline, {{"rel", rel}, {"in_stamps", 1.0}},
-                                           {{"rel", std::max(stamps_sd, clock_sd_rel_least)}});
+                                           {{"rel", sd}});
     finding.gain_nats = std::min(certain_nats, 0.5 * rel * rel / (sd * sd));
     const auto range = std::ranges::find(effect.params, "rel", &EffectParam::name);
     finding.evidence_nats =
