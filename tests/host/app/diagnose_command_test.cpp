@@ -1,0 +1,189 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/simulate/recording_simulator.hpp"
+#include "host/app/command_line.hpp"
+#include "host/formats/model_json.hpp"
+#include "host/formats/recording_csv.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class DiagnoseCommand : public testing::Test {
+protected:
+    void SetUp() override { ASSERT_TRUE(write_model(typical_mpu9250(), model).ok()); }
+
+    ExitCode diagnose(std::vector<std::string> arguments) {
+        out.str("");
+        err.str("");
+        arguments.insert(arguments.begin(), "diagnose");
+        return run_command_line(std::move(arguments), {out, err});
+    }
+
+    // A recording of a sensor whose white noise is `factor` times the model's.
+    void write_noisy_recording(double factor) const {
+        SensorModel sensor = typical_mpu9250();
+        for (AxisModel& axis : sensor.axes) { axis.noise.N_rad_per_sqrt_s *= factor; }
+        SimulationRequest request;
+        request.samples = 6000;
+        ASSERT_TRUE(write_recording_csv(simulate_recording(sensor, request), recording).ok());
+    }
+
+    // The model's own curve of x but for N.
+    void write_curve(double factor) const {
+        NoiseModel noise{typical_mpu9250().axes[0].noise, {}, {}, {}};
+        noise.coefficients.N_rad_per_sqrt_s *= factor;
+        std::ofstream text(curve);
+        text << "tau_s,x_dps\n";
+        for (double tau_s = 0.01; tau_s < 5000.0; tau_s *= 1.4) {
+            text << tau_s << ',' << std::sqrt(noise.allan_variance(tau_s)) * deg_per_rad << '\n';
+        }
+    }
+
+    TemporaryFolder folder;
+    std::string model = folder.path("model.json");
+    std::string recording = folder.path("night.csv");
+    std::string curve = folder.path("curve.csv");
+    std::ostringstream out;
+    std::ostringstream err;
+};
+
+TEST_F(DiagnoseCommand, FindsTheCauseAndWritesTextJsonFigureAndModel) {
+    write_noisy_recording(1.5);
+    const std::string corrected = folder.path("corrected.json");
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", folder.path("d.json"),
+                        "--plot", folder.path("d.png"), "--model-out", corrected}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_THAT(out.str(), StartsWith("known: arw_scale on x, y and z"));
+    const json answer = json::parse(read_whole_file(folder.path("d.json")));
+    EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
+    EXPECT_EQ(answer["verdict"], "known");
+    ASSERT_FALSE(answer["causes"].empty());
+    EXPECT_EQ(answer["causes"][0]["effect"], "arw_scale");
+    EXPECT_NEAR(answer["causes"][0]["params"]["factor"].get<double>(), 1.5, 0.1);
+    EXPECT_EQ(answer["model"], "model.json");
+    EXPECT_EQ(answer["simulations"], 20);
+    EXPECT_EQ(read_whole_file(folder.path("d.png")).substr(1, 3), "PNG");
+    EXPECT_EQ(err.str(), "written: " + folder.path("d.json") + "\nwritten: " + folder.path("d.png") +
+                             "\nwritten: " + corrected + "\n");
+    std::ostringstream simulated;
+    EXPECT_EQ(run_command_line({"simulate", corrected, "-o", folder.path("s.csv"), "--duration", "10s"},
+                               {simulated, err}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_EQ(read_model(corrected)->effects.size(), 1U);
+}
+
+TEST_F(DiagnoseCommand, GivesTheSameAnswerForAnyNumberOfThreads) {
+    write_noisy_recording(1.0);
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-", "--threads", "1"}),
+              ExitCode::ok)
+        << err.str();
+    const std::string one = out.str();
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-", "--threads", "2"}),
+              ExitCode::ok);
+    EXPECT_EQ(out.str(), one);
+    EXPECT_TRUE(json::parse(one)["p_none"].is_number());
+}
+
+TEST_F(DiagnoseCommand, OfACurveFindsTheCoefficientThatIsOff) {
+    write_curve(1.4);
+    const std::string corrected = folder.path("corrected.json");
+    ASSERT_EQ(diagnose({"--curve", curve, "--model", model, "--json", folder.path("d.json"), "--plot",
+                        folder.path("d.png"), "--model-out", corrected}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_THAT(out.str(), StartsWith("known: arw_scale on x explains the gap\n"));
+    const json answer = json::parse(read_whole_file(folder.path("d.json")));
+    EXPECT_EQ(answer["verdict"], "known");
+    EXPECT_EQ(answer["causes"][0]["effect"], "arw_scale");
+    EXPECT_NEAR(answer["causes"][0]["params"]["factor"].get<double>(), 1.4, 0.02);
+    EXPECT_EQ(read_whole_file(folder.path("d.png")).substr(1, 3), "PNG");
+    EXPECT_NEAR(read_model(corrected)->axes[0].noise.N_rad_per_sqrt_s,
+                1.4 * typical_mpu9250().axes[0].noise.N_rad_per_sqrt_s, 1e-6);
+    EXPECT_EQ(read_model(corrected)->axes[1].noise.N_rad_per_sqrt_s,
+              typical_mpu9250().axes[1].noise.N_rad_per_sqrt_s);
+    write_curve(1.0);
+    ASSERT_EQ(diagnose({"--curve", curve, "--model", model, "--json", "-"}), ExitCode::ok) << err.str();
+    EXPECT_EQ(json::parse(out.str())["verdict"], "none");
+}
+
+TEST_F(DiagnoseCommand, OfACurveWithItsSimulationNeedsNoModel) {
+    std::ofstream(curve) << "tau_s,sensor_y_dps,simulation_y_dps\n"
+                            "0.01,0.14,0.1\n0.1,0.0443,0.0316\n1,0.014,0.01\n10,0.00443,0.00316\n"
+                            "100,0.0014,0.001\n1000,0.000443,0.000316\n";
+    ASSERT_EQ(diagnose({"--curve", curve, "--json", "-"}), ExitCode::ok) << err.str();
+    const json answer = json::parse(out.str());
+    EXPECT_EQ(answer["causes"][0]["effect"], "arw_scale");
+    EXPECT_EQ(answer["causes"][0]["axes"], json({"y"}));
+    write_curve(1.0);
+    EXPECT_EQ(diagnose({"--curve", curve}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("give the --model"));
+    EXPECT_EQ(diagnose({"--curve", curve, "--model-out", folder.path("m.json")}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("--model-out corrects a model"));
+}
+
+TEST_F(DiagnoseCommand, SaysWhatIsMissingAndWhatDoesNotGoTogether) {
+    EXPECT_EQ(diagnose({}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("give a RECORDING, or --curve"));
+    EXPECT_EQ(diagnose({recording, "--curve", curve, "--model", model}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("not both"));
+    EXPECT_EQ(diagnose({recording}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("give the --model"));
+    EXPECT_EQ(diagnose({"--curve", curve, "--model", model, "--seed", "3"}), ExitCode::usage);
+    EXPECT_EQ(diagnose({recording, "--model", model, "--simulations", "3"}), ExitCode::usage);
+    EXPECT_EQ(diagnose({recording, "--model", model, "--plot", "d.jpg"}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("PNG only"));
+    EXPECT_EQ(out.str(), "");
+}
+
+TEST_F(DiagnoseCommand, WritesOverNothingThatItReads) {
+    write_noisy_recording(1.0);
+    write_curve(1.0);
+    const std::string model_before = read_whole_file(model);
+    EXPECT_EQ(diagnose({recording, "--model", model, "--model-out", model}), ExitCode::usage);
+    EXPECT_EQ(diagnose({recording, "--model", model, "--json", recording}), ExitCode::usage);
+    EXPECT_EQ(diagnose({"--curve", curve, "--model", model, "--model-out", model}), ExitCode::usage);
+    EXPECT_EQ(
+        diagnose({recording, "--model", model, "--json", folder.path("a"), "--model-out", folder.path("a")}),
+        ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("--model-out"));
+    EXPECT_EQ(read_whole_file(model), model_before);
+}
+
+TEST_F(DiagnoseCommand, SaysWhichFileCannotBeUsedAndWhy) {
+    write_curve(1.0);
+    EXPECT_EQ(diagnose({folder.path("none.csv"), "--model", model}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("none.csv"));
+    EXPECT_EQ(diagnose({"--curve", curve, "--model", folder.path("none.json")}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("none.json"));
+    std::ofstream(folder.path("short.csv")) << "t_s,gx_dps\n0,1\n0.01,2\n0.02,1\n";
+    EXPECT_EQ(diagnose({folder.path("short.csv"), "--model", model}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("short.csv"));
+    json unknown = json::parse(read_whole_file(model));
+    unknown["effects"] = {{{"effect", "gremlins"}, {"axes", {"x"}}, {"params", json::object()}}};
+    std::ofstream(folder.path("unknown.json")) << unknown;
+    EXPECT_EQ(diagnose({"--curve", curve, "--model", folder.path("unknown.json")}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("gremlins"));
+    std::ofstream(folder.path("no_axis.csv")) << "tau_s,gyro_dps\n0.01,1\n0.1,0.3\n1,0.1\n10,0.03\n";
+    EXPECT_EQ(diagnose({"--curve", folder.path("no_axis.csv"), "--model", model}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("no curve is of an axis"));
+    EXPECT_EQ(out.str(), "");
+}
+
+}  // namespace
+}  // namespace gyrolog
