@@ -83,11 +83,13 @@ std::string gap_after_sentence(const Diagnosis& diagnosis) {
     const Gap& gap = diagnosis.gap_after;
     const std::size_t causes = diagnosis.causes.size();
     const char* with = causes == 1 ? "it" : causes == 2 ? "both" : "all of them";
-    std::string text = fmt::format(
-        "With {} the gap {} {} times the floor: {} ({} to {}) closed on data that the fit did not see", with,
-        gap.value < diagnosis.gap_before.value ? "falls to" : "is still", times_floor(gap.value, gap),
-        percent(diagnosis.shrink), percent(diagnosis.shrink_lo), percent(diagnosis.shrink_hi));
-    if (!diagnosis.held_out.empty()) { text += fmt::format(" ({})", diagnosis.held_out); }
+    std::string text = fmt::format("With {} the gap {} {} times the floor: {} ({} to {}) closed", with,
+                                   gap.value < diagnosis.gap_before.value ? "falls to" : "is still",
+                                   times_floor(gap.value, gap), percent(diagnosis.shrink),
+                                   percent(diagnosis.shrink_lo), percent(diagnosis.shrink_hi));
+    if (!diagnosis.held_out.empty()) {
+        text += fmt::format(" on data that the fit did not see ({})", diagnosis.held_out);
+    }
     return text + ".";
 }
 
@@ -186,7 +188,7 @@ std::string domains_text(const Diagnosis& diagnosis) {
     if (corrected) { heads = {"gap before", "after", "points outside before", "after"}; }
     std::vector<TextRow> rows;
     for (const GapDomain& domain : diagnosis.domains) {
-        TextRow row{fmt::format("  {} {}", axis_names.at(domain.axis), domain.name), "", {}};
+        TextRow row{fmt::format("{} {}", axis_names.at(domain.axis), domain.name), "", {}};
         const std::string before = outside_text(domain.outside_before, domain.x.size());
         row.cells = {fmt::format("{:.2g}", domain.gap_before), before};
         if (corrected && domain.after_lo.empty()) {

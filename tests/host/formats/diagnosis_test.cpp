@@ -310,6 +310,9 @@ TEST(DiagnosisText, TellsPlaceSizeAndHowFarTheGapCloses) {
     EXPECT_THAT(text,
                 HasSubstr("With it the gap falls to 1.1 times the floor: 97 % (93 % to 100 %) closed on "
                           "data that the fit did not see (every other minute)."));
+    Diagnosis seen = known();
+    seen.held_out.clear();
+    EXPECT_THAT(diagnosis_text(seen), Not(HasSubstr("did not see"))) << "nothing was held out";
     EXPECT_THAT(text, HasSubstr("`temp_linear` (2.1 nats less) fits nearly as well; one up-and-down sweep of "
                                 "5 degC would decide."));
     EXPECT_THAT(text, HasSubstr("1 of 5000 would differ as much (p = 0.0002)"));
