@@ -18,8 +18,9 @@ double as_it_is(double value) { return value; }
 double in_degrees(double angle) { return angle * deg_per_rad; }
 double deviation_dps(double log_deviation) { return std::exp(log_deviation) * deg_per_rad; }
 double variance_dB(double log_variance) { return 0.5 * db_per_neper * log_variance; }
-// The spectrum's numbers are cube roots of power ratios (Wilson and Hilferty).
-double power_dB(double value) { return 1.5 * db_per_neper * std::log(std::max(1.0 + value / 3.0, 1e-3)); }
+// The spectrum's numbers are cube roots of power ratios (Wilson and Hilferty), whose band may reach below
+// zero.
+double power_dB(double value) { return 1.5 * db_per_neper * std::log(std::max(1.0 + value / 3.0, 0.2)); }
 
 // How a kind of curve is shown.
 struct DomainLook {
@@ -30,9 +31,10 @@ struct DomainLook {
     double (*y)(double);
     bool log_x = false;
     bool log_y = false;
+    bool over_mean = false;  // the simulations' mean is taken off
 };
 
-const char* const standard_deviations = "mean (standard deviations)";
+const char* const standard_deviations = "mean (its sd)";
 
 DomainLook look_of(GapDomainKind kind) {
     switch (kind) {
@@ -46,7 +48,8 @@ DomainLook look_of(GapDomainKind kind) {
         case GapDomainKind::drift:
             return {"bias over time", "time (s)", standard_deviations, as_it_is, as_it_is};
         case GapDomainKind::amplitude:
-            return {"tails", "standard deviations", "2 √ samples beyond", as_it_is, as_it_is};
+            return {"tails", "standard deviations", "2√count over model", as_it_is, as_it_is, false, false,
+                    true};
         case GapDomainKind::temperature:
             return {"temperature", "temperature (degC)", standard_deviations, as_it_is, as_it_is};
         case GapDomainKind::cross_axis:
@@ -76,7 +79,7 @@ struct Band {
     std::vector<bool> outside;
 };
 
-// `shift`: by point, added to the reference.
+// `shift`: by point, added to the reference before it is shown.
 Band band_of(const MeasuredGap& gap, std::size_t index, const std::vector<double>& shift, double width_sd,
              double (*shown)(double)) {
     Band band;
@@ -101,6 +104,7 @@ std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap*
         const GapCurve& curve = before.curves[c];
         const DomainLook look = look_of(curve.kind);
         const std::size_t points = points_of(curve);
+        std::vector<double> shift(points, 0.0);
         GapDomain domain;
         domain.name = name_of(curve, look);
         domain.x_name = look.x_name;
@@ -110,18 +114,18 @@ std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap*
         domain.axis = curve.axis;
         for (std::size_t i = 0; i < points; ++i) {
             domain.x.push_back(look.x(curve.x[i]));
-            domain.recording.push_back(look.y(curve.value[i]));
+            if (look.over_mean) { shift[i] = -before.reference.mean[c][i]; }
+            domain.recording.push_back(look.y(curve.value[i] + shift[i]));
         }
-        Band band = band_of(before, c, std::vector<double>(points, 0.0), width_sd, look.y);
+        Band band = band_of(before, c, shift, width_sd, look.y);
         domain.before_lo = std::move(band.lo);
         domain.before_hi = std::move(band.hi);
         domain.outside_before = std::move(band.outside);
         domain.gap_before = gap_of(curve, before.reference, c).distance;
         if (after != nullptr && c < after->curves.size() &&
             after->curves[c].value.size() == curve.value.size()) {
-            std::vector<double> shift(points);
             for (std::size_t i = 0; i < points; ++i) {
-                shift[i] = curve.value[i] - after->curves[c].value[i];
+                shift[i] += curve.value[i] - after->curves[c].value[i];
             }
             band = band_of(*after, c, shift, width_sd, look.y);
             domain.after_lo = std::move(band.lo);

@@ -239,7 +239,8 @@ std::vector<Row> shown_rows(const Diagnosis& diagnosis) {
         std::erase_if(rows, [&](const Row& row) { return row.gap() < least; });
     }
     const std::size_t axes = axes_in(diagnosis);
-    std::ranges::stable_partition(rows, [&](const Row& row) { return row.domains.size() == axes; });
+    std::stable_partition(rows.begin(), rows.end(),
+                          [&](const Row& row) { return row.domains.size() == axes; });
     return rows;
 }
 

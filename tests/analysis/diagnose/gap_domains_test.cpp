@@ -41,6 +41,8 @@ TEST(GapDomains, AreInUnitsThatPeopleUse) {
     EXPECT_EQ(domains[3].name, "rate about z");
     EXPECT_NEAR(domains[3].x[1], deg_per_rad, 1e-12);
     EXPECT_EQ(domains[4].x.size(), 2U) << "the skewness is no amplitude";
+    EXPECT_NEAR(domains[4].recording[1], 0.0, 1e-12);
+    EXPECT_NEAR(domains[4].before_hi[1], 1.96 * 0.02, 1e-5);
     EXPECT_TRUE(domains[0].after_lo.empty());
 }
 
