@@ -254,7 +254,8 @@ std::vector<LagStep> LagCourse::steps() const {
     if (*std::ranges::min_element(score) == infinity) { return steps; }
     int lag = centre - reach + static_cast<int>(std::ranges::min_element(score) - score.begin());
     for (std::size_t window = came_from.size(); window-- > 0;) {
-        const int before = came_from[window][static_cast<std::size_t>(lag - centre_[window] + reach)];
+        const int place = lag - centre_[window] + reach;
+        const int before = came_from[window][static_cast<std::size_t>(place)];
         if (before != lag) { steps.push_back({window * window_slots_, lag - before}); }
         lag = before;
     }

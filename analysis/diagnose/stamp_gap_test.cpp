@@ -91,13 +91,15 @@ std::optional<Finding> find_gaps(const EffectDefinition& effect, const Baseline&
 MadeTest make_stamp_gap_test(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline) {
     const Recording& recording = baseline->world().recording();
     if (recording.stamps == StampKind::none) {
-        return make_stamp_test({}, "the recording has no time stamps", make_lag_step_test(effect, baseline));
+        return make_stamp_test({}, "the recording has no time stamps",
+                               make_lag_step_test(effect, std::move(baseline)));
     }
     if (recording.stamps == StampKind::arrival) {
         return make_stamp_test({}, "the time stamps are arrival times: they show no gaps",
-                               make_lag_step_test(effect, baseline));
+                               make_lag_step_test(effect, std::move(baseline)));
     }
-    return make_stamp_test(find_gaps(effect, *baseline), {}, make_lag_step_test(effect, baseline));
+    std::optional<Finding> in_stamps = find_gaps(effect, *baseline);
+    return make_stamp_test(std::move(in_stamps), {}, make_lag_step_test(effect, std::move(baseline)));
 }
 
 }  // namespace gyrolog

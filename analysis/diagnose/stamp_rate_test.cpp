@@ -32,8 +32,8 @@ Finding find_rate(const EffectDefinition& effect, const Baseline& baseline, doub
     const double known_sd =
         std::max(clock_sd_rel_least, stated_uncertainty(baseline.model().sd_abs, "rate_rel", clock_sd_rel));
     const double sd = std::hypot(known_sd, stamps_sd);
-    Finding finding = whole_sensor_finding(effect, baseline, {{"rel", rel}, {"in_stamps", 1.0}},
-                                           {{"rel", sd}});
+    Finding finding =
+        whole_sensor_finding(effect, baseline, {{"rel", rel}, {"in_stamps", 1.0}}, {{"rel", sd}});
     finding.gain_nats = std::min(certain_nats, 0.5 * rel * rel / (sd * sd));
     const auto range = std::ranges::find(effect.params, "rel", &EffectParam::name);
     finding.evidence_nats =
@@ -46,14 +46,16 @@ Finding find_rate(const EffectDefinition& effect, const Baseline& baseline, doub
 MadeTest make_stamp_rate_test(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline) {
     const Recording& recording = baseline->world().recording();
     if (recording.stamps == StampKind::none) {
-        return make_stamp_test({}, "the recording has no time stamps", make_lag_slope_test(effect, baseline));
+        return make_stamp_test({}, "the recording has no time stamps",
+                               make_lag_slope_test(effect, std::move(baseline)));
     }
     const double rel = recording.rate_hz / expected_rate_hz(*baseline, effect) - 1.0;
     if (std::fabs(rel) > clock_error_most) {
         return make_stamp_test({}, "the recording was taken at another rate than the model's",
-                               make_lag_slope_test(effect, baseline));
+                               make_lag_slope_test(effect, std::move(baseline)));
     }
-    return make_stamp_test(find_rate(effect, *baseline, rel), {}, make_lag_slope_test(effect, baseline));
+    std::optional<Finding> in_stamps = find_rate(effect, *baseline, rel);
+    return make_stamp_test(std::move(in_stamps), {}, make_lag_slope_test(effect, std::move(baseline)));
 }
 
 }  // namespace gyrolog

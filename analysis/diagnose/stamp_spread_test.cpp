@@ -86,19 +86,19 @@ MadeTest make_stamp_spread_test(const EffectDefinition& effect, std::shared_ptr<
     const Recording& recording = baseline->world().recording();
     if (recording.stamps == StampKind::none) {
         return make_stamp_test({}, "the recording has no time stamps",
-                               make_timing_spread_test(effect, baseline));
+                               make_timing_spread_test(effect, std::move(baseline)));
     }
     const std::optional<StampScatter> seen = stamp_scatter(recording);
     if (!seen) {
         return make_stamp_test({}, "the samples have no time stamps of their own",
-                               make_timing_spread_test(effect, baseline));
+                               make_timing_spread_test(effect, std::move(baseline)));
     }
     if (recording.stamps == StampKind::arrival && seen->neighbour_correlation > burst_correlation) {
         return make_stamp_test({}, "the time stamps are arrival times that come in bursts",
-                               make_timing_spread_test(effect, baseline));
+                               make_timing_spread_test(effect, std::move(baseline)));
     }
-    return make_stamp_test(find_spread(effect, *baseline, *seen), {},
-                           make_timing_spread_test(effect, baseline));
+    std::optional<Finding> in_stamps = find_spread(effect, *baseline, *seen);
+    return make_stamp_test(std::move(in_stamps), {}, make_timing_spread_test(effect, std::move(baseline)));
 }
 
 }  // namespace gyrolog
