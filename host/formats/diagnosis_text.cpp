@@ -45,10 +45,18 @@ std::string cause_name(const Cause& cause) {
     return axes.empty() ? cause.finding.effect : cause.finding.effect + " on " + axes;
 }
 
-std::vector<std::string> cause_names(const Diagnosis& diagnosis) {
+// "temp_lag on x and tone on y", "temp_lag and tone on x".
+std::string causes_text(const Diagnosis& diagnosis) {
     std::vector<std::string> names;
-    for (const Cause& cause : diagnosis.causes) { names.push_back(cause_name(cause)); }
-    return names;
+    std::vector<std::string> effects;
+    bool alike = true;
+    for (const Cause& cause : diagnosis.causes) {
+        names.push_back(cause_name(cause));
+        effects.push_back(cause.finding.effect);
+        alike = alike && cause.finding.where.axes == diagnosis.causes.front().finding.where.axes;
+    }
+    if (names.size() < 2 || !alike || names.front() == effects.front()) { return listed(names); }
+    return listed(effects) + " on " + axes_text(diagnosis.causes.front().finding.where.axes);
 }
 
 // How often a recording of the very model differs as much.
@@ -164,7 +172,7 @@ std::string cause_text(const Diagnosis& diagnosis, const Cause& cause, std::size
     const Finding& finding = cause.finding;
     std::string text = wrapped_text(
         fmt::format("  {}. ", rank),
-        fmt::format("{}: probability {}, evidence {:.3g} nats, closes {} of the gap alone", cause_name(cause),
+        fmt::format("{}: probability {}, evidence {:.0f} nats, closes {} of the gap alone", cause_name(cause),
                     percent(cause.score), finding.evidence_nats, percent(cause.shrink_alone)));
     const std::string place = place_text(finding.where);
     if (!place.empty() && place != place_text(diagnosis.where)) { text += wrapped_text("     ", place); }
@@ -259,7 +267,7 @@ std::string place_text(const Place& place) {
 }
 
 std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of) {
-    const std::string causes = listed(cause_names(diagnosis));
+    const std::string causes = causes_text(diagnosis);
     const bool one = diagnosis.causes.size() == 1;
     switch (diagnosis.verdict) {
         case Verdict::none:

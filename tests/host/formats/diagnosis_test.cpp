@@ -285,6 +285,8 @@ TEST(DiagnosisText, SaysTheVerdictInItsFirstLine) {
     two.causes[1].finding.where.axes = {1, 2};
     EXPECT_THAT(diagnosis_text(two),
                 StartsWith("known: temp_lag on x and tone on y and z explain the gap\n"));
+    two.causes[1].finding.where.axes = {0};
+    EXPECT_EQ(verdict_sentence(two), "known: temp_lag and tone on x explain the gap");
     two.verdict = Verdict::unexplained;
     EXPECT_THAT(verdict_sentence(two), HasSubstr("part of the gap, what makes the rest is not known"));
     two.causes.clear();
