@@ -83,6 +83,7 @@ struct Slot {
 
 std::vector<CurveTerm> terms_of(const std::vector<Slot>& slots) {
     std::vector<CurveTerm> terms;
+    terms.reserve(slots.size());
     for (const Slot& slot : slots) { terms.push_back(slot.now); }
     return terms;
 }
@@ -339,6 +340,7 @@ double shrink_of(double before_rms, double after_rms, double floor_rms) {
 // Where the change makes most of what it makes at all.
 void put_place(CurveCause& cause, const Target& target, const std::vector<CurveTerm>& corrected) {
     std::vector<double> change_db;
+    change_db.reserve(target.tau_s.size());
     for (const double tau_s : target.tau_s) {
         const double with = total_variance(corrected, tau_s);
         const double without = with - cause.term.allan_variance(tau_s) +
@@ -429,6 +431,7 @@ CurveDiagnosis diagnose_curve(const AllanCurve& curve, const std::vector<Modelle
                               const CurveFitOptions& options) {
     const Target target(curve);
     std::vector<CurveTerm> as_it_is;
+    as_it_is.reserve(model.size());
     for (const ModelledTerm& modelled : model) { as_it_is.push_back(modelled.term); }
     CurveDiagnosis diagnosis;
     diagnosis.points = target.tau_s.size();

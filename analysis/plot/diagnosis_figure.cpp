@@ -128,6 +128,7 @@ private:
         const std::size_t count =
             std::min({values.size(), domain_.before_lo.size(), domain_.before_hi.size()});
         std::vector<double> dB;
+        dB.reserve(count);
         for (std::size_t i = 0; i < count; ++i) {
             const double middle = std::sqrt(domain_.before_lo[i] * domain_.before_hi[i]);
             dB.push_back(20.0 * std::log10(values[i] / middle));
@@ -232,6 +233,7 @@ std::size_t axes_in(const Diagnosis& diagnosis) {
 std::vector<Row> shown_rows(const Diagnosis& diagnosis) {
     std::vector<Row> rows = rows_of(diagnosis);
     std::vector<double> gaps;
+    gaps.reserve(rows.size());
     for (const Row& row : rows) { gaps.push_back(row.gap()); }
     std::ranges::sort(gaps, std::ranges::greater());
     if (gaps.size() > rows_most) {

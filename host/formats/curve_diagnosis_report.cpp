@@ -27,6 +27,7 @@ double deviation_of(const std::vector<CurveTerm>& terms, double tau_s) {
 
 std::vector<CurveTerm> terms_of(const std::vector<ModelledTerm>& model) {
     std::vector<CurveTerm> terms;
+    terms.reserve(model.size());
     for (const ModelledTerm& modelled : model) { terms.push_back(modelled.term); }
     return terms;
 }

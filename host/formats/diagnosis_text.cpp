@@ -49,6 +49,8 @@ std::string cause_name(const Cause& cause) {
 std::string causes_text(const Diagnosis& diagnosis) {
     std::vector<std::string> names;
     std::vector<std::string> effects;
+    names.reserve(diagnosis.causes.size());
+    effects.reserve(diagnosis.causes.size());
     bool alike = true;
     for (const Cause& cause : diagnosis.causes) {
         names.push_back(cause_name(cause));
@@ -77,7 +79,10 @@ std::string chance_sentence(const Diagnosis& diagnosis) {
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
-std::string times_floor(double value, const Gap& gap) { return fmt::format("{:.2g}", value / gap.floor); }
+std::string times_floor(double value, const Gap& gap) {
+    const double times = value / gap.floor;
+    return times < 100.0 ? fmt::format("{:.2g}", times) : fmt::format("{:.0f}", times);
+}
 
 std::string gap_before_sentence(const Diagnosis& diagnosis) {
     const Gap& gap = diagnosis.gap_before;
