@@ -147,13 +147,13 @@ void Baseline::read_motion() {
     }
     if (!quiet_world_) { quiet_world_ = without_reference_noise(*world_, model_.ref_noise_rad_s); }
     quiet_response_rad_s_ = noise_free_response(*this, quiet_world_, model_);
-    true_rate_rad_s_ = noise_free_response(*this, faultless(model_));
+    true_rate_rad_s_ = noise_free_response(*this, quiet_world_, faultless(model_));
     SensorModel sooner = model_;
     SensorModel later = model_;
     sooner.latency_s -= 0.5 * time_step_s;
     later.latency_s += 0.5 * time_step_s;
-    response_change_rad_s2_ = noise_free_response(*this, sooner);
-    const std::array<std::vector<float>, 3> delayed = noise_free_response(*this, later);
+    response_change_rad_s2_ = noise_free_response(*this, quiet_world_, sooner);
+    const std::array<std::vector<float>, 3> delayed = noise_free_response(*this, quiet_world_, later);
 
     CosineTransform transform(length_);
     const double gain_sd = stated(model_.sd_abs, "M", 0.0);

@@ -53,8 +53,8 @@ public:
     // The model's answer without noise and quantisation, by slot; empty for an axis the recording lacks.
     const std::vector<float>& response_rad_s(std::size_t axis) const { return response_rad_s_[axis]; }
 
-    // In a moving world, by slot: the world's rate as the model times it, about the sensor's axes, and how
-    // the model's answer changes in time.
+    // In a moving world, by slot: the quiet world's rate as the model times it, about the sensor's axes, and
+    // how the model's answer changes in time.
     const std::vector<float>& true_rate_rad_s(std::size_t axis) const { return true_rate_rad_s_[axis]; }
     const std::vector<float>& response_change_rad_s2(std::size_t axis) const {
         return response_change_rad_s2_[axis];

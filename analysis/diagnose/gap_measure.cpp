@@ -9,6 +9,10 @@ namespace gyrolog {
 
 namespace {
 
+// Where no simulation differs from another, rounding is no scale, and one sample further out than any of
+// theirs is no wonder.
+double least_sd(GapDomainKind kind) { return kind == GapDomainKind::amplitude ? 0.5 : 1e-6; }
+
 double sum_of_squares(const std::vector<double>& z) {
     double sum = 0.0;
     for (const double value : z) { sum += value * value; }
@@ -51,7 +55,7 @@ GapReference gap_reference(const std::vector<std::vector<GapCurve>>& simulations
                 const double off = simulation[c].value[i] - mean[i];
                 sd[i] += off * off / (count - 1.0);
             }
-            sd[i] = std::sqrt(sd[i]);
+            sd[i] = std::max(std::sqrt(sd[i]), least_sd(simulations.front()[c].kind));
         }
         reference.mean.push_back(std::move(mean));
         reference.sd.push_back(std::move(sd));
