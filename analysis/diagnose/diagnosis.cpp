@@ -7,8 +7,8 @@
 
 #include "analysis/diagnose/effect_search.hpp"
 #include "analysis/diagnose/evidence_tail.hpp"
-#include "analysis/diagnose/gap_measure.hpp"
 #include "analysis/diagnose/gap_domains.hpp"
+#include "analysis/diagnose/gap_measure.hpp"
 #include "analysis/diagnose/gap_report.hpp"
 #include "analysis/diagnose/null_simulations.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -25,6 +25,8 @@ constexpr double unexplained_below_p = 0.003;
 constexpr double tolerated_share = 0.02;
 constexpr double tie_nats = 4.0;
 constexpr std::size_t tie_most = 4;
+// A difference of this evidence is no tie any more, whatever chance does to it.
+constexpr double decided_nats = 8.0;
 constexpr std::size_t simulations_after_most = 100;
 
 bool judged_by_stamps(const Finding& finding) {
@@ -40,7 +42,7 @@ public:
         : recording_(std::move(recording)), options_(options), answer_() {
         const auto world = std::make_shared<const RecordedWorld>(recording_);
         answer_.warnings = world->warnings();
-        baseline_ = with_own_bias(std::make_shared<const Baseline>(world, model));
+        baseline_ = with_own_bias(std::make_shared<const Baseline>(world, model), recording_);
     }
 
     std::optional<Diagnosis> run(const std::string& model_name) {
@@ -54,6 +56,7 @@ public:
         }
         if (!simulate_before() || !search() || !simulate_after()) { return std::nullopt; }
         decide();
+        if (options_.holdout && !measure_on_holdout()) { return std::nullopt; }
         return std::move(answer_);
     }
 
@@ -63,8 +66,9 @@ private:
     }
 
     // A turn-on bias is free; where the output clips, and where it lies between two codes, it matters.
-    std::shared_ptr<const Baseline> with_own_bias(const std::shared_ptr<const Baseline>& baseline) const {
-        const Observation observation(baseline, recording_, options_.seed);
+    std::shared_ptr<const Baseline> with_own_bias(const std::shared_ptr<const Baseline>& baseline,
+                                                  const std::shared_ptr<const Recording>& recording) const {
+        const Observation observation(baseline, recording, options_.seed);
         SensorModel model = baseline->model();
         for (const std::size_t axis : baseline->axes()) {
             model.axes[axis].bias_rad_s += observation.axis(axis).mean_rad_s;
@@ -198,7 +202,34 @@ private:
             const double shrink = excess_before > 0.0 ? 1.0 - excess_after / excess_before : 0.0;
             answer_.shrink = answer_.shrink_lo = answer_.shrink_hi = std::clamp(shrink, 0.0, 1.0);
         }
+        propose_recordings();
         answer_.where = answer_.causes.empty() ? before.where : answer_.causes.front().finding.where;
+    }
+
+    // What would settle what is open.
+    void propose_recordings() {
+        for (const Cause& cause : answer_.causes) {
+            if (cause.decided_by.empty()) { continue; }
+            const Rival& rival = cause.tie_group[1];
+            std::string proposal =
+                "to tell " + cause.finding.effect + " from " + rival.effect + ": " + cause.decided_by;
+            // What noise tells grows with the time that it is listened to.
+            const EvidenceMethod method = find_effect(cause.finding.effect)->signature->method;
+            if (method == EvidenceMethod::spectrum || method == EvidenceMethod::two_levels ||
+                method == EvidenceMethod::tails) {
+                const double times = std::ceil(decided_nats / std::max(rival.evidence_below_best_nats, 0.5));
+                proposal += ", some " + std::to_string(std::max(2, static_cast<int>(times))) +
+                            " times as long as this one";
+            }
+            answer_.next_recordings.push_back(std::move(proposal));
+        }
+        if (answer_.verdict == Verdict::unexplained) {
+            answer_.next_recordings.emplace_back(
+                "what is not explained: a second recording under the same conditions tells whether it comes "
+                "back at the same place, and one under others (temperature, supply, mounting, sample rate) "
+                "what "
+                "it depends on");
+        }
     }
 
     // Along what the causes change, the distance of a recording is sqrt(2 gain / parameters), a simulation's
@@ -227,6 +258,39 @@ private:
             const double sd = std::sqrt((2.0 * along * along - 1.0) / (2.0 * parameters)) / along;
             answer_.gap_before = {along, 1.0, std::max(1.0, along - 1.96 * sd), along + 1.96 * sd};
         }
+    }
+
+    // The gap of a recording that had no part in the fit.
+    std::optional<GapSummary> gap_on_holdout(const std::shared_ptr<const RecordedWorld>& world,
+                                             const SensorModel& model) const {
+        const auto baseline = with_own_bias(std::make_shared<const Baseline>(world, model), options_.holdout);
+        NullSimulationOptions options{
+            std::min(options_.simulations, simulations_after_most), options_.seed + 2, options_.threads, {}};
+        options.on_progress = [&](double share) { return told("judging the second recording", share); };
+        const std::optional<NullSimulations> null = simulate_null(baseline, nullptr, options);
+        if (!null) { return std::nullopt; }
+        const Observation observation(baseline, options_.holdout, options_.seed);
+        return summarise(gap_curves(observation), gap_reference(null->curves));
+    }
+
+    bool measure_on_holdout() {
+        const auto world = std::make_shared<const RecordedWorld>(options_.holdout);
+        const std::optional<GapSummary> before = gap_on_holdout(world, baseline_->model());
+        const std::optional<GapSummary> after =
+            answer_.causes.empty() ? before : gap_on_holdout(world, answer_.corrected);
+        if (!before || !after) { return false; }
+        answer_.held_out = options_.holdout->name;
+        answer_.gap_before = before->gap;
+        answer_.gap_after = after->gap;
+        const auto excess = [](double gap) { return std::max(gap * gap - 1.0, 0.0); };
+        const double gap = excess(before->gap.value);
+        const auto closed = [&](double left) {
+            return gap > 0.0 ? std::clamp(1.0 - excess(left) / gap, 0.0, 1.0) : 0.0;
+        };
+        answer_.shrink = closed(after->gap.value);
+        answer_.shrink_lo = closed(after->gap.hi);
+        answer_.shrink_hi = closed(after->gap.lo);
+        return true;
     }
 
     // The evidence of all effects as their probabilities, equal before the recording was seen.

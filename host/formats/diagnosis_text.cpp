@@ -102,6 +102,8 @@ std::string gap_after_sentence(const Diagnosis& diagnosis) {
                                    percent(diagnosis.shrink_lo), percent(diagnosis.shrink_hi));
     if (!diagnosis.held_out.empty()) {
         text += fmt::format(" on data that the fit did not see ({})", diagnosis.held_out);
+    } else if (diagnosis.verdict == Verdict::known) {
+        text += ", as the fit's own uncertainty has it (--holdout measures it on a second recording)";
     }
     return text + ".";
 }
