@@ -1,0 +1,142 @@
+// Effects of the mean response and of the spectrum: as much evidence as there is, the right parameters,
+// little for rivals and by chance.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/effect_search.hpp"
+#include "analysis/simulate/recording_simulator.hpp"
+
+namespace gyrolog {
+namespace {
+
+SensorModel calibrated_sensor() {
+    SensorModel model = typical_mpu9250();
+    model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.2}};
+    return model;
+}
+
+std::shared_ptr<const Recording> recorded(const SensorModel& model, std::uint64_t samples,
+                                          std::uint64_t seed) {
+    SimulationRequest request;
+    request.samples = samples;
+    request.seed = seed;
+    return std::make_shared<const Recording>(simulate_recording(model, request));
+}
+
+Hypotheses examined(const std::shared_ptr<const Recording>& recording, const SensorModel& model) {
+    const auto world = std::make_shared<const RecordedWorld>(recording);
+    return examine(std::make_shared<const Baseline>(world, model), recording, 1, 1);
+}
+
+const Finding& of(const Hypotheses& hypotheses, const std::string& effect) {
+    for (const std::optional<Finding>& finding : hypotheses.findings) {
+        if (finding && finding->effect == effect) { return *finding; }
+    }
+    static const Finding none{};
+    ADD_FAILURE() << "no finding of " << effect;
+    return none;
+}
+
+TEST(EffectEvidence, OfARampIsItsEnergyOverTheNoise) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel drifting = model;
+    const double ramp_dps_per_s = 2e-5;
+    drifting.effects.push_back({"rate_ramp", {}, {{"ramp_dps_per_s", ramp_dps_per_s}}, ""});
+    const auto recording = recorded(drifting, 180000, 21);
+    const Hypotheses seen = examined(recording, model);
+
+    // With N, B and K as they are: 1/2 sum of G^2 over the expected density. The cosine transform of a ramp:
+    // odd coefficients of -2 slope sqrt(2 / n) / (2 sin(pi k / 2 n))^2 / rate.
+    double energy_nats = 0.0;
+    const Baseline& baseline = *seen.baseline;
+    const auto n = static_cast<double>(baseline.length());
+    for (const SpectralBin& bin : baseline.bins()) {
+        for (std::size_t k = bin.first; k < bin.end; k += 1) {
+            if (k % 2 == 0 || k > 8191) { continue; }
+            const double sine = std::sin(pi * static_cast<double>(k) / (2.0 * n));
+            const double step_rad_s = ramp_dps_per_s * rad_per_deg / baseline.rate_hz();
+            const double coefficient = std::sqrt(2.0 / n) * step_rad_s / (2.0 * sine * sine);
+            const std::size_t i = static_cast<std::size_t>(&bin - baseline.bins().data());
+            energy_nats +=
+                0.5 * coefficient * coefficient / (baseline.parts(0)[i].sum() * baseline.rate_hz());
+        }
+    }
+    const Finding& found = of(seen, "rate_ramp");
+    EXPECT_EQ(found.where.axes, (std::vector<std::size_t>{0, 1, 2}));
+    // A refitted K takes a part of it; chance is sqrt(2 x energy) either way.
+    const double all_axes_nats = 3.0 * energy_nats;
+    EXPECT_LT(found.gain_nats, all_axes_nats + 3.0 * std::sqrt(2.0 * all_axes_nats));
+    EXPECT_GT(found.gain_nats, 0.5 * all_axes_nats - 3.0 * std::sqrt(2.0 * all_axes_nats));
+    for (std::size_t i = 0; i < found.entries.size(); ++i) {
+        EXPECT_NEAR(found.entries[i].params.at("ramp_dps_per_s"), ramp_dps_per_s,
+                    4.0 * found.sd[i].at("ramp_dps_per_s"));
+    }
+    // A temperature that happens to drift tells nearly the same.
+    EXPECT_LT(seen.best()->evidence_nats, found.evidence_nats + 4.0);
+}
+
+TEST(EffectEvidence, OfALouderAxisIsThatAxisAlone) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel louder = model;
+    louder.effects.push_back({"arw_scale", {"y"}, {{"factor", 1.06}}, ""});
+    const Hypotheses seen = examined(recorded(louder, 180000, 22), model);
+    const Finding& found = of(seen, "arw_scale");
+    EXPECT_EQ(found.where.axes, std::vector<std::size_t>{1});
+    EXPECT_NEAR(found.entries.front().params.at("factor"), 1.06, 4.0 * found.sd.front().at("factor"));
+    EXPECT_LT(found.sd.front().at("factor"), 0.01);
+    EXPECT_EQ(seen.best()->effect, "arw_scale");
+}
+
+TEST(EffectEvidence, OfGaussMarkovNoiseKnowsItsTime) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel wandering = model;
+    wandering.effects.push_back({"gauss_markov", {}, {{"sigma_dps", 0.01}, {"tau_s", 5.0}}, ""});
+    const Hypotheses seen = examined(recorded(wandering, 180000, 23), model);
+    const Finding& found = of(seen, "gauss_markov");
+    ASSERT_EQ(found.entries.size(), 1U) << "the axes share both";
+    EXPECT_NEAR(found.entries.front().params.at("tau_s"), 5.0, 4.0 * found.sd.front().at("tau_s"));
+    EXPECT_NEAR(found.entries.front().params.at("sigma_dps"), 0.01, 4.0 * found.sd.front().at("sigma_dps"));
+    EXPECT_GT(found.evidence_nats, of(seen, "flicker_missing").evidence_nats + 50.0);
+}
+
+TEST(EffectEvidence, IsRarelyThereByChance) {
+    const SensorModel model = calibrated_sensor();
+    constexpr int records = 30;
+    int above_3 = 0;
+    int above_6 = 0;
+    for (int i = 0; i < records; ++i) {
+        const Hypotheses seen = examined(recorded(model, 8192, 100 + static_cast<std::uint64_t>(i)), model);
+        const Finding* best = seen.best();
+        above_3 += best != nullptr && best->evidence_nats > 3.0;
+        above_6 += best != nullptr && best->evidence_nats > 6.0;
+    }
+    // Some thirty looks, each above e nats with a probability of exp(-e) at most, most far less.
+    EXPECT_LE(above_3, 10);
+    EXPECT_LE(above_6, 3);
+}
+
+TEST(EffectSearch, TakesTwoCausesApart) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel two = model;
+    two.effects.push_back({"gauss_markov", {"x"}, {{"sigma_dps", 0.01}, {"tau_s", 5.0}}, ""});
+    two.effects.push_back({"tone", {}, {{"f_hz", 31.0}, {"amplitude_dps", 0.004}}, ""});
+    const auto recording = recorded(two, 180000, 24);
+    const Hypotheses first = examined(recording, model);
+    const std::optional<SearchResult> found = search_effects(first, recording, {});
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->causes.size(), 2U);
+    std::vector<std::string> names = {found->causes[0].finding.effect, found->causes[1].finding.effect};
+    std::ranges::sort(names);
+    EXPECT_EQ(names, (std::vector<std::string>{"gauss_markov", "tone"}));
+    const Finding* left = found->last.best();
+    if (left != nullptr) { EXPECT_LT(left->evidence_nats, 6.0); }
+}
+
+}  // namespace
+}  // namespace gyrolog
