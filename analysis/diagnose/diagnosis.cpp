@@ -95,9 +95,7 @@ private:
         if (!null) { return false; }
         before_ = gap_reference(null->curves);
         std::vector<double> surprises;
-        for (std::size_t i = 0; i < null->curves.size(); ++i) {
-            surprises.push_back(surprise(null->curves[i], before_));
-        }
+        for (const auto& simulated : null->curves) { surprises.push_back(surprise(simulated, before_)); }
         evidence_tail_.emplace(std::move(null->evidence_nats));
         surprise_tail_.emplace(std::move(surprises));
         const std::vector<GapCurve> curves = gap_curves(*first_.observation);

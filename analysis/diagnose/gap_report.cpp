@@ -77,9 +77,9 @@ GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& re
         summary.where.axes.push_back(curves[c].axis);
     }
     if (summary.where.axes.empty()) { summary.where.axes.push_back(curves[worst].axis); }
-    std::ranges::sort(summary.where.axes);
-    const auto repeated = std::ranges::unique(summary.where.axes);
-    summary.where.axes.erase(repeated.begin(), repeated.end());
+    std::vector<std::size_t>& axes = summary.where.axes;
+    std::ranges::sort(axes);
+    axes.erase(std::unique(axes.begin(), axes.end()), axes.end());
     place(curves[worst], gaps[worst].z, summary.where);
     return summary;
 }
