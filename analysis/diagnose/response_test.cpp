@@ -41,6 +41,7 @@ public:
     std::optional<Finding> find(const Observation& observation) const override {
         const std::vector<std::size_t>& axes = baseline_->axes();
         std::vector<MeanRegression> regressions;
+        regressions.reserve(axes.size());
         for (const std::size_t axis : axes) {
             regressions.emplace_back(observation, axis, observation.axis(axis).density, coefficients_);
         }
@@ -289,18 +290,19 @@ private:
         for (const TrialValues& values : varied(trial.point)) {
             if (values.count < 2 || is_choice(values)) { continue; }
             const std::string name(values.param);
-            double step = 0.02;
-            double fall = 0.0;
-            for (; step < 3.0; step *= 3.0) {
+            double curvature = 0.0;
+            for (const double step : {0.02, 0.06, 0.18, 0.54, 1.6}) {
                 std::vector<double> less(free_parameters(trial.point), 0.0);
                 less[free] = -step;
                 std::vector<double> more = less;
                 more[free] = step;
-                fall = 2.0 * here - evidence_at(regressions, trial.point, less) -
-                       evidence_at(regressions, trial.point, more);
+                const double fall = 2.0 * here - evidence_at(regressions, trial.point, less) -
+                                    evidence_at(regressions, trial.point, more);
+                if (!(fall < 1e300)) { break; }
+                curvature = fall / (step * step);
                 if (fall > 0.5) { break; }
             }
-            const double sd_steps = fall > 0.0 && fall < 1e300 ? std::min(step / std::sqrt(fall), 3.0) : 1.0;
+            const double sd_steps = curvature > 0.0 ? std::min(1.0 / std::sqrt(curvature), 3.0) : 1.0;
             sd[name] = sd_steps * step_of(values, trial.point.params.at(name));
             ++free;
         }

@@ -149,7 +149,7 @@ private:
 
     std::optional<AxesFit> fit_axes(const Observation& observation,
                                     const std::vector<std::size_t>& axes) const {
-        const Start* from = nullptr;
+        const Start* from = &starts_.front();
         double best = minus_infinity;
         for (const Start& start : starts_) {
             double rough = 0.0;
@@ -213,9 +213,9 @@ private:
         for (std::size_t i = 0; i < count; ++i) {
             // A step that changes the gain by about half a nat, so that neither rounding nor a flat top
             // misleads.
-            double step = 0.002;
             double curvature = 0.0;
-            for (; step < 2.0; step *= 2.0) {
+            for (int doubling = 0; doubling < 10; ++doubling) {
+                const double step = std::ldexp(0.002, doubling);
                 std::vector<double> less = maximum.at;
                 std::vector<double> more = maximum.at;
                 less[i] -= step;
