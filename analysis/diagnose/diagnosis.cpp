@@ -140,7 +140,7 @@ private:
             answer_.corrected = baseline_->model();
             return true;
         }
-        std::optional<SearchResult> result = search_effects(first_, recording_, options);
+        std::optional<EffectSearchResult> result = search_effects(first_, recording_, options);
         if (!result) { return false; }
         answer_.corrected = result->corrected;
         found_ = std::move(*result);
@@ -321,7 +321,7 @@ private:
     std::vector<GapCurve> before_curves_;
     std::optional<EvidenceTail> evidence_tail_;
     std::optional<EvidenceTail> surprise_tail_;
-    std::optional<SearchResult> found_;
+    std::optional<EffectSearchResult> found_;
     std::optional<GapReference> after_;
     std::vector<GapCurve> after_curves_;
 };

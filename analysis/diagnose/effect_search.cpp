@@ -14,7 +14,7 @@ public:
     Search(const Hypotheses& first, std::shared_ptr<const Recording> recording, const SearchOptions& options)
         : first_(first), recording_(std::move(recording)), options_(options) {}
 
-    std::optional<SearchResult> run() {
+    std::optional<EffectSearchResult> run() {
         const Hypotheses* now = &first_;
         Hypotheses latest;
         while (causes_.size() < options_.causes_most) {
@@ -27,7 +27,7 @@ public:
                              options_.seed, options_.threads);
             now = &latest;
         }
-        SearchResult result;
+        EffectSearchResult result;
         result.corrected = model_with_all_but(causes_.size());
         result.causes = std::move(causes_);
         std::ranges::sort(result.causes, std::greater{},
@@ -134,9 +134,9 @@ Hypotheses examine(const std::shared_ptr<const Baseline>& baseline,
     return hypotheses;
 }
 
-std::optional<SearchResult> search_effects(const Hypotheses& first,
-                                           const std::shared_ptr<const Recording>& recording,
-                                           const SearchOptions& options) {
+std::optional<EffectSearchResult> search_effects(const Hypotheses& first,
+                                                 const std::shared_ptr<const Recording>& recording,
+                                                 const SearchOptions& options) {
     return Search(first, recording, options).run();
 }
 

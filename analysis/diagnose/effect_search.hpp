@@ -30,7 +30,7 @@ struct FoundCause {
     std::vector<Finding> rivals;
 };
 
-struct SearchResult {
+struct EffectSearchResult {
     std::vector<FoundCause> causes;  // by evidence
     SensorModel corrected;
     Hypotheses last;  // under the corrected model
@@ -46,9 +46,9 @@ struct SearchOptions {
 
 // Greedily by evidence; after each new cause all are fitted again, one by one, with the others in the model,
 // and those that the others made needless are dropped. `first` is under the model as it was given.
-std::optional<SearchResult> search_effects(const Hypotheses& first,
-                                           const std::shared_ptr<const Recording>& recording,
-                                           const SearchOptions& options);
+std::optional<EffectSearchResult> search_effects(const Hypotheses& first,
+                                                 const std::shared_ptr<const Recording>& recording,
+                                                 const SearchOptions& options);
 
 // The model with one more cause.
 SensorModel with_cause(SensorModel model, const Finding& finding);

@@ -75,8 +75,8 @@ GapReference gap_reference(const std::vector<std::vector<GapCurve>>& simulations
     return reference;
 }
 
-CurveGap gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index) {
-    CurveGap gap;
+CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index) {
+    CurveDistance gap;
     gap.z = standardised(curve, reference, index);
     const double squares = sum_of_squares(gap.z);
     const auto points = static_cast<double>(std::max<std::size_t>(gap.z.size(), 1));

@@ -20,13 +20,13 @@ struct GapReference {
 // `simulations`: at least ten, all from one baseline.
 GapReference gap_reference(const std::vector<std::vector<GapCurve>>& simulations);
 
-struct CurveGap {
+struct CurveDistance {
     std::vector<double> z;
     double distance = 0.0;  // rms of z in units of a simulation's: 1 is the floor
     // -ln of the probability that a simulation's curve is as far off in sum, or at one point; the larger.
     double surprise_nats = 0.0;
 };
 
-CurveGap gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
+CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
 
 }  // namespace gyrolog

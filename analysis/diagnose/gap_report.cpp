@@ -60,7 +60,7 @@ void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
 
 GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& reference) {
     GapSummary summary;
-    std::vector<CurveGap> gaps;
+    std::vector<CurveDistance> gaps;
     std::size_t worst = 0;
     for (std::size_t c = 0; c < curves.size(); ++c) {
         gaps.push_back(gap_of(curves[c], reference, c));

@@ -128,7 +128,7 @@ TEST(EffectSearch, TakesTwoCausesApart) {
     two.effects.push_back({"tone", {}, {{"f_hz", 31.0}, {"amplitude_dps", 0.004}}, ""});
     const auto recording = recorded(two, 180000, 24);
     const Hypotheses first = examined(recording, model);
-    const std::optional<SearchResult> found = search_effects(first, recording, {});
+    const std::optional<EffectSearchResult> found = search_effects(first, recording, {});
     ASSERT_TRUE(found);
     ASSERT_EQ(found->causes.size(), 2U);
     std::vector<std::string> names = {found->causes[0].finding.effect, found->causes[1].finding.effect};
