@@ -65,8 +65,7 @@ TEST(Repeats, OfSomeAxesAreToldFromThoseOfAll) {
 TEST(Repeats, AreNotSeenWhereRoundedNoiseRepeatsByChance) {
     SensorModel coarse = typical_mpu9250();
     coarse = with_entry(coarse, "quantization", {{"lsb_dps", 6.0 / 65.5}});
-    const SensorModel smooth =
-        with_entry(typical_mpu9250(), "lowpass", {{"cutoff_hz", 10.0}, {"order", 2.0}});
+    const SensorModel smooth = with_entry(typical_mpu9250(), "lowpass", {{"fc_hz", 10.0}, {"order", 2.0}});
     int above_zero = 0;
     int above_three = 0;
     constexpr int runs = 60;
