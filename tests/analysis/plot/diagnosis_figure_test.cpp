@@ -23,7 +23,8 @@ GapDomain allan_domain(std::size_t axis, double gap_dB = 4.0) {
         const double at = 0.01 * std::pow(1.35, static_cast<double>(i));
         const double model = 0.005 / std::sqrt(at);
         const double width = 1.02 + 0.01 * static_cast<double>(i);
-        const double off_dB = i < points / 2 ? 0.0 : gap_dB * static_cast<double>(i - points / 2) / 20.0;
+        const std::size_t half = points / 2;
+        const double off_dB = i < half ? 0.0 : gap_dB * static_cast<double>(i - half) / 20.0;
         const double middle = model * std::pow(10.0, off_dB / 20.0);
         domain.x.push_back(at);
         domain.recording.push_back(middle *

@@ -293,7 +293,7 @@ TEST(DiagnosisText, SaysTheVerdictInItsFirstLine) {
     EXPECT_EQ(verdict_sentence(two), "unexplained: there is a gap, and no known effect makes it");
 }
 
-std::string joined(std::string text) {
+std::string joined(const std::string& text) {
     std::string line;
     for (const char c : text) {
         if (c != '\n' && c != ' ') {
