@@ -40,7 +40,7 @@ TEST(CodeGrid, OfACoarserConverterIsFoundAxisByAxis) {
     const SensorModel model = sensor(lsb_dps);
     for (const int times : {2, 3, 6, 8}) {
         const SensorModel coarse =
-            with_entry(model, "quantization", {{"lsb_dps", times * lsb_dps}}, {"x", "z"});
+            with_effect(model, "quantization", {{"lsb_dps", times * lsb_dps}}, {"x", "z"});
         const auto counts = recorded(coarse, two_minutes, 4);
         for (const auto& recording : {counts, std::make_shared<const Recording>(printed(*counts))}) {
             const auto finding = steps(recording, model);

@@ -10,28 +10,13 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/effect_search.hpp"
-#include "analysis/simulate/recording_simulator.hpp"
+#include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
 namespace {
 
-SensorModel calibrated_sensor() {
-    SensorModel model = typical_mpu9250();
-    model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.2}};
-    return model;
-}
-
-std::shared_ptr<const Recording> recorded(const SensorModel& model, std::uint64_t samples,
-                                          std::uint64_t seed) {
-    SimulationRequest request;
-    request.samples = samples;
-    request.seed = seed;
-    return std::make_shared<const Recording>(simulate_recording(model, request));
-}
-
 Hypotheses examined(const std::shared_ptr<const Recording>& recording, const SensorModel& model) {
-    const auto world = std::make_shared<const RecordedWorld>(recording);
-    return examine(std::make_shared<const Baseline>(world, model), recording, 1, 1);
+    return examine(baseline_of(recording, model), recording, 1, 1);
 }
 
 const Finding& of(const Hypotheses& hypotheses, const std::string& effect) {

@@ -55,7 +55,7 @@ double misfit(const std::shared_ptr<const Recording>& recording, const SensorMod
 TEST(LagSlope, OfAClockThatTheStampsHideIsFound) {
     for (const double rel : {-0.01, 0.001, 0.006}) {
         const auto recording =
-            moved(with_entry(sensor(), "clock_rate", {{"rel", rel}, {"in_stamps", 0.0}}), 3);
+            moved(with_effect(sensor(), "clock_rate", {{"rel", rel}, {"in_stamps", 0.0}}), 3);
         const auto finding = found(make_stamp_rate_test, "clock_rate", recording, sensor());
         ASSERT_TRUE(finding) << rel;
         EXPECT_GT(finding->evidence_nats, 50.0) << rel;
@@ -71,7 +71,7 @@ TEST(LagSlope, OfAClockThatTheStampsHideIsFound) {
 TEST(LagSteps, OfLossesThatTheStampsHideAreFound) {
     for (const double per_hour : {36.0, 120.0}) {
         const auto recording = moved(
-            with_entry(sensor(), "dropped", {{"per_hour", per_hour}, {"longest", 8.0}, {"in_stamps", 0.0}}),
+            with_effect(sensor(), "dropped", {{"per_hour", per_hour}, {"longest", 8.0}, {"in_stamps", 0.0}}),
             7);
         const auto finding = found(make_stamp_gap_test, "dropped", recording, sensor());
         ASSERT_TRUE(finding) << per_hour;
@@ -89,11 +89,11 @@ TEST(LagSteps, OfLossesThatTheStampsHideAreFound) {
 }
 
 TEST(LagSteps, FitLostSamplesBetterThanASlopeAndTheOtherWayRound) {
-    const auto lossy =
-        moved(with_entry(sensor(), "dropped", {{"per_hour", 60.0}, {"longest", 8.0}, {"in_stamps", 0.0}}), 7);
+    const auto lossy = moved(
+        with_effect(sensor(), "dropped", {{"per_hour", 60.0}, {"longest", 8.0}, {"in_stamps", 0.0}}), 7);
     EXPECT_GT(evidence(found(make_stamp_gap_test, "dropped", lossy, sensor())),
               evidence(found(make_stamp_rate_test, "clock_rate", lossy, sensor())) + 20.0);
-    const auto slow = moved(with_entry(sensor(), "clock_rate", {{"rel", -0.004}, {"in_stamps", 0.0}}), 7);
+    const auto slow = moved(with_effect(sensor(), "clock_rate", {{"rel", -0.004}, {"in_stamps", 0.0}}), 7);
     EXPECT_GT(evidence(found(make_stamp_rate_test, "clock_rate", slow, sensor())),
               evidence(found(make_stamp_gap_test, "dropped", slow, sensor())) + 20.0);
 }
@@ -109,7 +109,7 @@ TEST(Lags, OfARightModelAreNone) {
 TEST(TimingSpread, OfInstantsThatTheStampsHideIsFound) {
     for (const double sd_s : {5e-4, 2e-3}) {
         const auto recording =
-            moved(with_entry(sensor(), "clock_jitter", {{"sd_s", sd_s}, {"in_stamps", 0.0}}), 3);
+            moved(with_effect(sensor(), "clock_jitter", {{"sd_s", sd_s}, {"in_stamps", 0.0}}), 3);
         const auto finding = found(make_stamp_spread_test, "clock_jitter", recording, sensor());
         ASSERT_TRUE(finding) << sd_s;
         EXPECT_GT(finding->evidence_nats, 20.0) << sd_s;

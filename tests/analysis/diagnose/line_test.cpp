@@ -16,18 +16,6 @@ namespace {
 constexpr double rate_hz = 100.0;
 constexpr double N_dps_per_sqrt_hz = 0.005;
 
-SensorModel calibrated_sensor() {
-    SensorModel model = typical_mpu9250();
-    for (AxisModel& axis : model.axes) {
-        axis.noise = {};
-        axis.noise.N_rad_per_sqrt_s = N_dps_per_sqrt_hz * rad_per_deg;
-        axis.noise.B_rad_per_s = 0.0015 * rad_per_deg;
-        axis.noise.K_rad_per_s_sqrt_s = 1e-4 * rad_per_deg;
-    }
-    model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.2}};
-    return model;
-}
-
 // Half the ratio of the sinusoid's energy to the density of what it stands in, at a frequency of white noise.
 double expected_gain_nats(const SensorModel& model, double amplitude_dps, std::uint64_t samples) {
     const double lsb_dps = model.lsb_rad_s * deg_per_rad;
@@ -62,9 +50,9 @@ TEST(LineTest, FindsALineWithItsFrequencyAmplitudesAndPhases) {
     constexpr std::uint64_t samples = 90000;
     const SensorModel model = calibrated_sensor();
     SensorModel truth =
-        with_entry(model, "tone", {{"f_hz", 22.3217}, {"amplitude_dps", 0.006}, {"phase_rad", 1.0}}, {"x"});
+        with_effect(model, "tone", {{"f_hz", 22.3217}, {"amplitude_dps", 0.006}, {"phase_rad", 1.0}}, {"x"});
     truth =
-        with_entry(truth, "tone", {{"f_hz", 22.3217}, {"amplitude_dps", 0.004}, {"phase_rad", -2.5}}, {"z"});
+        with_effect(truth, "tone", {{"f_hz", 22.3217}, {"amplitude_dps", 0.004}, {"phase_rad", -2.5}}, {"z"});
     const auto finding = found(make_line_test, "tone", recorded(truth, samples, 5), model);
     ASSERT_TRUE(finding);
     EXPECT_EQ(finding->where.axes, (std::vector<std::size_t>{0, 2}));
@@ -91,7 +79,7 @@ TEST(LineTest, FindsALineWithItsFrequencyAmplitudesAndPhases) {
 
 TEST(LineTest, ReportsWhereALineAboveHalfTheRateAppears) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel truth = with_entry(model, "tone", {{"f_hz", 59.98}, {"amplitude_dps", 0.01}});
+    const SensorModel truth = with_effect(model, "tone", {{"f_hz", 59.98}, {"amplitude_dps", 0.01}});
     const auto finding = found(make_line_test, "tone", recorded(truth, 30000, 6), model);
     ASSERT_TRUE(finding);
     EXPECT_NEAR(finding->entries.front().params.at("f_hz"), 40.02, 1e-3);
@@ -101,9 +89,9 @@ TEST(LineTest, ReportsWhereALineAboveHalfTheRateAppears) {
 TEST(LineTest, LeavesNothingOfALineThatIsAddedToTheModel) {
     SensorModel model = calibrated_sensor();
     model.latency_s = 0.004;
-    model = with_entry(model, "lowpass", {{"order", 1.0}, {"fc_hz", 20.0}});
+    model = with_effect(model, "lowpass", {{"order", 1.0}, {"fc_hz", 20.0}});
     const SensorModel truth =
-        with_entry(model, "tone", {{"f_hz", 31.4}, {"amplitude_dps", 0.05}, {"phase_rad", 0.3}}, {"y"});
+        with_effect(model, "tone", {{"f_hz", 31.4}, {"amplitude_dps", 0.05}, {"phase_rad", 0.3}}, {"y"});
     const auto recording = recorded(truth, 60000, 7);
     const auto finding = found(make_line_test, "tone", recording, model);
     ASSERT_TRUE(finding);
@@ -116,8 +104,9 @@ TEST(LineTest, LeavesNothingOfALineThatIsAddedToTheModel) {
 
 TEST(LineTest, TakesSeveralLinesOneAfterAnother) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel truth = with_entry(with_entry(model, "tone", {{"f_hz", 12.0}, {"amplitude_dps", 0.05}}),
-                                         "tone", {{"f_hz", 12.05}, {"amplitude_dps", 0.01}});
+    const SensorModel truth =
+        with_effect(with_effect(model, "tone", {{"f_hz", 12.0}, {"amplitude_dps", 0.05}}), "tone",
+                    {{"f_hz", 12.05}, {"amplitude_dps", 0.01}});
     const auto recording = recorded(truth, 60000, 8);
     const auto first = found(make_line_test, "tone", recording, model);
     ASSERT_TRUE(first);
@@ -130,9 +119,9 @@ TEST(LineTest, TakesSeveralLinesOneAfterAnother) {
 
 TEST(LineTest, TakesNoBroadExcessForALine) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel louder = with_entry(model, "arw_scale", {{"factor", 1.4}});
-    const SensorModel knee = with_entry(model, "gauss_markov", {{"sigma_dps", 0.02}, {"tau_s", 0.5}});
-    const SensorModel filtered = with_entry(model, "lowpass", {{"order", 2.0}, {"fc_hz", 10.0}});
+    const SensorModel louder = with_effect(model, "arw_scale", {{"factor", 1.4}});
+    const SensorModel knee = with_effect(model, "gauss_markov", {{"sigma_dps", 0.02}, {"tau_s", 0.5}});
+    const SensorModel filtered = with_effect(model, "lowpass", {{"order", 2.0}, {"fc_hz", 10.0}});
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         EXPECT_LT(evidence(found(make_line_test, "tone", recorded(louder, 60000, seed), model)), 5.0);
         EXPECT_LT(evidence(found(make_line_test, "tone", recorded(knee, 60000, seed), model)), 5.0);

@@ -13,18 +13,6 @@
 namespace gyrolog {
 namespace {
 
-SensorModel calibrated_sensor() {
-    SensorModel model = typical_mpu9250();
-    for (AxisModel& axis : model.axes) {
-        axis.noise = {};
-        axis.noise.N_rad_per_sqrt_s = 0.005 * rad_per_deg;
-        axis.noise.B_rad_per_s = 0.0015 * rad_per_deg;
-        axis.noise.K_rad_per_s_sqrt_s = 1e-4 * rad_per_deg;
-    }
-    model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.2}};
-    return model;
-}
-
 struct Method {
     TestMaker make;
     const char* effect;
@@ -81,7 +69,7 @@ constexpr int within_min = 33;
 TEST(StandardDeviations, OfALineHold) {
     const SensorModel model = calibrated_sensor();
     const SensorModel truth =
-        with_entry(model, "tone", {{"f_hz", 22.3}, {"amplitude_dps", 0.006}, {"phase_rad", 0.4}}, {"x"});
+        with_effect(model, "tone", {{"f_hz", 22.3}, {"amplitude_dps", 0.006}, {"phase_rad", 0.4}}, {"x"});
     const Method line{make_line_test, "tone"};
     EXPECT_GE(within_two_sd(line, model, truth, 16384, "f_hz", 22.3, seeds_of_coverage), within_min);
     EXPECT_GE(within_two_sd(line, model, truth, 16384, "amplitude_dps", 0.006, seeds_of_coverage),
@@ -91,7 +79,7 @@ TEST(StandardDeviations, OfALineHold) {
 
 TEST(StandardDeviations, OfAJumpHold) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel truth = with_entry(model, "bias_step", {{"step_dps", 0.03}, {"at_s", 70.0}}, {"x"});
+    const SensorModel truth = with_effect(model, "bias_step", {{"step_dps", 0.03}, {"at_s", 70.0}}, {"x"});
     const Method step{make_step_test, "bias_step"};
     EXPECT_GE(within_two_sd(step, model, truth, 16384, "step_dps", 0.03, seeds_of_coverage), within_min);
     EXPECT_GE(within_two_sd(step, model, truth, 16384, "at_s", 70.0, seeds_of_coverage), within_min);

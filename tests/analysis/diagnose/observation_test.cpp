@@ -7,29 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "analysis/compare/model_draw.hpp"
-#include "analysis/simulate/recording_simulator.hpp"
+#include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
 namespace {
-
-SensorModel calibrated_sensor() {
-    SensorModel model = typical_mpu9250();
-    model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.2}};
-    return model;
-}
-
-std::shared_ptr<const Recording> recorded(const SensorModel& model, std::uint64_t samples,
-                                          std::uint64_t seed) {
-    SimulationRequest request;
-    request.samples = samples;
-    request.seed = seed;
-    return std::make_shared<const Recording>(simulate_recording(model, request));
-}
-
-std::shared_ptr<const Baseline> baseline_of(const std::shared_ptr<const Recording>& recording,
-                                            const SensorModel& model) {
-    return std::make_shared<const Baseline>(std::make_shared<const RecordedWorld>(recording), model);
-}
 
 TEST(Observation, IsWhiteWhereTheModelIsRight) {
     const SensorModel model = calibrated_sensor();

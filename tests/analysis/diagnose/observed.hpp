@@ -8,6 +8,7 @@
 #include "analysis/diagnose/effect_test.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
+#include "tests/analysis/simulate/simulated.hpp"
 
 namespace gyrolog {
 
@@ -26,10 +27,16 @@ inline std::shared_ptr<const Baseline> baseline_of(const std::shared_ptr<const R
     return std::make_shared<const Baseline>(std::make_shared<const RecordedWorld>(recording), model);
 }
 
-inline SensorModel with_entry(SensorModel model, const char* effect, std::map<std::string, double> params,
-                              std::vector<std::string> axes = {}) {
-    model.effects.push_back(
-        {.effect = effect, .axes = std::move(axes), .params = std::move(params), .carried_json = {}});
+// A typical sensor's white noise and, beside it, slow noise; the model knows them as a calibration does.
+inline SensorModel calibrated_sensor(double N_dps_per_sqrt_hz = 0.005) {
+    SensorModel model = typical_mpu9250();
+    for (AxisModel& axis : model.axes) {
+        axis.noise = {};
+        axis.noise.N_rad_per_sqrt_s = N_dps_per_sqrt_hz * rad_per_deg;
+        axis.noise.B_rad_per_s = 0.0015 * rad_per_deg;
+        axis.noise.K_rad_per_s_sqrt_s = 1e-4 * rad_per_deg;
+    }
+    model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.2}};
     return model;
 }
 

@@ -24,7 +24,7 @@ Recording without_temperature(Recording recording) {
 TEST(Repeats, AreFoundWithTheirShareOnAllAxes) {
     const SensorModel model = typical_mpu9250();
     for (const double eps : {0.001, 0.01, 0.0987, 0.4}) {
-        const auto recording = recorded(with_entry(model, "stale", {{"eps", eps}}), ten_minutes, 3);
+        const auto recording = recorded(with_effect(model, "stale", {{"eps", eps}}), ten_minutes, 3);
         const auto finding = repeats(recording, model);
         ASSERT_TRUE(finding) << eps;
         EXPECT_GT(finding->evidence_nats, 100.0 * eps / 0.001) << eps;
@@ -41,7 +41,7 @@ TEST(Repeats, AreFoundWithTheirShareOnAllAxes) {
 TEST(Repeats, AreFoundByTheAxesAlone) {
     const SensorModel model = typical_mpu9250();
     const auto recording = std::make_shared<const Recording>(
-        without_temperature(*recorded(with_entry(model, "stale", {{"eps", 0.002}}), ten_minutes, 3)));
+        without_temperature(*recorded(with_effect(model, "stale", {{"eps", 0.002}}), ten_minutes, 3)));
     const auto finding = repeats(recording, model);
     ASSERT_TRUE(finding);
     EXPECT_GT(finding->evidence_nats, 50.0);
@@ -51,11 +51,11 @@ TEST(Repeats, AreFoundByTheAxesAlone) {
 TEST(Repeats, OfSomeAxesAreToldFromThoseOfAll) {
     const SensorModel model = typical_mpu9250();
     const auto pair =
-        repeats(recorded(with_entry(model, "stale", {{"eps", 0.02}}, {"x", "z"}), ten_minutes, 5), model);
+        repeats(recorded(with_effect(model, "stale", {{"eps", 0.02}}, {"x", "z"}), ten_minutes, 5), model);
     ASSERT_TRUE(pair);
     EXPECT_EQ(pair->where.axes, (std::vector<std::size_t>{0, 2}));
     const auto one = repeats(std::make_shared<const Recording>(without_temperature(*recorded(
-                                 with_entry(model, "stale", {{"eps", 0.1}}, {"y"}), ten_minutes, 5))),
+                                 with_effect(model, "stale", {{"eps", 0.1}}, {"y"}), ten_minutes, 5))),
                              model);
     ASSERT_TRUE(one);
     EXPECT_EQ(one->where.axes, (std::vector<std::size_t>{1}));
@@ -64,8 +64,8 @@ TEST(Repeats, OfSomeAxesAreToldFromThoseOfAll) {
 
 TEST(Repeats, AreNotSeenWhereRoundedNoiseRepeatsByChance) {
     SensorModel coarse = typical_mpu9250();
-    coarse = with_entry(coarse, "quantization", {{"lsb_dps", 6.0 / 65.5}});
-    const SensorModel smooth = with_entry(typical_mpu9250(), "lowpass", {{"fc_hz", 10.0}, {"order", 2.0}});
+    coarse = with_effect(coarse, "quantization", {{"lsb_dps", 6.0 / 65.5}});
+    const SensorModel smooth = with_effect(typical_mpu9250(), "lowpass", {{"fc_hz", 10.0}, {"order", 2.0}});
     int above_zero = 0;
     int above_three = 0;
     constexpr int runs = 60;
@@ -82,7 +82,7 @@ TEST(Repeats, AreNotSeenWhereRoundedNoiseRepeatsByChance) {
 
 TEST(Repeats, ThatTheModelHasAreExplained) {
     const SensorModel model = typical_mpu9250();
-    const auto recording = recorded(with_entry(model, "stale", {{"eps", 0.05}}), ten_minutes, 8);
+    const auto recording = recorded(with_effect(model, "stale", {{"eps", 0.05}}), ten_minutes, 8);
     const auto finding = repeats(recording, model);
     ASSERT_TRUE(finding);
     EXPECT_LT(evidence(repeats(recording, with_found(model, *finding))), 0.0 + 1e-9);

@@ -48,7 +48,8 @@ std::shared_ptr<const Recording> stamped(const Recording& recording, std::vector
 
 TEST(StampGaps, AreFoundWithTheirRateAndLength) {
     for (const double per_hour : {12.0, 60.0, 1200.0}) {
-        const SensorModel lossy = with_entry(sensor(), "dropped", {{"per_hour", per_hour}, {"longest", 6.0}});
+        const SensorModel lossy =
+            with_effect(sensor(), "dropped", {{"per_hour", per_hour}, {"longest", 6.0}});
         const auto recording = recorded(lossy, ten_minutes, 5);
         const auto finding = gaps(recording, sensor());
         ASSERT_TRUE(finding) << per_hour;
@@ -72,18 +73,18 @@ TEST(StampGaps, OfWhichThereIsOneAreEnough) {
 }
 
 TEST(StampGaps, ThatAModelExpectsMoreOftenOrShorterAreAGapToo) {
-    const SensorModel model = with_entry(sensor(), "dropped", {{"per_hour", 60.0}, {"longest", 2.0}});
+    const SensorModel model = with_effect(sensor(), "dropped", {{"per_hour", 60.0}, {"longest", 2.0}});
     const auto often =
-        recorded(with_entry(sensor(), "dropped", {{"per_hour", 1200.0}, {"longest", 2.0}}), ten_minutes, 5);
+        recorded(with_effect(sensor(), "dropped", {{"per_hour", 1200.0}, {"longest", 2.0}}), ten_minutes, 5);
     EXPECT_GT(evidence(gaps(often, model)), 100.0);
     const auto longer =
-        recorded(with_entry(sensor(), "dropped", {{"per_hour", 60.0}, {"longest", 12.0}}), ten_minutes, 5);
+        recorded(with_effect(sensor(), "dropped", {{"per_hour", 60.0}, {"longest", 12.0}}), ten_minutes, 5);
     EXPECT_GT(evidence(gaps(longer, model)), 10.0);
 }
 
 TEST(StampRate, OffByMoreThanTheModelKnowsIsFound) {
     for (const double rel : {-0.0068, 0.01, 0.0005}) {
-        const auto recording = recorded(with_entry(sensor(), "clock_rate", {{"rel", rel}}), ten_minutes, 2);
+        const auto recording = recorded(with_effect(sensor(), "clock_rate", {{"rel", rel}}), ten_minutes, 2);
         const auto finding = rate(recording, sensor());
         ASSERT_TRUE(finding) << rel;
         EXPECT_NEAR(finding->entries.front().params.at("rel"), rel,
@@ -102,7 +103,7 @@ TEST(StampRate, WithinItsUncertaintyIsNoGap) {
     constexpr int runs = 400;
     for (std::uint64_t seed = 0; seed < runs; ++seed) {
         const auto recording = recorded(
-            with_entry(model, "clock_rate", {{"rel", 5e-5 * RandomStream(seed, 9).normal(0)}}), 2048, seed);
+            with_effect(model, "clock_rate", {{"rel", 5e-5 * RandomStream(seed, 9).normal(0)}}), 2048, seed);
         above_zero += evidence(rate(recording, model)) > 0.0 ? 1 : 0;
     }
     EXPECT_LE(above_zero, 4);  // 1 in 700 expected
@@ -148,7 +149,7 @@ TEST(StampScatter, StatesHowWellItIsKnown) {
 TEST(StampSpread, BeyondTheModelsIsFound) {
     for (const double sd_s : {2e-5, 1e-4, 1e-3, 2.5e-3}) {
         const auto recording =
-            recorded(with_entry(sensor(), "clock_jitter", {{"sd_s", sd_s}}), ten_minutes, 2);
+            recorded(with_effect(sensor(), "clock_jitter", {{"sd_s", sd_s}}), ten_minutes, 2);
         const auto finding = spread(recording, sensor());
         ASSERT_TRUE(finding) << sd_s;
         EXPECT_GT(finding->evidence_nats, 15.0) << sd_s;
@@ -210,7 +211,7 @@ TEST(Stamps, ThatAreNotThereTellNothing) {
 
 // A simulation like a recording has the recording's stamps: they are no draw of chance.
 TEST(Stamps, OfASimulationLikeTheRecordingTellNothing) {
-    const auto recording = recorded(with_entry(sensor(), "clock_rate", {{"rel", 0.01}}), 4096, 2);
+    const auto recording = recorded(with_effect(sensor(), "clock_rate", {{"rel", 0.01}}), 4096, 2);
     const auto baseline = baseline_of(recording, sensor());
     SimulationRequest request;
     request.like = baseline->shared_world();

@@ -23,16 +23,6 @@ SensorModel white_sensor() {
     return model;
 }
 
-SensorModel calibrated_sensor() {
-    SensorModel model = white_sensor();
-    for (AxisModel& axis : model.axes) {
-        axis.noise.B_rad_per_s = 0.0015 * rad_per_deg;
-        axis.noise.K_rad_per_s_sqrt_s = 1e-4 * rad_per_deg;
-    }
-    model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.2}};
-    return model;
-}
-
 TEST(StepCoefficient, IsTheCosineTransformOfAJump) {
     constexpr std::size_t length = 240;
     CosineTransform transform(length);
@@ -77,7 +67,7 @@ TEST(StepTest, GainsInWhiteNoiseWhatTheJumpIsWorth) {
     constexpr double step_dps = 0.004;
     const SensorModel model = white_sensor();
     const SensorModel truth =
-        with_entry(model, "bias_step", {{"step_dps", step_dps}, {"at_s", (before - 0.5) / 100.0}}, {"y"});
+        with_effect(model, "bias_step", {{"step_dps", step_dps}, {"at_s", (before - 0.5) / 100.0}}, {"y"});
     const double lsb_dps = model.lsb_rad_s * deg_per_rad;
     const double variance = 0.005 * 0.005 * 100.0 + lsb_dps * lsb_dps / 12.0;
     const double ideal = 0.5 * step_dps * step_dps * before * (n - before) / (n * variance);
@@ -96,8 +86,8 @@ TEST(StepTest, GainsInWhiteNoiseWhatTheJumpIsWorth) {
 
 TEST(StepTest, FindsMomentHeightsAndAxes) {
     const SensorModel model = calibrated_sensor();
-    SensorModel truth = with_entry(model, "bias_step", {{"step_dps", 0.03}, {"at_s", 400.0}}, {"x"});
-    truth = with_entry(truth, "bias_step", {{"step_dps", -0.02}, {"at_s", 400.0}}, {"z"});
+    SensorModel truth = with_effect(model, "bias_step", {{"step_dps", 0.03}, {"at_s", 400.0}}, {"x"});
+    truth = with_effect(truth, "bias_step", {{"step_dps", -0.02}, {"at_s", 400.0}}, {"z"});
     const auto recording = recorded(truth, 90000, 3);
     const auto finding = found(make_step_test, "bias_step", recording, model);
     ASSERT_TRUE(finding);
@@ -117,7 +107,7 @@ TEST(StepTest, FindsMomentHeightsAndAxes) {
 // A sample on the wrong side would be an outlier of its own.
 TEST(StepTest, FindsAHighJumpToTheSample) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel truth = with_entry(model, "bias_step", {{"step_dps", 0.5}, {"at_s", 333.335}});
+    const SensorModel truth = with_effect(model, "bias_step", {{"step_dps", 0.5}, {"at_s", 333.335}});
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const auto finding = found(make_step_test, "bias_step", recorded(truth, 60000, seed), model);
         ASSERT_TRUE(finding);
@@ -130,7 +120,7 @@ TEST(StepTest, FindsAHighJumpToTheSample) {
 // faster than the model's is better explained by one.
 TEST(StepTest, YieldsToARandomWalk) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel truth = with_entry(model, "rrw_missing", {{"K_dps_sqrt_hz", 1e-3}});
+    const SensorModel truth = with_effect(model, "rrw_missing", {{"K_dps_sqrt_hz", 1e-3}});
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const auto recording = recorded(truth, 60000, seed);
         const auto walk = found(make_spectrum_test, "rrw_missing", recording, model);

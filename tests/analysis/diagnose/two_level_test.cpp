@@ -13,18 +13,6 @@
 namespace gyrolog {
 namespace {
 
-SensorModel calibrated_sensor() {
-    SensorModel model = typical_mpu9250();
-    for (AxisModel& axis : model.axes) {
-        axis.noise = {};
-        axis.noise.N_rad_per_sqrt_s = 0.005 * rad_per_deg;
-        axis.noise.B_rad_per_s = 0.0015 * rad_per_deg;
-        axis.noise.K_rad_per_s_sqrt_s = 1e-4 * rad_per_deg;
-    }
-    model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.2}};
-    return model;
-}
-
 std::vector<double> normals(std::size_t count) {
     std::vector<double> values(count);
     for (std::size_t i = 0; i < count; ++i) { values[i] = RandomStream(5, 6).normal(i); }
@@ -121,7 +109,7 @@ TEST(DriftStates, FollowFlickerAndRandomWalk) {
 
 TEST(TwoLevelTest, IsWorthMoreThanGaussMarkovNoiseWhereTheLevelsAreTwo) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel truth = with_entry(
+    const SensorModel truth = with_effect(
         model, "rtn", {{"amplitude_dps", 0.02}, {"dwell_high_s", 12.0}, {"dwell_low_s", 5.0}}, {"y"});
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         const auto recording = recorded(truth, 120000, seed);
@@ -143,7 +131,8 @@ TEST(TwoLevelTest, IsWorthMoreThanGaussMarkovNoiseWhereTheLevelsAreTwo) {
 
 TEST(TwoLevelTest, IsWorthLessWhereTheNoiseIsGaussMarkov) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel truth = with_entry(model, "gauss_markov", {{"sigma_dps", 0.01}, {"tau_s", 4.0}}, {"x"});
+    const SensorModel truth =
+        with_effect(model, "gauss_markov", {{"sigma_dps", 0.01}, {"tau_s", 4.0}}, {"x"});
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         const auto recording = recorded(truth, 120000, seed);
         const auto wandering = found(make_spectrum_test, "gauss_markov", recording, model);
@@ -156,7 +145,7 @@ TEST(TwoLevelTest, IsWorthLessWhereTheNoiseIsGaussMarkov) {
 // Short of the levels to be seen, nothing but the spectrum speaks, and that alike.
 TEST(TwoLevelTest, IsWorthAsMuchWhereTheLevelsDrownInNoise) {
     const SensorModel model = calibrated_sensor();
-    const SensorModel truth = with_entry(
+    const SensorModel truth = with_effect(
         model, "rtn", {{"amplitude_dps", 0.008}, {"dwell_high_s", 1.0}, {"dwell_low_s", 1.0}}, {"x"});
     const auto recording = recorded(truth, 360000, 3);
     const auto levels = found(make_two_level_test, "rtn", recording, model);
