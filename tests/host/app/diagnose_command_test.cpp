@@ -87,8 +87,27 @@ TEST_F(DiagnoseCommand, FindsTheCauseAndWritesTextJsonFigureAndModel) {
     EXPECT_EQ(read_model(corrected)->effects.size(), 1U);
 }
 
+TEST_F(DiagnoseCommand, MeasuresTheGapOnASecondRecording) {
+    write_noisy_recording(1.5);
+    const std::string second = folder.path("second.csv");
+    SimulationRequest request;
+    request.samples = 5000;
+    request.seed = 2;
+    ASSERT_TRUE(write_recording_csv(simulate_recording(typical_mpu9250(), request), second).ok());
+    ASSERT_EQ(
+        diagnose({recording, "--model", model, "--simulations", "20", "--json", "-", "--holdout", second}),
+        ExitCode::ok)
+        << err.str();
+    const json answer = json::parse(out.str());
+    EXPECT_EQ(answer["held_out"], "second.csv");
+    // The second sensor has no such gap: the cause that the first one shows opens one there.
+    EXPECT_LT(answer["gap_before"]["value"].get<double>(), 2.5);
+    EXPECT_GT(answer["gap_after"]["value"].get<double>(), 2.0 * answer["gap_before"]["value"].get<double>());
+    EXPECT_LT(answer["shrink"].get<double>(), 0.2);
+}
+
 TEST_F(DiagnoseCommand, GivesTheSameAnswerForAnyNumberOfThreads) {
-    write_noisy_recording(1.0);
+    write_noisy_recording(1.5);
     ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-", "--threads", "1"}),
               ExitCode::ok)
         << err.str();
