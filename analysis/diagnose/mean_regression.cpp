@@ -14,24 +14,25 @@ Eigen::VectorXd head_of(const std::vector<float>& values, Eigen::Index count) {
 
 MeanRegression::MeanRegression(const Observation& observation, std::size_t axis,
                                std::span<const double> density, std::size_t coefficients)
-    : observation_(observation), axis_(axis) {
+    : observation_(observation), axis_(axis), coefficients_(static_cast<Eigen::Index>(coefficients)) {
     const Baseline& baseline = observation.baseline();
-    const auto count = static_cast<Eigen::Index>(coefficients);
-    weight_ = Eigen::ArrayXd::Zero(count);
+    const std::vector<UncertainResponse>& uncertain = baseline.uncertain(axis);
+    // The uncertain responses reach as far as the motion does, whatever the effect's response.
+    const auto count = uncertain.empty() ? coefficients_ : static_cast<Eigen::Index>(baseline.length());
+    Eigen::ArrayXd weight = Eigen::ArrayXd::Zero(count);
     for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
         const SpectralBin& bin = baseline.bins()[i];
-        for (std::size_t k = bin.first; k < std::min(bin.end, coefficients); ++k) {
-            weight_[static_cast<Eigen::Index>(k)] = 1.0 / (density[i] * baseline.rate_hz());
+        for (std::size_t k = bin.first; k < std::min(bin.end, static_cast<std::size_t>(count)); ++k) {
+            weight[static_cast<Eigen::Index>(k)] = 1.0 / (density[i] * baseline.rate_hz());
         }
     }
-    weighted_ = (head_of(observation.axis(axis).cosines, count).array() * weight_).matrix();
-    const std::vector<UncertainResponse>& uncertain = baseline.uncertain(axis);
+    const Eigen::VectorXd cosines = head_of(observation.axis(axis).cosines, count);
     const auto directions = static_cast<Eigen::Index>(uncertain.size());
     uncertain_.resize(count, directions);
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(directions, directions);
     for (Eigen::Index u = 0; u < directions; ++u) {
         const UncertainResponse& direction = uncertain[static_cast<std::size_t>(u)];
-        uncertain_.col(u) = (head_of(direction.cosines, count).array() * weight_).matrix();
+        uncertain_.col(u) = (head_of(direction.cosines, count).array() * weight).matrix();
         for (Eigen::Index v = 0; v <= u; ++v) {
             information(u, v) = information(v, u) =
                 uncertain_.col(u).dot(head_of(uncertain[static_cast<std::size_t>(v)].cosines, count));
@@ -39,11 +40,14 @@ MeanRegression::MeanRegression(const Observation& observation, std::size_t axis,
         information(u, u) += 1.0 / (direction.sd * direction.sd);
     }
     information_.compute(information);
-    pull_ = uncertain_.transpose() * head_of(observation.axis(axis).cosines, count);
+    pull_ = uncertain_.transpose() * cosines;
     for (Eigen::Index u = 0; u < directions; ++u) {
         const double sd = uncertain[static_cast<std::size_t>(u)].sd;
         pull_[u] -= observation.axis(axis).uncertain_fit[static_cast<std::size_t>(u)] / (sd * sd);
     }
+    uncertain_.conservativeResize(coefficients_, Eigen::NoChange);
+    weight_ = weight.head(coefficients_);
+    weighted_ = (cosines.head(coefficients_).array() * weight_).matrix();
 }
 
 NormalEquations MeanRegression::equations(std::span<const std::vector<float>> responses) const {
@@ -70,16 +74,17 @@ MeanRegression::Rest MeanRegression::rest(std::span<const std::vector<float>> re
     const Baseline& baseline = observation_.baseline();
     const AxisObservation& seen = observation_.axis(axis_);
     const std::vector<UncertainResponse>& uncertain = baseline.uncertain(axis_);
-    Eigen::VectorXd left = head_of(seen.cosines, weight_.size());
+    Eigen::VectorXd left = head_of(
+        seen.cosines, uncertain.empty() ? coefficients_ : static_cast<Eigen::Index>(baseline.length()));
     for (Eigen::Index j = 0; j < c.size(); ++j) {
-        left -= c[j] * head_of(responses[static_cast<std::size_t>(j)], weight_.size());
+        left.head(coefficients_) -= c[j] * head_of(responses[static_cast<std::size_t>(j)], coefficients_);
     }
     Rest rest;
     if (!uncertain.empty()) {
         const Eigen::VectorXd shift = equations.shift * c + information_.solve(pull_);
         for (Eigen::Index u = 0; u < shift.size(); ++u) {
             const UncertainResponse& direction = uncertain[static_cast<std::size_t>(u)];
-            left -= shift[u] * head_of(direction.cosines, weight_.size());
+            left -= shift[u] * head_of(direction.cosines, left.size());
             const double before = seen.uncertain_fit[static_cast<std::size_t>(u)];
             const double after = before + shift[u];
             rest.charge_nats += 0.5 * (after * after - before * before) / (direction.sd * direction.sd);

@@ -37,6 +37,7 @@ public:
 private:
     const Observation& observation_;
     std::size_t axis_;
+    Eigen::Index coefficients_;
     Eigen::ArrayXd weight_;                     // 1 / (S_k rate) by coefficient, 0 for k = 0
     Eigen::VectorXd weighted_;                  // Y_k times it
     Eigen::MatrixXd uncertain_;                 // responses by column, weighted

@@ -1,0 +1,107 @@
+// Effects of a moving sensor, whose gains the model knows within an uncertainty and whose reference is noisy.
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/effect_search.hpp"
+#include "analysis/diagnose/quiet_reference.hpp"
+#include "tests/analysis/diagnose/observed.hpp"
+
+namespace gyrolog {
+namespace {
+
+// Rest and tumbling in turns of a minute, one growing out of the other.
+double peak_rad_s(double t_s) {
+    const double moving_s = std::fmod(t_s, 120.0) - 60.0;
+    return moving_s < 0.0 ? 0.0 : 2.0 * std::pow(std::sin(pi * moving_s / 60.0), 2.0);
+}
+
+double world_rate_x_rad_s(double t_s) { return peak_rad_s(t_s) * std::sin(2.0 * pi * t_s / 3.7); }
+
+std::shared_ptr<const World> world_with_rests() {
+    return world_turning([](double t_s) {
+        return Vector3{world_rate_x_rad_s(t_s), peak_rad_s(t_s) * std::sin(2.0 * pi * t_s / 2.3),
+                       peak_rad_s(t_s) * std::sin(2.0 * pi * t_s / 1.7)};
+    });
+}
+
+SensorModel moving_sensor() {
+    SensorModel model = calibrated_sensor();
+    model.ref_noise_rad_s = 0.02 * rad_per_deg;
+    model.sd_abs = {{"M", 2e-4}, {"latency_s", 1e-4}, {"rate_rel", 5e-5}};
+    return model;
+}
+
+const Finding* of(const Hypotheses& hypotheses, const std::string& effect) {
+    for (const std::optional<Finding>& finding : hypotheses.findings) {
+        if (finding && finding->effect == effect) { return &*finding; }
+    }
+    return nullptr;
+}
+
+Hypotheses examined(const SensorModel& sensor, const SensorModel& model, std::uint64_t seed) {
+    const auto recording = recorded(sensor, 48000, seed, world_with_rests());
+    return examine(baseline_of(recording, model), recording, 1, 1);
+}
+
+TEST(MotionEvidence, OfAScaleFactorIsWhatTheStatedGainsDoNotCover) {
+    const SensorModel model = moving_sensor();
+    const double eps = 0.008;
+    const Hypotheses seen = examined(with_effect(model, "scale_factor", {{"eps", eps}}, {"x"}), model, 31);
+    const Finding* found = of(seen, "scale_factor");
+    ASSERT_NE(found, nullptr);
+    EXPECT_EQ(found->where.axes, std::vector<std::size_t>{0});
+    // The motion knows the gain far better than the model states it: the gain in nats is the prior's.
+    const double expected_nats = 0.5 * eps * eps / (2e-4 * 2e-4);
+    EXPECT_NEAR(found->gain_nats, expected_nats, 0.05 * expected_nats);
+    EXPECT_NEAR(found->entries.front().params.at("eps"), eps, 4.0 * found->sd.front().at("eps"));
+    EXPECT_EQ(seen.best()->effect, "scale_factor")
+        << seen.best()->evidence_nats << " against " << found->evidence_nats;
+}
+
+TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNone) {
+    SensorModel sensor = moving_sensor();
+    sensor.M[0][0] += 2e-4;
+    sensor.M[1][2] -= 2e-4;
+    sensor.latency_s += 1e-4;
+    const Hypotheses seen = examined(sensor, moving_sensor(), 32);
+    for (const char* effect : {"scale_factor", "misalignment", "latency"}) {
+        const Finding* found = of(seen, effect);
+        if (found != nullptr) { EXPECT_LT(found->evidence_nats, 3.0) << effect; }
+    }
+}
+
+TEST(MotionEvidence, TakesTheReferencesNoiseForNoDeadZone) {
+    const Hypotheses seen = examined(moving_sensor(), moving_sensor(), 33);
+    const Finding* found = of(seen, "dead_zone");
+    if (found != nullptr) { EXPECT_LT(found->evidence_nats, 3.0); }
+    const Finding* best = seen.best();
+    if (best != nullptr) { EXPECT_LT(best->evidence_nats, 6.0) << best->effect; }
+}
+
+TEST(QuietReference, HasNoNoiseAtRestAndTheWholeMotionOtherwise) {
+    const SensorModel model = moving_sensor();
+    const auto recording = recorded(model, 24000, 34, world_with_rests());
+    const auto quiet = without_reference_noise(RecordedWorld(recording), model.ref_noise_rad_s);
+    const Column& before = *recording->find("ref_x");
+    const Column& after = *quiet->recording().find("ref_x");
+    const auto rms = [](const auto& error, std::size_t first, std::size_t end) {
+        double sum = 0.0;
+        for (std::size_t i = first; i < end; ++i) { sum += error(i) * error(i); }
+        return std::sqrt(sum / static_cast<double>(end - first));
+    };
+    // At rest, from one second on: windows of eight seconds leave a twentieth.
+    EXPECT_LT(rms([&](std::size_t i) { return after.value(i); }, 100, 5900), 0.08 * model.ref_noise_rad_s);
+    // On the move: no further from the truth than the noise is.
+    const auto error = [&](std::size_t i) {
+        return after.value(i) - world_rate_x_rad_s(static_cast<double>(i) / 100.0);
+    };
+    EXPECT_LT(rms(error, 6100, 11900), 1.5 * model.ref_noise_rad_s);
+    EXPECT_NEAR(rms([&](std::size_t i) { return before.value(i); }, 100, 5900), model.ref_noise_rad_s,
+                0.05 * model.ref_noise_rad_s);
+}
+
+}  // namespace
+}  // namespace gyrolog
