@@ -77,8 +77,7 @@ struct Diagnosis {
     Place where;
     Gap gap_before, gap_after;
     double shrink = 0.0, shrink_lo = 0.0, shrink_hi = 0.0;
-    std::string
-        held_out;  // the name of the second recording that the gap was measured on; empty without one
+    std::string held_out;  // the name of the second recording that the gap was measured on; empty without one
     std::vector<GapDomain> domains;
     std::vector<Untestable> untestable;
     std::vector<std::string> next_recordings;  // what would settle what is open, in sentences
