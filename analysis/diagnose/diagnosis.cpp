@@ -94,22 +94,12 @@ private:
         std::optional<NullSimulations> null = simulate_null(baseline_, &first_.catalogue, options);
         if (!null) { return false; }
         before_ = gap_reference(null->curves);
-        std::vector<double> surprises;
-        for (const auto& simulated : null->curves) { surprises.push_back(surprise(simulated, before_)); }
         evidence_tail_.emplace(std::move(null->evidence_nats));
-        surprise_tail_.emplace(std::move(surprises));
+        surprise_tail_.emplace(simulated_surprises_nats(null->curves));
         const std::vector<GapCurve> curves = gap_curves(*first_.observation);
         answer_.p_none = probability_of_none(curves);
         before_curves_ = curves;
         return true;
-    }
-
-    static double surprise(const std::vector<GapCurve>& curves, const GapReference& reference) {
-        double worst = 0.0;
-        for (std::size_t c = 0; c < curves.size(); ++c) {
-            worst = std::max(worst, gap_of(curves[c], reference, c).surprise_nats);
-        }
-        return worst;
     }
 
     // Of the best effect, the worst curve and the stamps: three looks, each with its own chance.
@@ -122,7 +112,7 @@ private:
             best = std::max(best, finding->evidence_nats);
         }
         const double p_effects = evidence_tail_->probability(evidence);
-        const double p_curves = surprise_tail_->probability(surprise(curves, before_));
+        const double p_curves = surprise_tail_->probability(worst_surprise_nats(curves, before_));
         const double p_stamps = std::exp(-stamps);
         // The smallest of three: exact where they are independent, a little cautious where they are not.
         const double least = std::min({p_effects, p_curves, p_stamps});
@@ -158,9 +148,8 @@ private:
         if (!null) { return false; }
         after_ = gap_reference(null->curves);
         after_curves_ = gap_curves(*found_->last.observation);
-        std::vector<double> surprises;
-        for (const auto& curves : null->curves) { surprises.push_back(surprise(curves, *after_)); }
-        answer_.p_left = EvidenceTail(std::move(surprises)).probability(surprise(after_curves_, *after_));
+        answer_.p_left = EvidenceTail(simulated_surprises_nats(null->curves))
+                             .probability(worst_surprise_nats(after_curves_, *after_));
         return true;
     }
 

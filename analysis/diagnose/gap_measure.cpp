@@ -41,28 +41,33 @@ double gamma_surprise(double value, double mean, double variance) {
 
 }  // namespace
 
-GapReference gap_reference(const std::vector<std::vector<GapCurve>>& simulations) {
-    const auto count = static_cast<double>(simulations.size());
+GapReference gap_reference(const SimulatedCurves& simulations, std::optional<std::size_t> left_out) {
+    std::vector<const std::vector<GapCurve>*> used;
+    for (std::size_t i = 0; i < simulations.size(); ++i) {
+        if (i != left_out) { used.push_back(&simulations[i]); }
+    }
+    const auto count = static_cast<double>(used.size());
     GapReference reference;
-    const std::size_t curves = simulations.front().size();
-    for (std::size_t c = 0; c < curves; ++c) {
-        const std::size_t points = simulations.front()[c].value.size();
+    reference.degrees_of_freedom = count - 1.0;
+    for (std::size_t c = 0; c < used.front()->size(); ++c) {
+        const GapCurve& first = (*used.front())[c];
+        const std::size_t points = first.value.size();
         std::vector<double> mean(points, 0.0);
         std::vector<double> sd(points, 0.0);
         for (std::size_t i = 0; i < points; ++i) {
-            for (const auto& simulation : simulations) { mean[i] += simulation[c].value[i] / count; }
-            for (const auto& simulation : simulations) {
-                const double off = simulation[c].value[i] - mean[i];
+            for (const auto* simulation : used) { mean[i] += (*simulation)[c].value[i] / count; }
+            for (const auto* simulation : used) {
+                const double off = (*simulation)[c].value[i] - mean[i];
                 sd[i] += off * off / (count - 1.0);
             }
-            sd[i] = std::max(std::sqrt(sd[i]), least_sd(simulations.front()[c].kind));
+            sd[i] = std::max(std::sqrt(sd[i]), least_sd(first.kind));
         }
         reference.mean.push_back(std::move(mean));
         reference.sd.push_back(std::move(sd));
         double sum = 0.0;
         double squares = 0.0;
-        for (const auto& simulation : simulations) {
-            const double total = sum_of_squares(standardised(simulation[c], reference, c));
+        for (const auto* simulation : used) {
+            const double total = sum_of_squares(standardised((*simulation)[c], reference, c));
             sum += total;
             squares += total * total;
         }
@@ -84,13 +89,30 @@ CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::
     gap.distance = scale > 0.0 ? std::sqrt(squares / points) / scale : 0.0;
     double worst = 0.0;
     for (const double z : gap.z) { worst = std::max(worst, std::fabs(z)); }
-    // The mean and sd of 200 simulations are themselves uncertain: Student's tail, not the normal one.
-    constexpr double degrees = 100.0;
+    // The simulations' mean and sd are themselves uncertain: Student's tail, not the normal one.
+    const double degrees = reference.degrees_of_freedom;
     const double at_one_point =
         std::max(0.0, 0.5 * (degrees + 1.0) * std::log1p(worst * worst / degrees) - std::log(points));
     gap.surprise_nats = std::max(at_one_point, gamma_surprise(squares, reference.square_mean[index],
                                                               reference.square_variance[index]));
     return gap;
+}
+
+double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
+    double worst = 0.0;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        worst = std::max(worst, gap_of(curves[c], reference, c).surprise_nats);
+    }
+    return worst;
+}
+
+std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations) {
+    std::vector<double> surprises;
+    surprises.reserve(simulations.size());
+    for (std::size_t i = 0; i < simulations.size(); ++i) {
+        surprises.push_back(worst_surprise_nats(simulations[i], gap_reference(simulations, i)));
+    }
+    return surprises;
 }
 
 }  // namespace gyrolog

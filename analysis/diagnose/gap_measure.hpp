@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "analysis/diagnose/gap_curves.hpp"
@@ -15,10 +16,14 @@ struct GapReference {
     std::vector<double> rms_scale;  // by curve: root mean square, over simulations, of their own rms z
     // By curve: mean and variance of the sum of z^2 over the simulations.
     std::vector<double> square_mean, square_variance;
+    double degrees_of_freedom = 0.0;  // of every sd
 };
 
-// `simulations`: at least ten, all from one baseline.
-GapReference gap_reference(const std::vector<std::vector<GapCurve>>& simulations);
+using SimulatedCurves = std::vector<std::vector<GapCurve>>;  // by simulation
+
+// `simulations`: at least ten, all from one baseline; the one at `left_out`, if there is one, has no part in it.
+GapReference gap_reference(const SimulatedCurves& simulations,
+                           std::optional<std::size_t> left_out = std::nullopt);
 
 struct CurveDistance {
     std::vector<double> z;
@@ -28,5 +33,10 @@ struct CurveDistance {
 };
 
 CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
+
+// The largest surprise of all curves of one observation.
+double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
+// Of every simulation against all the others: a new recording is not in its own reference either.
+std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations);
 
 }  // namespace gyrolog

@@ -15,8 +15,11 @@ constexpr double half_window_s = 0.25;
 constexpr double margin = 1.6;
 
 struct Line {
-    double value;     // in the middle
-    double variance;  // about it
+    double value;           // in the middle
+    double value_variance;  // of it, per unit of noise variance
+    double slope;
+    double slope_variance;  // likewise
+    double variance;        // of the samples about it
 };
 
 // Through values[first] ... values[end - 1], seen at `middle`.
@@ -40,7 +43,18 @@ Line line_through(const std::vector<double>& values, std::size_t first, std::siz
     const double x_scatter = xx - x_sum * x_sum / n;
     const double slope = x_scatter > 0.0 ? (xy - x_sum * y_sum / n) / x_scatter : 0.0;
     const double rest = std::max(0.0, yy - y_sum * y_sum / n - slope * slope * x_scatter);
-    return {values[middle] + (y_sum - slope * x_sum) / n, rest / std::max(n - 2.0, 1.0)};
+    const double slope_variance = x_scatter > 0.0 ? 1.0 / x_scatter : 0.0;
+    const double x_mean = x_sum / n;
+    return {values[middle] + (y_sum - slope * x_sum) / n, 1.0 / n + x_mean * x_mean * slope_variance, slope,
+            slope_variance, rest / std::max(n - 2.0, 1.0)};
+}
+
+// A table at rest turns at no rate at all, not at what is left of the noise: a sensor that does not follow that
+// rest of the noise would seem to have a dead zone.
+bool at_rest(const Line& line, double noise_variance) {
+    constexpr double sigmas_square = 9.0;
+    return line.value * line.value <= sigmas_square * noise_variance * line.value_variance &&
+           line.slope * line.slope <= sigmas_square * noise_variance * line.slope_variance;
 }
 
 // The widest window, of up to this many times the narrowest, in which there is nothing but noise about a
@@ -58,7 +72,7 @@ double quieted(const std::vector<double>& values, const Segment& segment, std::s
         const Line line = line_through(values, first, end, i);
         if (!std::isfinite(line.variance)) { continue; }
         const bool only_noise = line.variance <= noise_variance * (1.0 + 4.0 * std::sqrt(2.0 / count));
-        if (only_noise) { return line.value; }
+        if (only_noise) { return at_rest(line, noise_variance) ? 0.0 : line.value; }
         if (factor == 1) {
             const double kept = std::max(0.0, 1.0 - margin * noise_variance / line.variance);
             return line.value + kept * (values[i] - line.value);
