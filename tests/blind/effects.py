@@ -923,7 +923,7 @@ class Nonlinearity(Acting):
 
     def added(self, axis, around):
         scale = float(self.context.model["full_scale_dps"])
-        w = around.W[axis] / scale
+        w = around.S[axis] / scale
         return scale * (self.of("quadratic", axis, 0.0) * w**2 + self.of("cubic", axis, 0.0) * w**3)
 
     def where(self):
@@ -946,7 +946,7 @@ class Asymmetry(Acting):
         return {"gain": [strength * v for v in shape["each"]]}
 
     def added(self, axis, around):
-        return self.of("gain", axis) * np.abs(around.W[axis])
+        return self.of("gain", axis) * np.abs(around.S[axis])
 
     def where(self):
         return {"rate_dps": [5.0, 500.0]}
@@ -968,7 +968,7 @@ class DeadZone(Acting):
         return {"width_dps": strength, "jump": shape["jump"]}
 
     def added(self, axis, around):
-        w, width = around.W[axis], self.of("width_dps", axis)
+        w, width = around.S[axis], self.of("width_dps", axis)
         beyond = np.abs(w) > width
         answer = np.where(beyond, w - (1.0 - self.of("jump", axis, 0.0)) * width * np.sign(w), 0.0)
         return answer - w

@@ -481,7 +481,7 @@ class Backlash(Foreign):
         return {"play_dps": strength}
 
     def added(self, axis, around):
-        w, half = around.W[axis], 0.5 * self.params["play_dps"]
+        w, half = around.S[axis], 0.5 * self.params["play_dps"]
         out, y = np.empty_like(w), 0.0
         for k, value in enumerate(w.tolist()):
             y = value - half if y < value - half else (value + half if y > value + half else y)

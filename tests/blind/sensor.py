@@ -82,9 +82,10 @@ class Surroundings:
     def __init__(self, context, t, turning=True):
         self.t = t
         self.T = context.temperature(t)
-        self.W = self.f = None
+        self.W = self.S = self.f = None
         if context.motion and turning:
             self.W = context.motion(t)
+            self.S = context.sensor.M @ self.W  # what turns about the sensing axes, as they lie
             step = t[1] - t[0]
             self.f = specific_force(self.W, step, context.motion.acceleration(t))
 
@@ -219,7 +220,7 @@ def record(context, effects, noise_name="noise"):
         reference = context.motion(stamps_world)
         force = specific_force(reference, 1.0 / rate, context.motion.acceleration(at_stamps))
         around.f = force
-        rates = sensor.M @ around.W
+        rates = around.S = sensor.M @ around.W
     out = np.empty((3, n))
     for axis in range(3):
         value = rates[axis] + sensor.bias[axis]
