@@ -114,15 +114,16 @@ SensorModel without_noise(const SensorModel& model) {
     return quiet;
 }
 
+Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model)
+    : Baseline(std::move(world), model, nullptr) {}
+
 Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
-                   std::shared_ptr<ResponseMemory> memory, std::shared_ptr<const RecordedWorld> quiet_world)
-    : world_(std::move(world)),
-      quiet_world_(std::move(quiet_world)),
-      model_(model),
-      memory_(std::move(memory)) {
+                   std::shared_ptr<Shared> shared)
+    : world_(std::move(world)), model_(model), shared_(std::move(shared)) {
     const Recording& recording = world_->recording();
     rate_hz_ = recording.rate_hz;
     length_ = fast_length(slots_of(recording));
+    if (!shared_) { shared_ = std::make_shared<Shared>(length_); }
     axes_ = axes_of(recording);
     bins_ = spectral_bins(length_, rate_hz_);
     read_temperature();
@@ -141,21 +142,19 @@ void Baseline::read_temperature() {
 }
 
 void Baseline::read_motion() {
-    if (!moves()) {
-        quiet_world_ = world_;
-        return;
-    }
-    if (!quiet_world_) { quiet_world_ = without_reference_noise(*world_, model_.ref_noise_rad_s); }
-    quiet_response_rad_s_ = noise_free_response(*this, quiet_world_, model_);
-    true_rate_rad_s_ = noise_free_response(*this, quiet_world_, faultless(model_));
+    std::shared_ptr<const RecordedWorld>& quiet = shared_->quiet_world;
+    if (!quiet) { quiet = moves() ? without_reference_noise(*world_, model_.ref_noise_rad_s) : world_; }
+    if (!moves()) { return; }
+    quiet_response_rad_s_ = noise_free_response(*this, quiet, model_);
+    true_rate_rad_s_ = noise_free_response(*this, quiet, faultless(model_));
     SensorModel sooner = model_;
     SensorModel later = model_;
     sooner.latency_s -= 0.5 * time_step_s;
     later.latency_s += 0.5 * time_step_s;
-    response_change_rad_s2_ = noise_free_response(*this, quiet_world_, sooner);
-    const std::array<std::vector<float>, 3> delayed = noise_free_response(*this, quiet_world_, later);
+    response_change_rad_s2_ = noise_free_response(*this, quiet, sooner);
+    const std::array<std::vector<float>, 3> delayed = noise_free_response(*this, quiet, later);
 
-    CosineTransform transform(length_);
+    const TransformPool::Lease transform = this->transform();
     const double gain_sd = stated(model_.sd_abs, "M", 0.0);
     const double latency_sd_s = stated(model_.sd_abs, "latency_s", 0.0);
     const double clock_sd = stated(model_.sd_abs, "rate_rel", clock_sd_rel);
@@ -165,7 +164,7 @@ void Baseline::read_motion() {
             change[slot] = (change[slot] - delayed[axis][slot]) / static_cast<float>(time_step_s);
         }
         const auto take = [&](const std::vector<float>& values, double sd) {
-            if (sd > 0.0) { uncertain_[axis].push_back({cosines_of(values, transform), sd}); }
+            if (sd > 0.0) { uncertain_[axis].push_back({cosines_of(values, *transform), sd}); }
         };
         for (const std::size_t from : axes_) { take(true_rate_rad_s_[from], gain_sd); }
         take(change, latency_sd_s);
@@ -240,7 +239,7 @@ void Baseline::expect_spectrum() {
 }
 
 std::shared_ptr<const Baseline> Baseline::with(const SensorModel& model) const {
-    return std::make_shared<const Baseline>(world_, model, memory_, quiet_world_);
+    return std::shared_ptr<const Baseline>(new Baseline(world_, model, shared_));
 }
 
 std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline, const SensorModel& model) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/response_memory.hpp"
 #include "analysis/diagnose/spectral_bins.hpp"
 #include "analysis/simulate/effect_signature.hpp"
@@ -34,9 +35,7 @@ struct UncertainResponse {
 class Baseline {
 public:
     // `world`'s recording has no diagnosis_refusal(), `model` no simulation_refusal().
-    Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
-             std::shared_ptr<ResponseMemory> memory = std::make_shared<ResponseMemory>(),
-             std::shared_ptr<const RecordedWorld> quiet_world = nullptr);
+    Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model);
 
     const RecordedWorld& world() const { return *world_; }
     std::shared_ptr<const RecordedWorld> shared_world() const { return world_; }
@@ -62,7 +61,7 @@ public:
     // The same world with the reference's noise filtered out as far as its spectrum allows: what a model
     // misses of the motion is a function of the true rate, not of the noise. The world itself where nothing
     // moves.
-    std::shared_ptr<const RecordedWorld> quiet_world() const { return quiet_world_; }
+    std::shared_ptr<const RecordedWorld> quiet_world() const { return shared_->quiet_world; }
     // The model's answer to it.
     const std::vector<float>& quiet_response_rad_s(std::size_t axis) const {
         return moves() ? quiet_response_rad_s_[axis] : response_rad_s_[axis];
@@ -81,9 +80,22 @@ public:
     // The same world, another model.
     std::shared_ptr<const Baseline> with(const SensorModel& model) const;
     // Shared by all baselines that come from one.
-    ResponseMemory& memory() const { return *memory_; }
+    ResponseMemory& memory() const { return shared_->responses; }
+    // Of length() values.
+    TransformPool::Lease transform() const { return shared_->transforms.lease(); }
 
 private:
+    // What does not depend on the model.
+    struct Shared {
+        explicit Shared(std::size_t length) : transforms(length) {}
+        ResponseMemory responses;
+        TransformPool transforms;
+        std::shared_ptr<const RecordedWorld> quiet_world;
+    };
+
+    Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
+             std::shared_ptr<Shared> shared);
+
     void read_temperature();
     void read_motion();
     // Mean square of the factors on the axis' white noise.
@@ -91,9 +103,8 @@ private:
     void expect_spectrum();
 
     std::shared_ptr<const RecordedWorld> world_;
-    std::shared_ptr<const RecordedWorld> quiet_world_;
     SensorModel model_;
-    std::shared_ptr<ResponseMemory> memory_;
+    std::shared_ptr<Shared> shared_;
     double rate_hz_ = 0.0;
     std::size_t length_ = 0;
     std::vector<std::size_t> axes_;

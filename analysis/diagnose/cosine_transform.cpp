@@ -79,4 +79,21 @@ void CosineTransform::inverse(std::span<double> values) {
     }
 }
 
+TransformPool::Lease TransformPool::lease() {
+    std::unique_ptr<CosineTransform> transform;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!idle_.empty()) {
+            transform = std::move(idle_.back());
+            idle_.pop_back();
+        }
+    }
+    if (!transform) { transform = std::make_unique<CosineTransform>(length_); }
+    return {transform.release(), [this](CosineTransform* used) {
+                std::unique_ptr<CosineTransform> owned(used);
+                const std::lock_guard lock(mutex_);
+                idle_.push_back(std::move(owned));
+            }};
+}
+
 }  // namespace gyrolog

@@ -8,8 +8,11 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <vector>
 
 namespace gyrolog {
 
@@ -31,6 +34,22 @@ public:
 private:
     struct Plan;
     std::unique_ptr<Plan> plan_;
+};
+
+// Transforms of one length: their tables take as long to make as a transform does.
+class TransformPool {
+public:
+    using Lease = std::unique_ptr<CosineTransform, std::function<void(CosineTransform*)>>;
+
+    explicit TransformPool(std::size_t length) : length_(length) {}
+
+    // For one thread, back in the pool when the lease ends; the pool outlives it.
+    Lease lease();
+
+private:
+    std::size_t length_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<CosineTransform>> idle_;
 };
 
 }  // namespace gyrolog

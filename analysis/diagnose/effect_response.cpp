@@ -30,7 +30,7 @@ std::array<std::vector<float>, 3> simulated_response(const Baseline& baseline, c
     const auto unchanged =
         slow ? noise_free_response(baseline, without) : std::array<std::vector<float>, 3>{};
     const std::size_t kept = slow ? std::min(slow_coefficients, baseline.length()) : baseline.length();
-    CosineTransform transform(baseline.length());
+    const TransformPool::Lease transform = baseline.transform();
     std::vector<double> work(baseline.length());
     std::array<std::vector<float>, 3> cosines;
     for (const std::size_t axis : baseline.axes()) {
@@ -42,7 +42,7 @@ std::array<std::vector<float>, 3> simulated_response(const Baseline& baseline, c
         for (std::size_t slot = 0; slot < work.size(); ++slot) {
             work[slot] = static_cast<double>(changed[axis][slot]) - static_cast<double>(before[slot]);
         }
-        cosines[axis] = cosines_of(work, kept, transform);
+        cosines[axis] = cosines_of(work, kept, *transform);
     }
     return cosines;
 }

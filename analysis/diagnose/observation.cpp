@@ -203,8 +203,8 @@ Observation::Observation(std::shared_ptr<const Baseline> baseline, std::shared_p
     const std::vector<bool> judged = judged_rows(*recording_, baseline_->model());
     for_each_slot(segments_, origin, length,
                   [&](std::size_t slot, std::size_t row) { present_[slot] = judged[row]; });
-    CosineTransform transform(length);
-    for (const std::size_t axis : baseline_->axes()) { observe(axis, seed, transform); }
+    const TransformPool::Lease transform = baseline_->transform();
+    for (const std::size_t axis : baseline_->axes()) { observe(axis, seed, *transform); }
 }
 
 void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform) {

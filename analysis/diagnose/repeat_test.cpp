@@ -61,6 +61,14 @@ struct Excess {
 
 double eps_sd(double eps, double rows) { return std::sqrt(std::max(eps, 1.0 / rows) / rows); }
 
+std::vector<PatternCounts> in_one_block(const std::vector<PatternCounts>& blocks) {
+    PatternCounts all{};
+    for (const PatternCounts& counts : blocks) {
+        for (std::size_t pattern = 0; pattern < counts.size(); ++pattern) { all[pattern] += counts[pattern]; }
+    }
+    return {all};
+}
+
 class RepeatTest final : public EffectTest {
 public:
     RepeatTest(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline)
@@ -71,19 +79,22 @@ public:
         const Quantities moving = moving_quantities(recording, *baseline_);
         if (moving.axes.empty()) { return std::nullopt; }
         std::size_t looked_at = 0;
-        const std::optional<Excess> best = best_set(recording, moving, looked_at);
+        const std::size_t blocks = std::clamp<std::size_t>(recording.rows() / block_rows, 1, blocks_max);
+        const std::vector<PatternCounts> near = count_patterns(recording, moving.columns, 1, blocks);
+        const std::vector<PatternCounts> apart = count_patterns(recording, moving.columns, 2, blocks);
+        const std::optional<Excess> best =
+            best_set(recording, moving, in_one_block(near), in_one_block(apart), looked_at);
         if (!best) { return std::nullopt; }
         Excess excess = *best;
-        if (std::popcount(excess.set) > 1) { excess = in_blocks(recording, moving, excess.set); }
+        if (std::popcount(excess.set) > 1) { excess = together(near, apart, moving, excess.set); }
         if (excess.gain_nats < trace_nats) { return std::nullopt; }
         return finding_of(moving, excess, static_cast<double>(looked_at));
     }
 
 private:
     std::optional<Excess> best_set(const Recording& recording, const Quantities& moving,
-                                   std::size_t& looked_at) const {
-        const std::vector<PatternCounts> near = count_patterns(recording, moving.columns, 1, 1);
-        const std::vector<PatternCounts> apart = count_patterns(recording, moving.columns, 2, 1);
+                                   const std::vector<PatternCounts>& near,
+                                   const std::vector<PatternCounts>& apart, std::size_t& looked_at) const {
         const std::size_t axis_sets = std::size_t{1} << moving.axes.size();
         std::optional<Excess> best;
         const auto take = [&](const Excess& excess) {
@@ -102,12 +113,6 @@ private:
             }
         }
         return best;
-    }
-
-    Excess in_blocks(const Recording& recording, const Quantities& moving, std::size_t set) const {
-        const std::size_t blocks = std::clamp<std::size_t>(recording.rows() / block_rows, 1, blocks_max);
-        return together(count_patterns(recording, moving.columns, 1, blocks),
-                        count_patterns(recording, moving.columns, 2, blocks), moving, set);
     }
 
     Excess together(const std::vector<PatternCounts>& near, const std::vector<PatternCounts>& apart,

@@ -291,8 +291,12 @@ void RecordedWorld::motion(std::span<const double> world_s,
 void RecordedWorld::temperature(std::span<const double> world_s, std::span<double> temperature_C) const {
     const std::span<const Knot> knots = temperature_C_;
     const auto later = [](double at_s, const Knot& knot) { return at_s < knot.at_s; };
+    auto after = knots.begin();
     for (std::size_t i = 0; i < world_s.size(); ++i) {
-        const auto after = std::upper_bound(knots.begin(), knots.end(), world_s[i], later);
+        // Mostly still between the knots of the sample before.
+        const bool same = after != knots.begin() && after != knots.end() && world_s[i] < after->at_s &&
+                          world_s[i] >= (after - 1)->at_s;
+        if (!same) { after = std::upper_bound(knots.begin(), knots.end(), world_s[i], later); }
         if (after == knots.begin() || after == knots.end()) {
             temperature_C[i] = after == knots.begin() ? knots.front().value_C : knots.back().value_C;
             continue;
