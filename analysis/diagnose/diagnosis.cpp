@@ -21,8 +21,11 @@ namespace {
 constexpr double none_above_p = 0.01;
 // What the causes leave is called unexplained below this,
 constexpr double unexplained_below_p = 0.003;
-// unless it is so little of the gap that an estimate's own error may leave it.
+// unless it is so little of the gap that the approximations of a fit may leave it, and chance nearly.
 constexpr double tolerated_share = 0.02;
+constexpr double tolerated_above_p = 1e-6;
+// How often a cause is right that does not explain the gap: something else is there that it may stand for.
+constexpr double part_of_unexplained = 0.2;
 constexpr double tie_nats = 4.0;
 constexpr std::size_t tie_most = 4;
 // A difference of this evidence is no tie any more, whatever chance does to it.
@@ -175,8 +178,9 @@ private:
         }
         const double excess_before = before.gap.value * before.gap.value - 1.0;
         const double excess_after = std::max(after.gap.value * after.gap.value - 1.0, 0.0);
-        const bool explained = after_ && (answer_.p_left >= unexplained_below_p ||
-                                          excess_after < tolerated_share * excess_before);
+        const bool tolerable =
+            excess_after < tolerated_share * excess_before && answer_.p_left >= tolerated_above_p;
+        const bool explained = after_ && (answer_.p_left >= unexplained_below_p || tolerable);
         answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
         if (found_) {
             for (const FoundCause& found : found_->causes) {
@@ -295,7 +299,7 @@ private:
         if (!cause.tie_group.empty()) {
             cause.tie_group.insert(cause.tie_group.begin(), {found.finding.effect, 0.0});
         }
-        cause.score = (explained ? 1.0 : 0.3) / sum;
+        cause.score = (explained ? 1.0 : part_of_unexplained) / sum;
         const EffectSignature& signature = *find_effect(found.finding.effect)->signature;
         if (!cause.tie_group.empty()) { cause.decided_by = signature.decided_by; }
         return cause;
