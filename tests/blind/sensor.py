@@ -199,8 +199,7 @@ def record(context, effects, noise_name="noise"):
     # A filter comes after all that shapes the white noise.
     effects = sorted(effects, key=lambda e: e.name == "lowpass")
     rng = stream(context.seed, noise_name)
-    instants = np.arange(n) / (rate * (1.0 + sensor.rate_rel))
-    stamps = instants
+    instants = stamps = believed = np.arange(n) / (rate * (1.0 + sensor.rate_rel))
     for e in effects:
         instants, stamps = e.times(stream(context.seed, noise_name, "t" + e.name), instants, stamps)
     stamps = stamps + rng.normal(0.0, sensor.jitter_s, n)
@@ -216,7 +215,7 @@ def record(context, effects, noise_name="noise"):
                 around.W = e.world_rate(seen)
         if around.W is None:
             around.W = context.motion(seen)
-        at_stamps = stamps_world = np.arange(n) / rate if any(e.hides_time() for e in effects) else instants
+        at_stamps = stamps_world = believed if any(e.hides_time() for e in effects) else instants
         reference = context.motion(stamps_world)
         force = specific_force(reference, 1.0 / rate, context.motion.acceleration(at_stamps))
         around.f = force
