@@ -40,4 +40,26 @@ double Recording::duration_s() const {
            rate_hz;
 }
 
+Recording first_rows(Recording recording, std::size_t rows) {
+    if (rows >= recording.rows()) { return recording; }
+    for (Column& column : recording.columns) {
+        std::visit(
+            [&](auto& values) {
+                values.resize(rows);
+                values.shrink_to_fit();
+            },
+            column.data);
+    }
+    if (!recording.t_s.empty()) {
+        recording.t_s.resize(rows);
+        recording.t_s.shrink_to_fit();
+    }
+    std::erase_if(recording.segments, [&](const Segment& segment) { return segment.first >= rows; });
+    Segment& last = recording.segments.back();
+    last.count = std::min(last.count, rows - last.first);
+    const double end_s = recording.duration_s();
+    std::erase_if(recording.dropouts, [&](const Dropout& dropout) { return dropout.at_s >= end_s; });
+    return recording;
+}
+
 }  // namespace gyrolog

@@ -75,4 +75,7 @@ struct Recording {
     double duration_s() const;
 };
 
+// The recording as if it had ended after `rows`, at least one; whole if it has no more.
+Recording first_rows(Recording recording, std::size_t rows);
+
 }  // namespace gyrolog

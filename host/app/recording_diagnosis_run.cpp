@@ -31,6 +31,15 @@ Result<std::shared_ptr<const Recording>> diagnosable(const RecordingDiagnosisReq
     if (const auto refusal = diagnosis_refusal(recording)) {
         return Error{ErrorCode::failed, "diagnose '" + path + "': " + *refusal};
     }
+    if (recording.rows() > diagnosable_samples_max) {
+        const double whole_s = recording.duration_s();
+        recording = first_rows(std::move(recording), diagnosable_samples_max);
+        recording.warnings.push_back(
+            fmt::format("'{}' is looked at from its beginning to {} of {}: a diagnosis takes no more than {} "
+                        "samples; later parts have to be cut out and diagnosed by themselves",
+                        path, format_duration(recording.duration_s()), format_duration(whole_s),
+                        diagnosable_samples_max));
+    }
     return std::make_shared<const Recording>(std::move(recording));
 }
 
@@ -55,7 +64,9 @@ Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& r
                               std::filesystem::path(request.model_path).filename().string(), options);
     if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
     if (!diagnosis) { return Error{ErrorCode::failed, "interrupted; nothing is written"}; }
-    diagnosis->warnings.insert(diagnosis->warnings.end(), file.notes.begin(), file.notes.end());
+    for (const std::vector<std::string>& more : {recording->warnings, file.notes}) {
+        diagnosis->warnings.insert(diagnosis->warnings.end(), more.begin(), more.end());
+    }
     return *std::move(diagnosis);
 }
 
