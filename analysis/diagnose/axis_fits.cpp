@@ -45,10 +45,14 @@ const EffectParam& param_of(const EffectDefinition& effect, std::string_view nam
 double occam_cost_nats(const EffectParam& param, double value, double sd) {
     const double from = param.plausible_from;
     const double to = param.plausible_to;
-    if (from > 0.0 && to > from && value > 0.0) {
-        return parameter_cost_nats(std::log(to / from), sd / value);
-    }
-    return parameter_cost_nats(to - from, sd);
+    const bool logarithmic = from > 0.0 && to > from && value > 0.0;
+    const double range = logarithmic ? std::log(to / from) : to - from;
+    double cost = parameter_cost_nats(range, logarithmic ? sd / value : sd);
+    // What is plausible ends as a normal distribution does, a sigma of half the range, not at a wall.
+    const double beyond = logarithmic ? std::max(std::log(value / to), std::log(from / value))
+                                      : std::max(value - to, from - value);
+    if (beyond > 0.0 && range > 0.0) { cost += 2.0 * beyond * beyond / (range * range); }
+    return cost;
 }
 
 std::optional<Finding> best_of(const EffectDefinition& effect, const std::vector<AxesFit>& single,

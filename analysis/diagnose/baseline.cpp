@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/quiet_reference.hpp"
@@ -70,6 +71,8 @@ SensorModel faultless(const SensorModel& model) {
     sensor.full_scale_rad_s = sensor.saturation_rad_s = 1e6;
     sensor.latency_s = model.latency_s;
     sensor.orientation = model.orientation;
+    std::ranges::copy_if(model.effects, std::back_inserter(sensor.effects),
+                         [](const EffectModel& entry) { return find_effect(entry.effect)->timing_only; });
     return sensor;
 }
 

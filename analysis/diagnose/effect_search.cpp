@@ -1,6 +1,8 @@
 #include "analysis/diagnose/effect_search.hpp"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -9,31 +11,32 @@ namespace gyrolog {
 
 namespace {
 
+// Less is no reason to prefer what was not first.
+constexpr double margin_nats = 3.0;
+// How many causes are tried as the first.
+constexpr std::size_t beginnings_most = 4;
+
 class Search {
 public:
     Search(const Hypotheses& first, std::shared_ptr<const Recording> recording, const SearchOptions& options)
         : first_(first), recording_(std::move(recording)), options_(options) {}
 
     std::optional<EffectSearchResult> run() {
-        const Hypotheses* now = &first_;
-        Hypotheses latest;
-        while (causes_.size() < options_.causes_most) {
-            const Finding* next = further(*now);
-            if (next == nullptr || next->evidence_nats < options_.evidence_min_nats) { break; }
-            causes_.push_back({*next, findings_of(*now)});
-            if (!told()) { return std::nullopt; }
-            if (causes_.size() > 1 && !refit()) { return std::nullopt; }
-            latest = examine(first_.baseline->with(model_with_all_but(causes_.size())), recording_,
-                             options_.seed, options_.threads);
-            now = &latest;
+        std::optional<Hypotheses> latest = with_first_cause();
+        while (latest && causes_.size() < options_.causes_most) {
+            const Finding* next = further(*latest);
+            if (next == nullptr) { break; }
+            causes_.push_back({*next, findings_of(*latest)});
+            if (!told() || !refit()) { return std::nullopt; }
+            latest = with_causes();
         }
         EffectSearchResult result;
         result.corrected = model_with_all_but(causes_.size());
         result.causes = std::move(causes_);
         std::ranges::sort(result.causes, std::greater{},
                           [](const FoundCause& cause) { return cause.finding.evidence_nats; });
-        if (now == &latest) {
-            result.last = std::move(latest);
+        if (latest) {
+            result.last = *std::move(latest);
         } else {
             result.last = {first_.baseline, first_.observation, {}, {}};
         }
@@ -41,6 +44,56 @@ public:
     }
 
 private:
+    Hypotheses with_causes() const {
+        return examine(first_.baseline->with(model_with_all_but(causes_.size())), recording_, options_.seed,
+                       options_.threads);
+    }
+
+    // The best finding of every method: noise may pass for a drift and a drift for noise, as long as the
+    // other is not in the model.
+    std::vector<Finding> beginnings() const {
+        std::map<EvidenceMethod, Finding> best;
+        for (const Finding& finding : findings_of(first_)) {
+            if (finding.evidence_nats < options_.evidence_min_nats) { break; }
+            best.try_emplace(find_effect(finding.effect)->signature->method, finding);
+        }
+        std::vector<Finding> found;
+        for (auto& [method, finding] : best) { found.push_back(std::move(finding)); }
+        std::ranges::sort(found, std::greater{}, &Finding::evidence_nats);
+        if (found.size() > beginnings_most) { found.resize(beginnings_most); }
+        return found;
+    }
+
+    static bool is_noise(const Finding& finding) {
+        const EvidenceMethod method = find_effect(finding.effect)->signature->method;
+        return method == EvidenceMethod::spectrum || method == EvidenceMethod::two_levels ||
+               method == EvidenceMethod::tails;
+    }
+
+    // Takes the cause that is best together with the one it calls for next; what is seen with it in the
+    // model. Empty where there is none.
+    std::optional<Hypotheses> with_first_cause() {
+        std::optional<Hypotheses> best;
+        std::vector<FoundCause> best_causes;
+        double best_nats = 0.0;
+        for (const Finding& finding : beginnings()) {
+            causes_ = {{finding, findings_of(first_)}};
+            Hypotheses with_it = with_causes();
+            const Finding* next = further(with_it);
+            const double nats = finding.evidence_nats + (next != nullptr ? next->evidence_nats : 0.0);
+            const bool leaves_nothing = next == nullptr;
+            if (!best || nats > best_nats + margin_nats) {
+                best = std::move(with_it);
+                best_causes = causes_;
+                best_nats = nats;
+            }
+            // Noise takes up whatever is there; an answer of one shape that leaves nothing was the right one.
+            if (leaves_nothing && !is_noise(finding)) { break; }
+        }
+        causes_ = std::move(best_causes);
+        return best;
+    }
+
     bool told() const {
         const double share =
             static_cast<double>(causes_.size()) / static_cast<double>(options_.causes_most + 1);
@@ -61,17 +114,22 @@ private:
         return method == EvidenceMethod::line || method == EvidenceMethod::step;
     }
 
-    // The best finding that is not of an effect found before: what those could explain, their fit has.
+    // The best finding that is not of an effect found before: what those could explain, their fit has. Null
+    // where none has evidence enough.
     const Finding* further(const Hypotheses& hypotheses) const {
         const Finding* best = nullptr;
         for (const std::optional<Finding>& finding : hypotheses.findings) {
-            if (!finding) { continue; }
-            const bool known = std::ranges::any_of(
-                causes_, [&](const FoundCause& cause) { return cause.finding.effect == finding->effect; });
-            if (known && !repeats_itself(*finding)) { continue; }
+            if (!finding || finding->evidence_nats < options_.evidence_min_nats) { continue; }
+            if (!is_new(*finding)) { continue; }
             if (best == nullptr || finding->evidence_nats > best->evidence_nats) { best = &*finding; }
         }
         return best;
+    }
+
+    bool is_new(const Finding& finding) const {
+        return repeats_itself(finding) || std::ranges::none_of(causes_, [&](const FoundCause& cause) {
+                   return cause.finding.effect == finding.effect;
+               });
     }
 
     SensorModel model_with_all_but(std::size_t left_out) const {
@@ -82,18 +140,24 @@ private:
         return model;
     }
 
-    // Every cause with the others in the model.
+    // Every cause with the others in the model; one that another effect does better by now gives way to it.
     bool refit() {
         for (std::size_t i = 0; i < causes_.size();) {
             const Hypotheses without = examine(first_.baseline->with(model_with_all_but(i)), recording_,
                                                options_.seed, options_.threads);
             const std::vector<Finding> findings = findings_of(without);
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
-            if (same == findings.end() || same->evidence_nats < options_.evidence_min_nats) {
+            const double own_nats = same == findings.end() ? 0.0 : same->evidence_nats;
+            const auto rival = std::ranges::find_if(findings, [&](const Finding& f) { return is_new(f); });
+            if (rival != findings.end() && rival->evidence_nats > own_nats + margin_nats &&
+                rival->evidence_nats >= options_.evidence_min_nats) {
+                causes_[i].finding = *rival;
+            } else if (own_nats >= options_.evidence_min_nats) {
+                causes_[i].finding = *same;
+            } else {
                 causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(i));
                 continue;
             }
-            causes_[i].finding = *same;
             causes_[i].rivals = findings;
             ++i;
             if (!told()) { return false; }

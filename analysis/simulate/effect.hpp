@@ -48,6 +48,8 @@ struct EffectDefinition {
     bool warms = false;
     // It has no part in the noise-free answer to the world.
     bool noise_only = false;
+    // It moves, by a law, the moments at which the world is sampled, and does nothing else.
+    bool timing_only = false;
     // How it shows in a recording; null for what a diagnosis does not look for.
     const EffectSignature* signature = nullptr;
 };

@@ -74,6 +74,7 @@ constinit const EffectDefinition clock_rate_effect = {
     .params = params,
     .make = make,
     .rate_error = "rel",
+    .timing_only = true,
     .signature = &signature,
 };
 

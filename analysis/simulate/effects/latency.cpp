@@ -46,6 +46,7 @@ constinit const EffectDefinition latency_effect = {
     .source = "",
     .params = params,
     .make = make,
+    .timing_only = true,
     .signature = &signature,
 };
 
