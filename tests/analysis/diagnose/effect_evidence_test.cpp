@@ -9,7 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/axis_fits.hpp"
 #include "analysis/diagnose/effect_search.hpp"
+#include "analysis/simulate/chain.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -121,6 +123,39 @@ TEST(EffectSearch, TakesTwoCausesApart) {
     EXPECT_EQ(names, (std::vector<std::string>{"gauss_markov", "tone"}));
     const Finding* left = found->last.best();
     if (left != nullptr) { EXPECT_LT(left->evidence_nats, 6.0); }
+}
+
+// A random walk takes up both; only together they are worth more.
+TEST(EffectSearch, TakesTelegraphNoiseOnARampForNoRandomWalk) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel two = model;
+    two.effects.push_back(
+        {"rtn", {"y"}, {{"amplitude_dps", 0.012}, {"dwell_high_s", 21.0}, {"dwell_low_s", 15.0}}, ""});
+    two.effects.push_back({"rate_ramp", {"y"}, {{"ramp_dps_per_s", 1.5e-4}}, ""});
+    const auto recording = recorded(two, 180000, 25);
+    const Hypotheses first = examined(recording, model);
+    EXPECT_EQ(find_effect(first.best()->effect)->signature->method, EvidenceMethod::spectrum)
+        << "the trap is not set";
+    const std::optional<EffectSearchResult> found = search_effects(first, recording, {});
+    ASSERT_TRUE(found);
+    std::vector<std::string> names;
+    for (const FoundCause& cause : found->causes) { names.push_back(cause.finding.effect); }
+    std::ranges::sort(names);
+    EXPECT_EQ(names, (std::vector<std::string>{"rate_ramp", "rtn"}));
+}
+
+TEST(OccamCost, RisesSmoothlyBeyondWhatIsPlausible) {
+    const EffectParam size{.name = "a", .meaning = "", .plausible_from = -3.0, .plausible_to = 3.0};
+    const double sd = 0.01;
+    EXPECT_DOUBLE_EQ(occam_cost_nats(size, 0.5, sd), occam_cost_nats(size, -2.9, sd));
+    const double inside = occam_cost_nats(size, 0.0, sd);
+    EXPECT_NEAR(occam_cost_nats(size, 6.0, sd) - inside, 0.5, 1e-9) << "half the range beyond: one sigma";
+    EXPECT_NEAR(occam_cost_nats(size, -9.0, sd) - inside, 2.0, 1e-9);
+    const EffectParam time{.name = "tau_s", .meaning = "", .plausible_from = 60.0, .plausible_to = 960.0};
+    const double relative = 0.1;
+    const double usual = occam_cost_nats(time, 100.0, relative * 100.0);
+    EXPECT_NEAR(occam_cost_nats(time, 960.0 * 4.0, relative * 960.0 * 4.0) - usual, 0.5, 1e-9);
+    EXPECT_NEAR(occam_cost_nats(time, 60.0 / 16.0, relative * 60.0 / 16.0) - usual, 2.0, 1e-9);
 }
 
 }  // namespace

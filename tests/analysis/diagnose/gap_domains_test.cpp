@@ -10,6 +10,7 @@ namespace {
 // Of simulations whose numbers have the mean 0.1 and a standard deviation of 0.02 at every point.
 GapReference reference_of(const std::vector<GapCurve>& curves) {
     GapReference reference;
+    reference.degrees_of_freedom = 199.0;
     for (const GapCurve& curve : curves) {
         const std::size_t points = curve.value.size();
         reference.mean.emplace_back(points, 0.1);

@@ -73,6 +73,19 @@ TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNone) {
     }
 }
 
+TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNoneWhateverTheClock) {
+    SensorModel model = moving_sensor();
+    model.effects.push_back({"clock_rate", {}, {{"rel", 0.002}, {"in_stamps", 0.0}}, ""});
+    SensorModel sensor = model;
+    sensor.M[0][0] += 2e-4;
+    sensor.M[1][2] -= 2e-4;
+    const Hypotheses seen = examined(sensor, model, 35);
+    for (const char* effect : {"scale_factor", "misalignment"}) {
+        const Finding* found = of(seen, effect);
+        if (found != nullptr) { EXPECT_LT(found->evidence_nats, 3.0) << effect; }
+    }
+}
+
 TEST(MotionEvidence, TakesTheReferencesNoiseForNoDeadZone) {
     const Hypotheses seen = examined(moving_sensor(), moving_sensor(), 33);
     const Finding* found = of(seen, "dead_zone");
@@ -94,6 +107,9 @@ TEST(QuietReference, HasNoNoiseAtRestAndTheWholeMotionOtherwise) {
     };
     // At rest, from one second on: windows of eight seconds leave a twentieth.
     EXPECT_LT(rms([&](std::size_t i) { return after.value(i); }, 100, 5900), 0.08 * model.ref_noise_rad_s);
+    int turning = 0;
+    for (std::size_t i = 100; i < 5900; ++i) { turning += after.value(i) != 0.0; }
+    EXPECT_LT(turning, 580) << "what is at rest does not turn";
     // On the move: no further from the truth than the noise is.
     const auto error = [&](std::size_t i) {
         return after.value(i) - world_rate_x_rad_s(static_cast<double>(i) / 100.0);
