@@ -21,7 +21,8 @@ struct GapReference {
 
 using SimulatedCurves = std::vector<std::vector<GapCurve>>;  // by simulation
 
-// `simulations`: at least ten, all from one baseline; the one at `left_out`, if there is one, has no part in it.
+// `simulations`: at least ten, all from one baseline; the one at `left_out`, if there is one, has no part in
+// it.
 GapReference gap_reference(const SimulatedCurves& simulations,
                            std::optional<std::size_t> left_out = std::nullopt);
 

@@ -49,8 +49,8 @@ Line line_through(const std::vector<double>& values, std::size_t first, std::siz
             slope_variance, rest / std::max(n - 2.0, 1.0)};
 }
 
-// A table at rest turns at no rate at all, not at what is left of the noise: a sensor that does not follow that
-// rest of the noise would seem to have a dead zone.
+// A table at rest turns at no rate at all, not at what is left of the noise: a sensor that does not follow
+// that rest of the noise would seem to have a dead zone.
 bool at_rest(const Line& line, double noise_variance) {
     constexpr double sigmas_square = 9.0;
     return line.value * line.value <= sigmas_square * noise_variance * line.value_variance &&
