@@ -33,6 +33,11 @@ bool acts_on(const EffectModel& effect, std::size_t axis) {
     return effect.axes.empty() || std::ranges::count(effect.axes, axis_names[axis]) != 0;
 }
 
+double reference_noise(const SensorModel& model, std::size_t axis) {
+    const Vector3& gains = model.M[axis];
+    return std::hypot(gains[0], gains[1], gains[2]) * model.ref_noise_rad_s;
+}
+
 SpectralParts own_parts(const SensorModel& model, std::size_t axis, bool moves, double f_hz, double rate_hz) {
     const NoiseCoefficients& noise = model.axes[axis].noise;
     const double omega = 2.0 * pi * f_hz;
@@ -45,12 +50,8 @@ SpectralParts own_parts(const SensorModel& model, std::size_t axis, bool moves, 
     parts.walk = noise.K_rad_per_s_sqrt_s * noise.K_rad_per_s_sqrt_s / (sampled_omega * sampled_omega);
     parts.other = model.lsb_rad_s * model.lsb_rad_s / (12.0 * rate_hz) +
                   sampled_omega * sampled_omega * noise.Q_rad * noise.Q_rad / rate_hz;
-    if (moves) {
-        // What the reference does not know of the motion is taken for the sensor's.
-        double gain_square = 0.0;
-        for (const double gain : model.M[axis]) { gain_square += gain * gain; }
-        parts.other += gain_square * model.ref_noise_rad_s * model.ref_noise_rad_s / rate_hz;
-    }
+    // What the reference does not know of the motion is taken for the sensor's.
+    if (moves) { parts.other += std::pow(reference_noise(model, axis), 2.0) / rate_hz; }
     return parts;
 }
 
@@ -73,6 +74,16 @@ SensorModel faultless(const SensorModel& model) {
     sensor.orientation = model.orientation;
     std::ranges::copy_if(model.effects, std::back_inserter(sensor.effects),
                          [](const EffectModel& entry) { return find_effect(entry.effect)->timing_only; });
+    return sensor;
+}
+
+// Gains and nothing else.
+SensorModel linear(const SensorModel& model) {
+    SensorModel sensor;
+    sensor.rate_hz = model.rate_hz;
+    sensor.full_scale_rad_s = sensor.saturation_rad_s = 1e6;
+    sensor.orientation = model.orientation;
+    sensor.M = model.M;
     return sensor;
 }
 
@@ -130,7 +141,6 @@ Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel
     axes_ = axes_of(recording);
     bins_ = spectral_bins(length_, rate_hz_);
     read_temperature();
-    response_rad_s_ = noise_free_response(*this, model_);
     read_motion();
     expect_spectrum();
 }
@@ -147,8 +157,10 @@ void Baseline::read_temperature() {
 void Baseline::read_motion() {
     std::shared_ptr<const RecordedWorld>& quiet = shared_->quiet_world;
     if (!quiet) { quiet = moves() ? without_reference_noise(*world_, model_.ref_noise_rad_s) : world_; }
-    if (!moves()) { return; }
     quiet_response_rad_s_ = noise_free_response(*this, quiet, model_);
+    response_rad_s_ = quiet_response_rad_s_;
+    if (!moves()) { return; }
+    add_reference_noise();
     true_rate_rad_s_ = noise_free_response(*this, quiet, faultless(model_));
     SensorModel sooner = model_;
     SensorModel later = model_;
@@ -176,6 +188,18 @@ void Baseline::read_motion() {
             growing[slot] = static_cast<float>(static_cast<double>(slot) / rate_hz_) * change[slot];
         }
         take(growing, clock_sd);
+    }
+}
+
+// Of the reference's noise every reading has its own: nothing in the sensor filters or delays it.
+void Baseline::add_reference_noise() {
+    const SensorModel gains = linear(model_);
+    const auto with_noise = noise_free_response(*this, gains);
+    const auto without = noise_free_response(*this, quiet_world(), gains);
+    for (const std::size_t axis : axes_) {
+        for (std::size_t slot = 0; slot < length_; ++slot) {
+            response_rad_s_[axis][slot] += with_noise[axis][slot] - without[axis][slot];
+        }
     }
 }
 
@@ -239,6 +263,10 @@ void Baseline::expect_spectrum() {
         const double white = read_white_course(axis);
         for (SpectralParts& part : parts_[axis]) { part.white *= white; }
     }
+}
+
+double Baseline::reference_noise_rad_s(std::size_t axis) const {
+    return moves() ? reference_noise(model_, axis) : 0.0;
 }
 
 std::shared_ptr<const Baseline> Baseline::with(const SensorModel& model) const {

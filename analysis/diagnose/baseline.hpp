@@ -51,7 +51,8 @@ public:
 
     // By slot; empty without a thermometer.
     const std::vector<float>& temperature_C() const { return temperature_C_; }
-    // The model's answer without noise and quantisation, by slot; empty for an axis the recording lacks.
+    // The model's answer to the quiet world without noise and quantisation, by slot, and what the reference's
+    // noise as it was recorded makes of it; empty for an axis the recording lacks.
     const std::vector<float>& response_rad_s(std::size_t axis) const { return response_rad_s_[axis]; }
 
     // In a moving world, by slot: the quiet world's rate as the model times it, about the sensor's axes, and
@@ -66,8 +67,10 @@ public:
     std::shared_ptr<const RecordedWorld> quiet_world() const { return shared_->quiet_world; }
     // The model's answer to it.
     const std::vector<float>& quiet_response_rad_s(std::size_t axis) const {
-        return moves() ? quiet_response_rad_s_[axis] : response_rad_s_[axis];
+        return quiet_response_rad_s_[axis];
     }
+    // What the reference's noise is worth on the axis, one sigma of a sample.
+    double reference_noise_rad_s(std::size_t axis) const;
     const std::vector<UncertainResponse>& uncertain(std::size_t axis) const { return uncertain_[axis]; }
 
     const SpectralBins& bins() const { return bins_; }
@@ -100,6 +103,7 @@ private:
 
     void read_temperature();
     void read_motion();
+    void add_reference_noise();
     // Mean square of the factors on the axis' white noise.
     double read_white_course(std::size_t axis);
     void expect_spectrum();

@@ -56,7 +56,7 @@ LagCourse::LagCourse(const Baseline& baseline, const Recording& recording)
         Axis measured;
         measured.seen.assign(length_, 0.0F);
         measured.per_variance = 1.0 / (baseline.parts(axis).back().sum() * baseline.rate_hz());
-        const std::vector<float>* expected = &baseline.response_rad_s(axis);
+        const std::vector<float>* expected = &baseline.quiet_response_rad_s(axis);
         double off = 0.0;
         double count = 0.0;
         for (const Segment& segment : recording.segments) {

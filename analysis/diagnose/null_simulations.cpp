@@ -45,11 +45,12 @@ std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Baselin
         }
         const auto seed = static_cast<std::uint64_t>(seeds.uniform(i) * 0x1p32);
         SimulationRequest request;
-        request.like = baseline->shared_world();
+        request.like = baseline->quiet_world();
         request.seed = seed;
-        const auto recording = std::make_shared<const Recording>(
-            simulate_recording(draw_within_uncertainty(baseline->model(), seed), request));
-        const Observation observation(baseline, recording, seed);
+        SensorModel model = draw_within_uncertainty(baseline->model(), seed);
+        model.ref_noise_rad_s = 0.0;  // the observation draws it
+        const auto recording = std::make_shared<const Recording>(simulate_recording(model, request));
+        const Observation observation(baseline, recording, seed, Observation::ReferenceNoise::drawn);
         null.curves[i] = gap_curves(observation);
         if (catalogue != nullptr) { null.evidence_nats[i] = best_evidence(*catalogue, observation); }
         const std::lock_guard lock(mutex);

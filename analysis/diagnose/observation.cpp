@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::array<const char*, 3> gyro_columns = {"gx", "gy", "gz"};
 constexpr std::uint32_t stand_in_stream = 0x03000000;
+constexpr std::uint32_t reference_stream = 0x05000000;
 
 // Calls take(slot, row) for every row on the grid.
 template <typename Take>
@@ -193,9 +194,10 @@ void measure_power(const SpectralBins& bins, double rate_hz, const std::vector<f
 }  // namespace
 
 Observation::Observation(std::shared_ptr<const Baseline> baseline, std::shared_ptr<const Recording> recording,
-                         std::uint64_t seed)
+                         std::uint64_t seed, ReferenceNoise reference_noise)
     : baseline_(std::move(baseline)),
       recording_(std::move(recording)),
+      reference_noise_(reference_noise),
       segments_(placed_rows(*baseline_, *recording_)) {
     const std::size_t length = baseline_->length();
     const std::int64_t origin = baseline_->world().recording().segments.front().first_index;
@@ -207,20 +209,30 @@ Observation::Observation(std::shared_ptr<const Baseline> baseline, std::shared_p
     for (const std::size_t axis : baseline_->axes()) { observe(axis, seed, *transform); }
 }
 
+void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
+                                    std::vector<float>& residual_rad_s) const {
+    const bool drawn = reference_noise_ == ReferenceNoise::drawn;
+    const std::vector<float>& expected =
+        drawn ? baseline_->quiet_response_rad_s(axis) : baseline_->response_rad_s(axis);
+    const double drawn_sd_rad_s = drawn ? baseline_->reference_noise_rad_s(axis) : 0.0;
+    const RandomStream noise(seed, reference_stream + static_cast<std::uint32_t>(axis));
+    const Column& column = *recording_->find(gyro_columns[axis]);
+    const std::int64_t origin = baseline_->world().recording().segments.front().first_index;
+    for_each_slot(segments_, origin, residual_rad_s.size(), [&](std::size_t slot, std::size_t row) {
+        double residual = column.value(row) - static_cast<double>(expected[slot]);
+        if (drawn_sd_rad_s > 0.0) { residual -= drawn_sd_rad_s * noise.normal(slot); }
+        residual_rad_s[slot] = static_cast<float>(residual);
+    });
+}
+
 void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform) {
     const Baseline& baseline = *baseline_;
     const std::size_t length = baseline.length();
     const double rate_hz = baseline.rate_hz();
     AxisObservation& seen = axes_[axis];
-    const Column& column = *recording_->find(gyro_columns[axis]);
-    const std::vector<float>& response = baseline.response_rad_s(axis);
-    const std::int64_t origin = baseline.world().recording().segments.front().first_index;
-
     std::vector<float>& residual = seen.residual_rad_s;
     residual.assign(length, 0.0F);
-    for_each_slot(segments_, origin, length, [&](std::size_t slot, std::size_t row) {
-        residual[slot] = static_cast<float>(column.value(row) - static_cast<double>(response[slot]));
-    });
+    take_expected_off(axis, seed, residual);
     seen.mean_rad_s = take_mean_off(residual, present_);
     const double white = baseline.parts(axis).back().sum();
     fill_holes(residual, present_, std::sqrt(white * rate_hz),

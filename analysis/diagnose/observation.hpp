@@ -32,9 +32,13 @@ struct AxisObservation {
 
 class Observation {
 public:
+    // Where the reference's noise comes from that is in every sample's expectation: from the recording, or,
+    // for what was simulated in the quiet world, from `seed`.
+    enum class ReferenceNoise { recorded, drawn };
+
     // `recording` covers the baseline's grid (it, or a simulation like it). `seed` for what stands in holes.
     Observation(std::shared_ptr<const Baseline> baseline, std::shared_ptr<const Recording> recording,
-                std::uint64_t seed);
+                std::uint64_t seed, ReferenceNoise reference_noise = ReferenceNoise::recorded);
 
     const Baseline& baseline() const { return *baseline_; }
     const Recording& recording() const { return *recording_; }
@@ -45,9 +49,11 @@ public:
 
 private:
     void observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform);
+    void take_expected_off(std::size_t axis, std::uint64_t seed, std::vector<float>& residual_rad_s) const;
 
     std::shared_ptr<const Baseline> baseline_;
     std::shared_ptr<const Recording> recording_;
+    ReferenceNoise reference_noise_;
     std::vector<Segment> segments_;  // where its rows belong on the grid
     std::vector<bool> present_;
     std::array<AxisObservation, 3> axes_;

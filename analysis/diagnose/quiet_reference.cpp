@@ -4,6 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/diagnose/spectral_bins.hpp"
+#include "analysis/noise/noise_model.hpp"
+
 namespace gyrolog {
 
 namespace {
@@ -61,32 +65,74 @@ bool at_rest(const Line& line, double noise_variance) {
 // line.
 constexpr std::size_t widest = 16;
 
-double quieted(const std::vector<double>& values, const Segment& segment, std::size_t i,
-               double noise_variance, std::size_t reach) {
+double quieted(const std::vector<double>& values, const std::vector<double>& smooth, const Segment& segment,
+               std::size_t i, double noise_variance, std::size_t reach) {
     for (std::size_t factor = widest; factor > 0; factor /= 2) {
         const std::size_t wanted = factor * reach;
         const std::size_t first = i - std::min(wanted, i - segment.first);
         const std::size_t end = std::min(i + wanted + 1, segment.first + segment.count);
         const auto count = static_cast<double>(end - first);
-        if (count < 5.0) { return values[i]; }
+        if (count < 5.0) { return smooth[i]; }
         const Line line = line_through(values, first, end, i);
         if (!std::isfinite(line.variance)) { continue; }
         const bool only_noise = line.variance <= noise_variance * (1.0 + 4.0 * std::sqrt(2.0 / count));
         if (only_noise) { return at_rest(line, noise_variance) ? 0.0 : line.value; }
         if (factor == 1) {
             const double kept = std::max(0.0, 1.0 - margin * noise_variance / line.variance);
-            return line.value + kept * (values[i] - line.value);
+            return line.value + kept * (smooth[i] - line.value);
         }
     }
-    return values[i];
+    return smooth[i];
+}
+
+// The motion's share of a coefficient: all up to the last bin that stands out of the noise, none far above
+// it.
+void cut_noise(std::vector<double>& cosines, double noise_variance) {
+    std::size_t last = 1;
+    for (const SpectralBin& bin : spectral_bins(cosines.size(), 1.0)) {
+        double sum = 0.0;
+        for (std::size_t k = bin.first; k < bin.end; ++k) { sum += cosines[k] * cosines[k]; }
+        if (sum > noise_variance * (bin.count() + 5.0 * std::sqrt(2.0 * bin.count()))) { last = bin.end; }
+    }
+    const double from = 1.25 * static_cast<double>(last);
+    const double to = 1.6 * static_cast<double>(last);
+    for (std::size_t k = last; k < cosines.size(); ++k) {
+        const double place = std::clamp((static_cast<double>(k) - from) / (to - from), 0.0, 1.0);
+        cosines[k] *= 0.5 + 0.5 * std::cos(pi * place);
+    }
+}
+
+constexpr std::size_t rows_to_transform = 256;
+
+// Without what the noise has beyond the motion's frequencies.
+std::vector<double> smoothed(const std::vector<double>& values, const std::vector<Segment>& segments,
+                             double noise_variance) {
+    std::vector<double> result = values;
+    for (const Segment& segment : segments) {
+        if (segment.count < rows_to_transform || !(noise_variance > 0.0)) { continue; }
+        const std::size_t length = fast_length(segment.count);
+        CosineTransform transform(length);
+        // The last rows that a fast length leaves over come from a second pass, aligned to the end.
+        for (const std::size_t first : {segment.first + segment.count - length, segment.first}) {
+            const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+            std::vector<double> work(begin, begin + static_cast<std::ptrdiff_t>(length));
+            transform.forward(work);
+            cut_noise(work, noise_variance);
+            transform.inverse(work);
+            std::ranges::copy(work, result.begin() + static_cast<std::ptrdiff_t>(first));
+            if (length == segment.count) { break; }
+        }
+    }
+    return result;
 }
 
 std::vector<double> filtered(const std::vector<double>& values, const std::vector<Segment>& segments,
                              double noise_variance, std::size_t reach) {
+    const std::vector<double> smooth = smoothed(values, segments, noise_variance);
     std::vector<double> result = values;
     for (const Segment& segment : segments) {
         for (std::size_t i = segment.first; i < segment.first + segment.count; ++i) {
-            result[i] = quieted(values, segment, i, noise_variance, reach);
+            result[i] = quieted(values, smooth, segment, i, noise_variance, reach);
         }
     }
     return result;

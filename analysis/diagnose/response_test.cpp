@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "analysis/diagnose/axis_fits.hpp"
 #include "analysis/diagnose/effect_response.hpp"
@@ -36,6 +37,9 @@ public:
         : effect_(effect), signature_(*effect.signature), baseline_(std::move(baseline)) {
         for (const TrialPoint& point : trial_points(signature_)) { trials_.push_back(simulated(point)); }
         coefficients_ = signature_.slow ? std::min(slow_coefficients, baseline_->length()) : reach();
+        // What a delay leaves of the motion after the uncertain one took its share is a millionth: all
+        // counts.
+        if (!signature_.slow && baseline_->moves()) { coefficients_ = baseline_->length(); }
     }
 
     std::optional<Finding> find(const Observation& observation) const override {
@@ -46,26 +50,22 @@ public:
             regressions.emplace_back(observation, axis, observation.axis(axis).density, coefficients_);
         }
         std::vector<std::vector<Quick>> quick(trials_.size());
-        std::size_t best = 0;
-        double best_evidence = minus_infinity;
+        std::map<std::size_t, std::size_t> best_of_group;
         for (std::size_t t = 0; t < trials_.size(); ++t) {
             for (std::size_t a = 0; a < axes.size(); ++a) {
                 quick[t].push_back(quick_fit(regressions[a], trials_[t].responses[axes[a]]));
             }
-            const double evidence = quick_evidence(quick[t]);
-            if (evidence > best_evidence) {
-                best_evidence = evidence;
-                best = t;
+            const auto [best, first] = best_of_group.try_emplace(trials_[t].point.group, t);
+            if (!first && quick_evidence(quick[t]) > quick_evidence(quick[best->second])) {
+                best->second = t;
             }
         }
-        const ParamValues sd = trial_sd(quick, best);
-        std::optional<Finding> finding = fitted(observation, trials_[best], sd);
-        if (finding && finding->evidence_nats > worth_refining_nats && !sd.empty()) {
-            const Trial better = refined(regressions, trials_[best]);
-            std::optional<Finding> refitted_finding =
-                fitted(observation, better, trial_sd_at(regressions, better));
-            if (refitted_finding && refitted_finding->gain_nats > finding->gain_nats) {
-                finding = std::move(refitted_finding);
+        // Between the trial values of one group its likelihood may rise above the best trial of another.
+        std::optional<Finding> finding;
+        for (const auto& [group, trial] : best_of_group) {
+            std::optional<Finding> of_group = best_near(observation, regressions, quick, trial);
+            if (of_group && (!finding || of_group->evidence_nats > finding->evidence_nats)) {
+                finding = std::move(of_group);
             }
         }
         if (finding) { locate(observation, *finding); }
@@ -73,6 +73,19 @@ public:
     }
 
 private:
+    std::optional<Finding> best_near(const Observation& observation,
+                                     const std::vector<MeanRegression>& regressions,
+                                     const std::vector<std::vector<Quick>>& quick, std::size_t trial) const {
+        const ParamValues sd = trial_sd(quick, trial);
+        std::optional<Finding> finding = fitted(observation, trials_[trial], sd);
+        if (!finding || finding->evidence_nats <= worth_refining_nats || sd.empty()) { return finding; }
+        const Trial better = refined(regressions, trials_[trial]);
+        std::optional<Finding> refitted_finding =
+            fitted(observation, better, trial_sd_at(regressions, better));
+        if (refitted_finding && refitted_finding->gain_nats > finding->gain_nats) { return refitted_finding; }
+        return finding;
+    }
+
     EffectModel entry_of(ParamValues params) const {
         return {std::string(effect_.name), {}, std::move(params), ""};
     }

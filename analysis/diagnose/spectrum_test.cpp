@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "analysis/diagnose/axis_fits.hpp"
-#include "analysis/diagnose/effect_response.hpp"
 #include "analysis/diagnose/simplex_search.hpp"
 #include "analysis/diagnose/trial_grid.hpp"
 
@@ -55,11 +54,6 @@ public:
     }
 
 private:
-    struct Start {
-        ParamValues params;
-        std::array<std::vector<float>, 3> response;  // where the mean changes too
-    };
-
     void add_starts(const TrialPoint& point) {
         std::vector<ParamValues> starts = {point.params};
         for (const std::string_view name : signature_.spectral) {
@@ -76,13 +70,7 @@ private:
             }
             starts = std::move(more);
         }
-        for (ParamValues& params : starts) {
-            Start start{std::move(params), {}};
-            if (signature_.changes_mean && baseline_->moves()) {
-                start.response = effect_response(*baseline_, entry_of(start.params), false);
-            }
-            starts_.push_back(std::move(start));
-        }
+        for (ParamValues& start : starts) { starts_.push_back(std::move(start)); }
     }
 
     EffectModel entry_of(const ParamValues& params) const {
@@ -97,51 +85,30 @@ private:
         return parts;
     }
 
-    // Power that is left when the change of the mean response is taken off.
-    std::vector<double> power_left(const Observation& observation, std::size_t axis,
-                                   const Start& start) const {
-        const AxisObservation& seen = observation.axis(axis);
-        const std::vector<float>& response = start.response[axis];
-        if (response.empty()) { return seen.power; }
-        std::vector<double> power(seen.power.size());
-        const SpectralBins& bins = baseline_->bins();
-        for (std::size_t i = 0; i < bins.size(); ++i) {
-            double sum = 0.0;
-            for (std::size_t k = bins[i].first; k < bins[i].end; ++k) {
-                const double left = static_cast<double>(seen.cosines[k]) - static_cast<double>(response[k]);
-                sum += left * left;
-            }
-            power[i] = sum / (bins[i].count() * baseline_->rate_hz());
-        }
-        return power;
-    }
-
     // Without refitting the nuisance: less than the gain, for choosing where to start.
-    double rough_gain(const Observation& observation, std::size_t axis, const Start& start) const {
+    double rough_gain(const Observation& observation, std::size_t axis, const ParamValues& start) const {
         const AxisObservation& seen = observation.axis(axis);
-        const std::vector<SpectralParts> parts = changed_parts(axis, start.params);
+        const std::vector<SpectralParts> parts = changed_parts(axis, start);
         const std::array<double, 3> sd_rel = noise_uncertainty(baseline_->model(), axis);
         std::vector<double> density(parts.size());
-        const std::vector<double> power = power_left(observation, axis, start);
         expected_density(parts, sd_rel, seen.noise.z, density);
         double prior = 0.0;
         for (const double z : seen.noise.z) { prior += 0.5 * z * z; }
-        const double kept = log_likelihood(baseline_->bins(), power, density) - prior;
+        const double kept = log_likelihood(baseline_->bins(), seen.power, density) - prior;
         expected_density(parts, sd_rel, {}, density);
-        const double plain = log_likelihood(baseline_->bins(), power, density);
+        const double plain = log_likelihood(baseline_->bins(), seen.power, density);
         return std::max(kept, plain) - seen.noise.log_likelihood_nats;
     }
 
-    double gain(const Observation& observation, std::size_t axis, const Start& start) const {
+    double gain(const Observation& observation, std::size_t axis, const ParamValues& start) const {
         const AxisObservation& seen = observation.axis(axis);
-        const NoiseNuisance noise =
-            fit_nuisance(baseline_->bins(), changed_parts(axis, start.params),
-                         power_left(observation, axis, start), noise_uncertainty(baseline_->model(), axis));
+        const NoiseNuisance noise = fit_nuisance(baseline_->bins(), changed_parts(axis, start), seen.power,
+                                                 noise_uncertainty(baseline_->model(), axis));
         return noise.log_likelihood_nats - seen.noise.log_likelihood_nats;
     }
 
     double gain(const Observation& observation, const std::vector<std::size_t>& axes,
-                const Start& start) const {
+                const ParamValues& start) const {
         double sum = 0.0;
         for (const std::size_t axis : axes) { sum += gain(observation, axis, start); }
         return sum;
@@ -149,9 +116,9 @@ private:
 
     std::optional<AxesFit> fit_axes(const Observation& observation,
                                     const std::vector<std::size_t>& axes) const {
-        const Start* from = &starts_.front();
+        const ParamValues* from = &starts_.front();
         double best = minus_infinity;
-        for (const Start& start : starts_) {
+        for (const ParamValues& start : starts_) {
             double rough = 0.0;
             for (const std::size_t axis : axes) { rough += rough_gain(observation, axis, start); }
             if (rough > best) {
@@ -166,11 +133,11 @@ private:
     }
 
     AxesFit refined(const Observation& observation, const std::vector<std::size_t>& axes,
-                    const Start& from) const {
+                    const ParamValues& from) const {
         const auto at = [&](const std::vector<double>& logs) {
-            Start start = from;
+            ParamValues start = from;
             for (std::size_t i = 0; i < logs.size(); ++i) {
-                start.params[std::string(signature_.spectral[i])] = std::exp(logs[i]);
+                start[std::string(signature_.spectral[i])] = std::exp(logs[i]);
             }
             return start;
         };
@@ -187,19 +154,17 @@ private:
         };
         std::vector<double> logs;
         for (const std::string_view name : signature_.spectral) {
-            logs.push_back(std::log(from.params.at(std::string(name))));
+            logs.push_back(std::log(from.at(std::string(name))));
         }
         AxesFit fit;
         fit.axes = axes;
-        // The mean response was simulated for the trial values only.
-        const bool can_move = from.response[axes.front()].empty();
         SimplexMaximum maximum{logs, objective(logs)};
-        if (can_move && !logs.empty()) {
+        if (!logs.empty()) {
             maximum = simplex_maximum(objective, logs, 0.2, 0.01);
             maximum = simplex_maximum(objective, maximum.at, 0.03, 0.002);
         }
-        const Start best = at(maximum.at);
-        fit.params = best.params;
+        const ParamValues best = at(maximum.at);
+        fit.params = best;
         for (const std::size_t axis : axes) { fit.gain_nats.push_back(gain(observation, axis, best)); }
         add_uncertainty(objective, maximum, fit);
         return fit;
@@ -268,7 +233,7 @@ private:
     const EffectDefinition& effect_;
     const EffectSignature& signature_;
     std::shared_ptr<const Baseline> baseline_;
-    std::vector<Start> starts_;
+    std::vector<ParamValues> starts_;
 };
 
 }  // namespace
