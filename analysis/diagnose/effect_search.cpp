@@ -81,14 +81,14 @@ private:
             Hypotheses with_it = with_causes();
             const Finding* next = further(with_it);
             const double nats = finding.evidence_nats + (next != nullptr ? next->evidence_nats : 0.0);
-            const bool leaves_nothing = next == nullptr;
-            if (!best || nats > best_nats + margin_nats) {
+            // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one.
+            const bool explains_all = next == nullptr && !is_noise(finding);
+            if (!best || explains_all || nats > best_nats + margin_nats) {
                 best = std::move(with_it);
                 best_causes = causes_;
                 best_nats = nats;
             }
-            // Noise takes up whatever is there; an answer of one shape that leaves nothing was the right one.
-            if (leaves_nothing && !is_noise(finding)) { break; }
+            if (explains_all) { break; }
         }
         causes_ = std::move(best_causes);
         return best;
