@@ -58,6 +58,7 @@ private:
             best.try_emplace(find_effect(finding.effect)->signature->method, finding);
         }
         std::vector<Finding> found;
+        found.reserve(best.size());
         for (auto& [method, finding] : best) { found.push_back(std::move(finding)); }
         std::ranges::sort(found, std::greater{}, &Finding::evidence_nats);
         if (found.size() > beginnings_most) { found.resize(beginnings_most); }
