@@ -61,6 +61,19 @@ TEST(MotionEvidence, OfAScaleFactorIsWhatTheStatedGainsDoNotCover) {
         << seen.best()->evidence_nats << " against " << found->evidence_nats;
 }
 
+TEST(MotionEvidence, OfALatencyIsWhatTheStatedOneDoesNotCover) {
+    const SensorModel model = moving_sensor();
+    const double delay_s = 0.0018;
+    const Hypotheses seen = examined(with_effect(model, "latency", {{"delay_s", delay_s}}, {}), model, 36);
+    const Finding* found = of(seen, "latency");
+    ASSERT_NE(found, nullptr);
+    EXPECT_NEAR(found->entries.front().params.at("delay_s"), delay_s, 2e-4) << "as far as it is stated";
+    // The motion knows the delay far better than the model states it: the gain is the prior's, on each axis.
+    const double expected_nats = 3.0 * 0.5 * delay_s * delay_s / (1e-4 * 1e-4);
+    EXPECT_NEAR(found->gain_nats, expected_nats, 0.1 * expected_nats);
+    EXPECT_EQ(seen.best(), found) << seen.best()->effect;
+}
+
 TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNone) {
     SensorModel sensor = moving_sensor();
     sensor.M[0][0] += 2e-4;
