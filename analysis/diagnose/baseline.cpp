@@ -65,13 +65,18 @@ constexpr double clock_sd_rel = 5e-5;
 // Over which the motion's change is taken.
 constexpr double time_step_s = 1e-3;
 
-// A sensor without any fault: what it shows is the motion itself, as late as the model says.
-SensorModel faultless(const SensorModel& model) {
+SensorModel plain(const SensorModel& model) {
     SensorModel sensor;
     sensor.rate_hz = model.rate_hz;
     sensor.full_scale_rad_s = sensor.saturation_rad_s = 1e6;
-    sensor.latency_s = model.latency_s;
     sensor.orientation = model.orientation;
+    return sensor;
+}
+
+// A sensor without any fault: what it shows is the motion itself, as late as the model says.
+SensorModel faultless(const SensorModel& model) {
+    SensorModel sensor = plain(model);
+    sensor.latency_s = model.latency_s;
     std::ranges::copy_if(model.effects, std::back_inserter(sensor.effects),
                          [](const EffectModel& entry) { return find_effect(entry.effect)->timing_only; });
     return sensor;
@@ -79,10 +84,7 @@ SensorModel faultless(const SensorModel& model) {
 
 // Gains and nothing else.
 SensorModel linear(const SensorModel& model) {
-    SensorModel sensor;
-    sensor.rate_hz = model.rate_hz;
-    sensor.full_scale_rad_s = sensor.saturation_rad_s = 1e6;
-    sensor.orientation = model.orientation;
+    SensorModel sensor = plain(model);
     sensor.M = model.M;
     return sensor;
 }
