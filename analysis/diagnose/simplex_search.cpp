@@ -43,23 +43,22 @@ SimplexMaximum simplex_maximum(const std::function<double(const std::vector<doub
                 middle[i] += corners[c].at[i] / static_cast<double>(corners.size() - 1);
             }
         }
-        Point reflected = evaluated(along(middle, worst.at, -1.0));
-        if (reflected.value > corners.front().value) {
+        Point next = evaluated(along(middle, worst.at, -1.0));
+        if (next.value > corners.front().value) {
             Point expanded = evaluated(along(middle, worst.at, -2.0));
-            worst = expanded.value > reflected.value ? std::move(expanded) : std::move(reflected);
-        } else if (reflected.value > corners[corners.size() - 2].value) {
-            worst = std::move(reflected);
-        } else {
-            const bool outside = reflected.value > worst.value;
+            if (expanded.value > next.value) { next = std::move(expanded); }
+        } else if (next.value <= corners[corners.size() - 2].value) {
+            const bool outside = next.value > worst.value;
             Point contracted = evaluated(along(middle, worst.at, outside ? -0.5 : 0.5));
-            if (contracted.value > std::max(worst.value, reflected.value)) {
-                worst = std::move(contracted);
+            if (contracted.value <= std::max(worst.value, next.value)) {
+                for (std::size_t c = 1; c < corners.size(); ++c) {
+                    corners[c] = evaluated(along(corners.front().at, corners[c].at, 0.5));
+                }
                 continue;
             }
-            for (std::size_t c = 1; c < corners.size(); ++c) {
-                corners[c] = evaluated(along(corners.front().at, corners[c].at, 0.5));
-            }
+            next = std::move(contracted);
         }
+        worst = std::move(next);
     }
 }
 
