@@ -180,8 +180,9 @@ void Baseline::read_motion() {
         for (std::size_t slot = 0; slot < length_; ++slot) {
             change[slot] = (change[slot] - delayed[axis][slot]) / static_cast<float>(time_step_s);
         }
+        std::vector<UncertainResponse> uncertain;
         const auto take = [&](const std::vector<float>& values, double sd) {
-            if (sd > 0.0) { uncertain_[axis].push_back({cosines_of(values, *transform), sd}); }
+            if (sd > 0.0) { uncertain.push_back({cosines_of(values, *transform), sd}); }
         };
         for (const std::size_t from : axes_) { take(true_rate_rad_s_[from], gain_sd); }
         take(change, latency_sd_s);
@@ -190,6 +191,7 @@ void Baseline::read_motion() {
             growing[slot] = static_cast<float>(static_cast<double>(slot) / rate_hz_) * change[slot];
         }
         take(growing, clock_sd);
+        uncertain_[axis] = UncertainMean(std::move(uncertain), bins_);
     }
 }
 

@@ -13,6 +13,7 @@
 #include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/response_memory.hpp"
 #include "analysis/diagnose/spectral_bins.hpp"
+#include "analysis/diagnose/uncertain_mean.hpp"
 #include "analysis/simulate/effect_signature.hpp"
 #include "analysis/simulate/recorded_world.hpp"
 #include "analysis/simulate/sensor_model.hpp"
@@ -26,13 +27,6 @@ inline constexpr std::size_t diagnosable_samples_max = 9'000'000;
 // Why a recording cannot be diagnosed: no axis x, y or z, counts without a scale, too short, more holes than
 // samples. Empty when it can.
 std::optional<std::string> diagnosis_refusal(const Recording& recording);
-
-// A direction in which the model's answer is uncertain by its own statement: a gain of M, the latency, the
-// clock.
-struct UncertainResponse {
-    std::vector<float> cosines;  // of the change for one unit of the parameter
-    double sd = 0.0;             // of the parameter
-};
 
 class Baseline {
 public:
@@ -71,7 +65,7 @@ public:
     }
     // What the reference's noise is worth on the axis, one sigma of a sample.
     double reference_noise_rad_s(std::size_t axis) const;
-    const std::vector<UncertainResponse>& uncertain(std::size_t axis) const { return uncertain_[axis]; }
+    const UncertainMean& uncertain(std::size_t axis) const { return uncertain_[axis]; }
 
     const SpectralBins& bins() const { return bins_; }
     const std::vector<double>& bin_frequencies_hz() const { return f_hz_; }
@@ -119,7 +113,7 @@ private:
     std::array<std::vector<float>, 3> quiet_response_rad_s_;
     std::array<std::vector<float>, 3> true_rate_rad_s_;
     std::array<std::vector<float>, 3> response_change_rad_s2_;
-    std::array<std::vector<UncertainResponse>, 3> uncertain_;
+    std::array<UncertainMean, 3> uncertain_;
     std::array<std::vector<float>, 3> white_course_;
     SpectralBins bins_;
     std::vector<double> f_hz_;

@@ -48,7 +48,10 @@ double drift_variance(const Baseline& baseline, std::size_t axis) {
 
 LagCourse::LagCourse(const Baseline& baseline, const Recording& recording)
     : length_(baseline.length()),
-      window_slots_(std::max<std::size_t>(16, static_cast<std::size_t>(window_s * baseline.rate_hz()))) {
+      window_slots_(std::max<std::size_t>(16, static_cast<std::size_t>(window_s * baseline.rate_hz()))),
+      smooth_slots_(
+          std::max<std::size_t>(1, static_cast<std::size_t>(quickest_motion_s * baseline.rate_hz()))),
+      stride_(std::max<std::size_t>(1, smooth_slots_ / 2)) {
     const std::int64_t origin = baseline.world().recording().segments.front().first_index;
     present_.assign(length_, false);
     for (const std::size_t axis : baseline.axes()) {
@@ -73,11 +76,9 @@ LagCourse::LagCourse(const Baseline& baseline, const Recording& recording)
         for (std::size_t slot = 0; slot < length_; ++slot) {
             measured.seen[slot] = present_[slot] ? measured.seen[slot] - bias : (*expected)[slot];
         }
-        const auto width =
-            std::max<std::size_t>(1, static_cast<std::size_t>(quickest_motion_s * baseline.rate_hz()));
-        measured.smooth_seen = smoothed(measured.seen, width);
+        measured.smooth_seen = smoothed(measured.seen, smooth_slots_);
         measured.expected = expected;
-        measured.smooth_expected = smoothed(*expected, width);
+        measured.smooth_expected = smoothed(*expected, smooth_slots_);
         axes_.push_back(std::move(measured));
     }
     // While the lag is unknown, so is the bias: first with any constant in each window.
@@ -119,7 +120,7 @@ double LagCourse::misfit_nats(std::size_t begin, std::size_t end, int lag) const
         double sum = 0.0;
         double squares = 0.0;
         double count = 0.0;
-        for (std::size_t slot = begin; slot < end; ++slot) {
+        for (std::size_t slot = begin + stride_ / 2; slot < end; slot += stride_) {
             if (!present_[slot]) { continue; }
             const std::size_t at = shifted(slot, lag);
             const auto off = static_cast<double>(axis.smooth_seen[slot] - axis.smooth_expected[at]);
@@ -128,6 +129,11 @@ double LagCourse::misfit_nats(std::size_t begin, std::size_t end, int lag) const
             count += 1.0;
         }
         if (count > 0.0) {
+            // Each stands for those that were stepped over.
+            const auto rows = static_cast<double>(stride_);
+            sum *= rows;
+            squares *= rows;
+            count *= rows;
             nats += 0.5 * axis.per_variance * (squares - sum * sum / (count + axis.drift_rows));
         }
     }

@@ -62,6 +62,8 @@ private:
 
     std::size_t length_;
     std::size_t window_slots_;
+    std::size_t smooth_slots_;
+    std::size_t stride_;  // a running mean has little new from one slot to the next
     std::vector<bool> present_;
     std::vector<Axis> axes_;
     std::vector<int> centre_;                // by window

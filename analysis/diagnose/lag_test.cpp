@@ -22,7 +22,7 @@ const EffectParam& param(const EffectDefinition& effect, std::string_view name) 
 
 // What the priors of gains, latency and clock charge for the values they were fitted at.
 double charge_nats(const Observation& observation, std::size_t axis) {
-    const std::vector<UncertainResponse>& uncertain = observation.baseline().uncertain(axis);
+    const UncertainMean& uncertain = observation.baseline().uncertain(axis);
     double charge = 0.0;
     for (std::size_t u = 0; u < uncertain.size(); ++u) {
         const double z = observation.axis(axis).uncertain_fit[u] / uncertain[u].sd;

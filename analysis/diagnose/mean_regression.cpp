@@ -6,98 +6,112 @@ namespace gyrolog {
 
 namespace {
 
-Eigen::VectorXd head_of(const std::vector<float>& values, Eigen::Index count) {
-    return Eigen::Map<const Eigen::VectorXf>(values.data(), count).cast<double>();
+// Of a response's weight, next to nothing even where all but a millionth of it is taken for an uncertain one.
+constexpr double weightless = 1e-11;
+
+void cut_tail(const Baseline& baseline, std::size_t axis, std::vector<float>& cosines) {
+    const SpectralBins& bins = baseline.bins();
+    BinSums weight = bin_sums(bins, cosines, cosines);
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        weight[static_cast<Eigen::Index>(i)] /= baseline.parts(axis)[i].sum();
+    }
+    const double negligible = weightless * weight.sum();
+    std::size_t kept = bins.size();
+    double beyond = 0.0;
+    while (kept > 1 && (beyond += weight[static_cast<Eigen::Index>(kept) - 1]) <= negligible) { --kept; }
+    cosines.resize(std::min(cosines.size(), bins[kept - 1].end));
 }
 
 }  // namespace
 
-MeanRegression::MeanRegression(const Observation& observation, std::size_t axis,
-                               std::span<const double> density, std::size_t coefficients)
-    : observation_(observation), axis_(axis), coefficients_(static_cast<Eigen::Index>(coefficients)) {
-    const Baseline& baseline = observation.baseline();
-    const std::vector<UncertainResponse>& uncertain = baseline.uncertain(axis);
-    // The uncertain responses reach as far as the motion does, whatever the effect's response.
-    const auto count = uncertain.empty() ? coefficients_ : static_cast<Eigen::Index>(baseline.length());
-    Eigen::ArrayXd weight = Eigen::ArrayXd::Zero(count);
-    for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
-        const SpectralBin& bin = baseline.bins()[i];
-        for (std::size_t k = bin.first; k < std::min(bin.end, static_cast<std::size_t>(count)); ++k) {
-            weight[static_cast<Eigen::Index>(k)] = 1.0 / (density[i] * baseline.rate_hz());
+MeanResponses::MeanResponses(const Baseline& baseline, std::size_t axis,
+                             std::vector<std::vector<float>> cosines)
+    : cosines_(std::move(cosines)) {
+    for (std::vector<float>& response : cosines_) { cut_tail(baseline, axis, response); }
+    for (const std::vector<float>& a : cosines_) {
+        for (const std::vector<float>& b : cosines_) { products_.push_back(bin_sums(baseline.bins(), a, b)); }
+    }
+    const UncertainMean& uncertain = baseline.uncertain(axis);
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        for (const std::vector<float>& response : cosines_) {
+            uncertain_products_.push_back(bin_sums(baseline.bins(), uncertain[u].cosines, response));
         }
     }
-    const Eigen::VectorXd cosines = head_of(observation.axis(axis).cosines, count);
-    const auto directions = static_cast<Eigen::Index>(uncertain.size());
-    uncertain_.resize(count, directions);
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(directions, directions);
-    for (Eigen::Index u = 0; u < directions; ++u) {
-        const UncertainResponse& direction = uncertain[static_cast<std::size_t>(u)];
-        uncertain_.col(u) = (head_of(direction.cosines, count).array() * weight).matrix();
-        for (Eigen::Index v = 0; v <= u; ++v) {
-            information(u, v) = information(v, u) =
-                uncertain_.col(u).dot(head_of(uncertain[static_cast<std::size_t>(v)].cosines, count));
-        }
-        information(u, u) += 1.0 / (direction.sd * direction.sd);
-    }
-    information_.compute(information);
-    pull_ = uncertain_.transpose() * cosines;
-    for (Eigen::Index u = 0; u < directions; ++u) {
-        const double sd = uncertain[static_cast<std::size_t>(u)].sd;
-        pull_[u] -= observation.axis(axis).uncertain_fit[static_cast<std::size_t>(u)] / (sd * sd);
-    }
-    uncertain_.conservativeResize(coefficients_, Eigen::NoChange);
-    weight_ = weight.head(coefficients_);
-    weighted_ = (cosines.head(coefficients_).array() * weight_).matrix();
 }
 
-NormalEquations MeanRegression::equations(std::span<const std::vector<float>> responses) const {
-    const auto count = static_cast<Eigen::Index>(responses.size());
-    NormalEquations equations{Eigen::MatrixXd(count, count), Eigen::VectorXd(count), {}};
-    Eigen::MatrixXd G(weight_.size(), count);
-    for (Eigen::Index j = 0; j < count; ++j) {
-        G.col(j) = head_of(responses[static_cast<std::size_t>(j)], weight_.size());
+MeanRegression::MeanRegression(const Observation& observation, std::size_t axis,
+                               const MeanResponses& responses)
+    : baseline_(observation.baseline()),
+      seen_(observation.axis(axis)),
+      uncertain_(baseline_.uncertain(axis)),
+      responses_(responses) {
+    for (std::size_t j = 0; j < responses_.size(); ++j) {
+        products_.push_back(bin_sums(baseline_.bins(), seen_.cosines, responses_.cosines(j)));
     }
-    const Eigen::MatrixXd weighted = G.array().colwise() * weight_;
-    equations.A = weighted.transpose() * G;
-    equations.b = G.transpose() * weighted_;
-    if (uncertain_.cols() > 0) {
-        const Eigen::MatrixXd cross = uncertain_.transpose() * G;
-        equations.shift = -information_.solve(cross);
-        equations.A += cross.transpose() * equations.shift;
-        equations.b += equations.shift.transpose() * pull_;
+}
+
+NormalEquations MeanRegression::equations(std::span<const double> density) const {
+    const BinSums weights = bin_weights(density, baseline_.rate_hz());
+    const auto count = static_cast<Eigen::Index>(responses_.size());
+    NormalEquations equations{Eigen::MatrixXd(count, count), Eigen::VectorXd(count), {}, {}};
+    const auto at = [](Eigen::Index i) { return static_cast<std::size_t>(i); };
+    for (Eigen::Index i = 0; i < count; ++i) {
+        equations.b[i] = (products_[at(i)] * weights).sum();
+        for (Eigen::Index j = 0; j <= i; ++j) {
+            equations.A(i, j) = equations.A(j, i) = (responses_.products(at(i), at(j)) * weights).sum();
+        }
     }
+    if (uncertain_.empty()) { return equations; }
+    const auto directions = static_cast<Eigen::Index>(uncertain_.size());
+    Eigen::MatrixXd cross(directions, count);
+    for (Eigen::Index u = 0; u < directions; ++u) {
+        for (Eigen::Index j = 0; j < count; ++j) {
+            cross(u, j) = (responses_.uncertain_products(at(u), at(j)) * weights).sum();
+        }
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> information = uncertain_.information(weights);
+    const Eigen::VectorXd pull = uncertain_.pull(weights, seen_.uncertain_products, seen_.uncertain_fit);
+    equations.shift = -information.solve(cross);
+    equations.give = information.solve(pull);
+    equations.A += cross.transpose() * equations.shift;
+    equations.b += equations.shift.transpose() * pull;
     return equations;
 }
 
-MeanRegression::Rest MeanRegression::rest(std::span<const std::vector<float>> responses,
-                                          const NormalEquations& equations, const Eigen::VectorXd& c) const {
-    const Baseline& baseline = observation_.baseline();
-    const AxisObservation& seen = observation_.axis(axis_);
-    const std::vector<UncertainResponse>& uncertain = baseline.uncertain(axis_);
-    Eigen::VectorXd left = head_of(
-        seen.cosines, uncertain.empty() ? coefficients_ : static_cast<Eigen::Index>(baseline.length()));
-    for (Eigen::Index j = 0; j < c.size(); ++j) {
-        left.head(coefficients_) -= c[j] * head_of(responses[static_cast<std::size_t>(j)], coefficients_);
-    }
-    Rest rest;
-    if (!uncertain.empty()) {
-        const Eigen::VectorXd shift = equations.shift * c + information_.solve(pull_);
-        for (Eigen::Index u = 0; u < shift.size(); ++u) {
-            const UncertainResponse& direction = uncertain[static_cast<std::size_t>(u)];
-            left -= shift[u] * head_of(direction.cosines, left.size());
-            const double before = seen.uncertain_fit[static_cast<std::size_t>(u)];
-            const double after = before + shift[u];
-            rest.charge_nats += 0.5 * (after * after - before * before) / (direction.sd * direction.sd);
+MeanRegression::Rest MeanRegression::rest(const NormalEquations& equations, const Eigen::VectorXd& c) const {
+    const SpectralBins& bins = baseline_.bins();
+    const auto size = static_cast<Eigen::Index>(bins.size());
+    // Sums of squares of what is left, from the products alone.
+    BinSums change = BinSums::Zero(size);
+    const auto at = [&c](std::size_t j) { return c[static_cast<Eigen::Index>(j)]; };
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+        change -= 2.0 * at(i) * products_[i];
+        for (std::size_t j = 0; j < responses_.size(); ++j) {
+            change += at(i) * at(j) * responses_.products(i, j);
         }
     }
-    rest.power = seen.power;
-    for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
-        const SpectralBin& bin = baseline.bins()[i];
-        const auto first = static_cast<Eigen::Index>(bin.first);
-        const auto width = static_cast<Eigen::Index>(bin.end - bin.first);
-        // Beyond, there is nothing of the responses.
-        if (first + width > left.size()) { break; }
-        rest.power[i] = left.segment(first, width).squaredNorm() / (bin.count() * baseline.rate_hz());
+    Rest rest;
+    if (!uncertain_.empty()) {
+        const Eigen::VectorXd moved = equations.shift * c + equations.give;
+        for (std::size_t u = 0; u < uncertain_.size(); ++u) {
+            const double by = moved[static_cast<Eigen::Index>(u)];
+            change -= 2.0 * by * seen_.uncertain_products[u];
+            for (std::size_t j = 0; j < responses_.size(); ++j) {
+                change += 2.0 * by * at(j) * responses_.uncertain_products(u, j);
+            }
+            for (std::size_t v = 0; v < uncertain_.size(); ++v) {
+                change += by * moved[static_cast<Eigen::Index>(v)] * uncertain_.products(u, v);
+            }
+            const double before = seen_.uncertain_fit[u];
+            const double after = before + by;
+            const double sd = uncertain_[u].sd;
+            rest.charge_nats += 0.5 * (after * after - before * before) / (sd * sd);
+        }
+    }
+    rest.power.resize(bins.size());
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        const double by = change[static_cast<Eigen::Index>(i)] / (bins[i].count() * baseline_.rate_hz());
+        rest.power[i] = std::max(0.0, seen_.power[i] + by);
     }
     return rest;
 }

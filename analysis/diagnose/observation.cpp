@@ -1,6 +1,5 @@
 #include "analysis/diagnose/observation.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -130,40 +129,38 @@ double take_mean_off(std::vector<float>& values, const std::vector<bool>& presen
     return static_cast<double>(mean);
 }
 
-// Moves `fit`, the parameters of the model's uncertain responses that were taken off the coefficients, to
-// their most likely values.
-void take_uncertain_off(const std::vector<UncertainResponse>& uncertain, const SpectralBins& bins,
-                        const std::vector<double>& density, double rate_hz, std::vector<float>& cosines,
-                        std::vector<double>& fit) {
-    const auto count = static_cast<Eigen::Index>(uncertain.size());
-    const auto column = [&](Eigen::Index a, std::size_t k) {
-        return static_cast<double>(uncertain[static_cast<std::size_t>(a)].cosines[k]);
-    };
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
-    Eigen::VectorXd pull = Eigen::VectorXd::Zero(count);
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-        const double weight = 1.0 / (density[i] * rate_hz);
-        for (std::size_t k = bins[i].first; k < bins[i].end; ++k) {
-            for (Eigen::Index a = 0; a < count; ++a) {
-                const double weighted = weight * column(a, k);
-                pull[a] += weighted * static_cast<double>(cosines[k]);
-                for (Eigen::Index b = 0; b <= a; ++b) { information(a, b) += weighted * column(b, k); }
-            }
+// Moves the parameters of the model's uncertain responses to their most likely values under the density; what
+// is left has other products and another power.
+void give_way(const Baseline& baseline, std::size_t axis, AxisObservation& seen) {
+    const UncertainMean& uncertain = baseline.uncertain(axis);
+    const BinSums weights = bin_weights(seen.density, baseline.rate_hz());
+    const Eigen::VectorXd step = uncertain.information(weights).solve(
+        uncertain.pull(weights, seen.uncertain_products, seen.uncertain_fit));
+    BinSums change = BinSums::Zero(weights.size());
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        const double by = step[static_cast<Eigen::Index>(u)];
+        seen.uncertain_fit[u] += by;
+        change -= 2.0 * by * seen.uncertain_products[u];
+        for (std::size_t v = 0; v < uncertain.size(); ++v) {
+            change += by * step[static_cast<Eigen::Index>(v)] * uncertain.products(u, v);
         }
     }
-    fit.resize(uncertain.size(), 0.0);
-    for (Eigen::Index a = 0; a < count; ++a) {
-        const double sd = uncertain[static_cast<std::size_t>(a)].sd;
-        information(a, a) += 1.0 / (sd * sd);
-        pull[a] -= fit[static_cast<std::size_t>(a)] / (sd * sd);
-    }
-    const Eigen::MatrixXd full = information.selfadjointView<Eigen::Lower>();
-    const Eigen::VectorXd step = full.ldlt().solve(pull);
-    for (Eigen::Index a = 0; a < count; ++a) {
-        fit[static_cast<std::size_t>(a)] += step[a];
-        for (std::size_t k = 1; k < cosines.size(); ++k) {
-            cosines[k] -= static_cast<float>(step[a] * column(a, k));
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        for (std::size_t v = 0; v < uncertain.size(); ++v) {
+            seen.uncertain_products[u] -= step[static_cast<Eigen::Index>(v)] * uncertain.products(u, v);
         }
+    }
+    for (std::size_t i = 0; i < seen.power.size(); ++i) {
+        const double by = change[static_cast<Eigen::Index>(i)];
+        seen.power[i] = std::max(0.0, seen.power[i] + by / (baseline.bins()[i].count() * baseline.rate_hz()));
+    }
+}
+
+void take_off(const UncertainMean& uncertain, const std::vector<double>& fit, std::vector<float>& cosines) {
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        const std::vector<float>& response = uncertain[u].cosines;
+        const auto by = static_cast<float>(fit[u]);
+        for (std::size_t k = 1; k < response.size(); ++k) { cosines[k] -= by * response[k]; }
     }
 }
 
@@ -244,19 +241,22 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     seen.cosines.assign(work.begin(), work.end());
     const std::array<double, 3> sd_rel = noise_uncertainty(baseline.model(), axis);
     seen.density.resize(baseline.bins().size());
+    measure_power(baseline.bins(), rate_hz, seen.cosines, seen.power);
     const auto fit_noise = [&] {
-        measure_power(baseline.bins(), rate_hz, seen.cosines, seen.power);
         seen.noise = fit_nuisance(baseline.bins(), baseline.parts(axis), seen.power, sd_rel, seen.noise);
         expected_density(baseline.parts(axis), sd_rel, seen.noise.z, seen.density);
     };
     fit_noise();
-    if (!baseline.uncertain(axis).empty()) {
+    const UncertainMean& uncertain = baseline.uncertain(axis);
+    if (!uncertain.empty()) {
+        seen.uncertain_products = uncertain.products_with(baseline.bins(), seen.cosines);
+        seen.uncertain_fit.assign(uncertain.size(), 0.0);
         // What they explain was noise to the first fit.
         for (int round = 0; round < 3; ++round) {
-            take_uncertain_off(baseline.uncertain(axis), baseline.bins(), seen.density, rate_hz, seen.cosines,
-                               seen.uncertain_fit);
+            give_way(baseline, axis, seen);
             fit_noise();
         }
+        take_off(uncertain, seen.uncertain_fit, seen.cosines);
         std::copy(seen.cosines.begin(), seen.cosines.end(), work.begin());
         transform.inverse(work);
         residual.assign(work.begin(), work.end());

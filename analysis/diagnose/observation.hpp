@@ -19,12 +19,13 @@ struct AxisObservation {
     // By slot, about its mean. Slots without a sample hold a straight line between their neighbours plus
     // white noise of the model's level, so that the power there is what it is elsewhere.
     std::vector<float> residual_rad_s;
-    std::vector<float> cosines;         // DCT-II of the residual, Y_0 = 0; rad/s
-    double mean_rad_s = 0.0;            // that was taken off
-    std::vector<double> uncertain_fit;  // values of Baseline::uncertain() that were taken off
-    std::vector<double> power;          // by bin: mean square of the coefficients, over the rate: a density
-    NoiseNuisance noise;                // the model's coefficients, fitted within their uncertainty
-    std::vector<double> density;        // by bin: expected under `noise`
+    std::vector<float> cosines;               // DCT-II of the residual, Y_0 = 0; rad/s
+    double mean_rad_s = 0.0;                  // that was taken off
+    std::vector<double> uncertain_fit;        // values of Baseline::uncertain() that were taken off
+    std::vector<BinSums> uncertain_products;  // of the coefficients with its responses
+    std::vector<double> power;    // by bin: mean square of the coefficients, over the rate: a density
+    NoiseNuisance noise;          // the model's coefficients, fitted within their uncertainty
+    std::vector<double> density;  // by bin: expected under `noise`
     // By slot: the inverse transform of Y_k / sqrt(density rate); standard normal and independent where the
     // model is right.
     std::vector<float> whitened;

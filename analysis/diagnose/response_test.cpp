@@ -21,7 +21,7 @@ constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 struct Trial {
     TrialPoint point;
-    std::array<std::vector<std::vector<float>>, 3> responses;  // by axis, by linear parameter
+    std::array<MeanResponses, 3> responses;  // by axis: one for each linear parameter
 };
 
 // One axis, one trial, the noise as the observation has it.
@@ -36,25 +36,13 @@ public:
     ResponseTest(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline)
         : effect_(effect), signature_(*effect.signature), baseline_(std::move(baseline)) {
         for (const TrialPoint& point : trial_points(signature_)) { trials_.push_back(simulated(point)); }
-        coefficients_ = signature_.slow ? std::min(slow_coefficients, baseline_->length()) : reach();
-        // What a delay leaves of the motion after the uncertain one took its share is a millionth: all
-        // counts.
-        if (!signature_.slow && baseline_->moves()) { coefficients_ = baseline_->length(); }
     }
 
     std::optional<Finding> find(const Observation& observation) const override {
-        const std::vector<std::size_t>& axes = baseline_->axes();
-        std::vector<MeanRegression> regressions;
-        regressions.reserve(axes.size());
-        for (const std::size_t axis : axes) {
-            regressions.emplace_back(observation, axis, observation.axis(axis).density, coefficients_);
-        }
         std::vector<std::vector<Quick>> quick(trials_.size());
         std::map<std::size_t, std::size_t> best_of_group;
         for (std::size_t t = 0; t < trials_.size(); ++t) {
-            for (std::size_t a = 0; a < axes.size(); ++a) {
-                quick[t].push_back(quick_fit(regressions[a], trials_[t].responses[axes[a]]));
-            }
+            quick[t] = quick_fits(observation, trials_[t]);
             const auto [best, first] = best_of_group.try_emplace(trials_[t].point.group, t);
             if (!first && quick_evidence(quick[t]) > quick_evidence(quick[best->second])) {
                 best->second = t;
@@ -63,7 +51,7 @@ public:
         // Between the trial values of one group its likelihood may rise above the best trial of another.
         std::optional<Finding> finding;
         for (const auto& [group, trial] : best_of_group) {
-            std::optional<Finding> of_group = best_near(observation, regressions, quick, trial);
+            std::optional<Finding> of_group = best_near(observation, quick, trial);
             if (of_group && (!finding || of_group->evidence_nats > finding->evidence_nats)) {
                 finding = std::move(of_group);
             }
@@ -74,14 +62,13 @@ public:
 
 private:
     std::optional<Finding> best_near(const Observation& observation,
-                                     const std::vector<MeanRegression>& regressions,
                                      const std::vector<std::vector<Quick>>& quick, std::size_t trial) const {
         const ParamValues sd = trial_sd(quick, trial);
         std::optional<Finding> finding = fitted(observation, trials_[trial], sd);
         if (!finding || finding->evidence_nats <= worth_refining_nats || sd.empty()) { return finding; }
-        const Trial better = refined(regressions, trials_[trial]);
+        const Trial better = refined(observation, trials_[trial]);
         std::optional<Finding> refitted_finding =
-            fitted(observation, better, trial_sd_at(regressions, better));
+            fitted(observation, better, trial_sd_at(observation, better));
         if (refitted_finding && refitted_finding->gain_nats > finding->gain_nats) { return refitted_finding; }
         return finding;
     }
@@ -91,7 +78,7 @@ private:
     }
 
     Trial simulated(const TrialPoint& point) const {
-        Trial trial{point, {}};
+        std::array<std::vector<std::vector<float>>, 3> responses;
         const auto add = [&](const ParamValues& params, double unit) {
             std::array<std::vector<float>, 3> response =
                 effect_response(*baseline_, entry_of(params), signature_.slow);
@@ -99,7 +86,7 @@ private:
                 for (float& coefficient : response[axis]) {
                     coefficient = static_cast<float>(static_cast<double>(coefficient) / unit);
                 }
-                trial.responses[axis].push_back(std::move(response[axis]));
+                responses[axis].push_back(std::move(response[axis]));
             }
         };
         if (signature_.linear.empty()) { add(point.params, 1.0); }
@@ -111,35 +98,25 @@ private:
             params[std::string(name)] = unit;
             add(params, unit);
         }
+        Trial trial{point, {}};
+        for (const std::size_t axis : baseline_->axes()) {
+            trial.responses[axis] = MeanResponses(*baseline_, axis, std::move(responses[axis]));
+        }
         return trial;
     }
 
-    // Coefficients beyond which a fast response has next to nothing: a thousandth of its weight.
-    std::size_t reach() const {
-        std::size_t reach = 2;
+    std::vector<Quick> quick_fits(const Observation& observation, const Trial& trial) const {
+        std::vector<Quick> fits;
         for (const std::size_t axis : baseline_->axes()) {
-            for (const std::vector<float>& response : trials_.front().responses[axis]) {
-                reach = std::max(reach, reach_of(response));
-            }
+            const MeanRegression regression(observation, axis, trial.responses[axis]);
+            fits.push_back(quick_fit(regression.equations(observation.axis(axis).density)));
         }
-        return reach;
-    }
-
-    static std::size_t reach_of(const std::vector<float>& response) {
-        double total = 0.0;
-        for (const float c : response) { total += static_cast<double>(c) * static_cast<double>(c); }
-        double beyond = 0.0;
-        std::size_t k = response.size();
-        while (k > 1 && beyond <= 1e-3 * total) {
-            --k;
-            beyond += static_cast<double>(response[k]) * static_cast<double>(response[k]);
-        }
-        return k + 1;
+        return fits;
     }
 
     // Whether the linear parameters are known well enough to be worth their freedom.
-    Quick quick_fit(const MeanRegression& regression, std::span<const std::vector<float>> responses) const {
-        Quick quick{regression.equations(responses), 0.0, 0.0};
+    Quick quick_fit(NormalEquations equations) const {
+        Quick quick{std::move(equations), 0.0, 0.0};
         const Eigen::VectorXd c = solved(quick.equations);
         quick.gain_nats = c.dot(quick.equations.b) - 0.5 * c.dot(quick.equations.A * c);
         quick.cost_nats = linear_cost(quick.equations, c);
@@ -265,19 +242,15 @@ private:
         return count;
     }
 
-    double evidence_at(const std::vector<MeanRegression>& regressions, const Trial& trial) const {
-        std::vector<Quick> quick;
-        for (std::size_t a = 0; a < regressions.size(); ++a) {
-            quick.push_back(quick_fit(regressions[a], trial.responses[baseline_->axes()[a]]));
-        }
-        return quick_evidence(quick);
+    double evidence_at(const Observation& observation, const Trial& trial) const {
+        return quick_evidence(quick_fits(observation, trial));
     }
 
-    double evidence_at(const std::vector<MeanRegression>& regressions, const TrialPoint& from,
+    double evidence_at(const Observation& observation, const TrialPoint& from,
                        const std::vector<double>& steps) const {
         const TrialPoint point = moved(from, steps);
         if (effect_refusal(entry_of(with_linear(point.params)))) { return minus_infinity; }
-        return evidence_at(regressions, simulated(point));
+        return evidence_at(observation, simulated(point));
     }
 
     ParamValues with_linear(ParamValues params) const {
@@ -285,20 +258,20 @@ private:
         return params;
     }
 
-    Trial refined(const std::vector<MeanRegression>& regressions, const Trial& start) const {
+    Trial refined(const Observation& observation, const Trial& start) const {
         const std::size_t count = free_parameters(start.point);
         if (count == 0) { return start; }
         constexpr int simulations_most = 18;
         const SimplexMaximum maximum = simplex_maximum(
-            [&](const std::vector<double>& steps) { return evidence_at(regressions, start.point, steps); },
+            [&](const std::vector<double>& steps) { return evidence_at(observation, start.point, steps); },
             std::vector<double>(count, 0.0), 0.4, 0.05, simulations_most);
         return simulated(moved(start.point, maximum.at));
     }
 
     // From the curvature of the evidence about a point between the trials.
-    ParamValues trial_sd_at(const std::vector<MeanRegression>& regressions, const Trial& trial) const {
+    ParamValues trial_sd_at(const Observation& observation, const Trial& trial) const {
         ParamValues sd;
-        const double here = evidence_at(regressions, trial);
+        const double here = evidence_at(observation, trial);
         std::size_t free = 0;
         for (const TrialValues& values : varied(trial.point)) {
             if (values.count < 2 || is_choice(values)) { continue; }
@@ -309,8 +282,8 @@ private:
                 less[free] = -step;
                 std::vector<double> more = less;
                 more[free] = step;
-                const double fall = 2.0 * here - evidence_at(regressions, trial.point, less) -
-                                    evidence_at(regressions, trial.point, more);
+                const double fall = 2.0 * here - evidence_at(observation, trial.point, less) -
+                                    evidence_at(observation, trial.point, more);
                 if (!(fall < 1e300)) { break; }
                 curvature = fall / (step * step);
                 if (fall > 0.5) { break; }
@@ -334,16 +307,15 @@ private:
     AxisFit refitted(const Observation& observation, std::size_t axis, const Trial& trial,
                      const Eigen::VectorXd* given) const {
         const AxisObservation& seen = observation.axis(axis);
-        const std::vector<std::vector<float>>& responses = trial.responses[axis];
+        const MeanRegression regression(observation, axis, trial.responses[axis]);
         const std::array<double, 3> sd_rel = noise_uncertainty(baseline_->model(), axis);
         std::vector<double> density = seen.density;
         NoiseNuisance noise = seen.noise;
         AxisFit fit;
         for (int round = 0; round < 3; ++round) {
-            const MeanRegression regression(observation, axis, density, coefficients_);
-            fit.equations = regression.equations(responses);
+            fit.equations = regression.equations(density);
             fit.c = given != nullptr ? *given : solved(fit.equations);
-            const MeanRegression::Rest rest = regression.rest(responses, fit.equations, fit.c);
+            const MeanRegression::Rest rest = regression.rest(fit.equations, fit.c);
             noise = fit_nuisance(baseline_->bins(), baseline_->parts(axis), rest.power, sd_rel, noise);
             expected_density(baseline_->parts(axis), sd_rel, noise.z, density);
             fit.gain_nats = noise.log_likelihood_nats - seen.noise.log_likelihood_nats - rest.charge_nats;
@@ -429,7 +401,7 @@ private:
     // Where the response of the first axis has nine tenths of its weight.
     void locate_times(const Observation& observation, Finding& finding) const {
         const std::size_t axis = finding.where.axes.front();
-        const std::vector<float>& response = trials_.front().responses[axis].front();
+        const std::vector<float>& response = trials_.front().responses[axis].cosines(0);
         const SpectralBins& bins = baseline_->bins();
         std::vector<double> weights;
         double sum = 0.0;
@@ -470,7 +442,6 @@ private:
     const EffectSignature& signature_;
     std::shared_ptr<const Baseline> baseline_;
     std::vector<Trial> trials_;
-    std::size_t coefficients_ = 0;
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "analysis/diagnose/timing_spread_test.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "analysis/diagnose/noise_nuisance.hpp"
 #include "analysis/diagnose/stamp_evidence.hpp"
@@ -24,7 +26,7 @@ struct AxisBins {
 };
 
 constexpr int bins_per_octave = 4;
-constexpr int octaves = 40;
+constexpr double bins_most = 40.0 * bins_per_octave;
 constexpr double trace_nats = 2.0;
 
 double log_likelihood_nats(const AxisBins& axis, double level, double sd_s) {
@@ -37,11 +39,12 @@ double log_likelihood_nats(const AxisBins& axis, double level, double sd_s) {
     return nats - 0.5 * z * z;
 }
 
-// The largest value of a function with one top between `low` and `high`.
+// The largest value of a function with one top between `low` and `high`, to a hundred thousandth of their
+// distance.
 template <typename Function>
 double place_of_top(Function value, double low, double high) {
     constexpr double golden = 0.6180339887498949;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 24; ++i) {
         const double a = high - golden * (high - low);
         const double b = low + golden * (high - low);
         (value(a) < value(b) ? low : high) = value(a) < value(b) ? a : b;
@@ -57,7 +60,16 @@ double best_level_nats(const AxisBins& axis, double sd_s) {
 class TimingSpreadTest final : public EffectTest {
 public:
     TimingSpreadTest(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline)
-        : effect_(&effect), baseline_(std::move(baseline)) {}
+        : effect_(&effect), baseline_(std::move(baseline)) {
+        for (const std::size_t axis : baseline_->axes()) {
+            for (const float change : baseline_->response_change_rad_s2(axis)) {
+                // From a ten thousandth of a rad/s^2.
+                const double place = bins_per_octave * std::log2(1.0 + static_cast<double>(change) *
+                                                                           static_cast<double>(change) * 1e8);
+                bin_of_slot_[axis].push_back(static_cast<std::uint8_t>(std::min(place, bins_most - 1.0)));
+            }
+        }
+    }
 
     std::optional<Finding> find(const Observation& observation) const override {
         if (is_known()) { return std::nullopt; }
@@ -103,15 +115,12 @@ private:
             2.0 * sd_N * baseline_->parts(axis).back().white / baseline_->parts(axis).back().sum();
         // Of the observation's fitted noise over the model's.
         const double scale = seen.density.back() / baseline_->parts(axis).back().sum();
-        std::vector<Bin> bins(static_cast<std::size_t>(octaves * bins_per_octave));
+        std::vector<Bin> bins(static_cast<std::size_t>(bins_most));
         for (std::size_t slot = 0; slot < change.size(); ++slot) {
             if (!observation.present()[slot]) { continue; }
             const double d = static_cast<double>(change[slot]);
             const double white = static_cast<double>(seen.whitened[slot]);
-            // From a ten thousandth of a rad/s^2.
-            const double place = bins_per_octave * std::log2(1.0 + d * d * 1e8);
-            Bin& bin =
-                bins[static_cast<std::size_t>(std::min(place, static_cast<double>(bins.size()) - 1.0))];
+            Bin& bin = bins[bin_of_slot_[axis][slot]];
             bin.change_square += d * d;
             bin.count += 1.0;
             bin.squares += white * white * scale;
@@ -133,6 +142,7 @@ private:
 
     const EffectDefinition* effect_;
     std::shared_ptr<const Baseline> baseline_;
+    std::array<std::vector<std::uint8_t>, 3> bin_of_slot_;  // by how fast the rate changes there
 };
 
 }  // namespace
