@@ -15,6 +15,9 @@ constexpr double quickest_motion_s = 0.08;
 constexpr int reach = 60;      // of the lags on either side of the course
 constexpr int jump_most = 36;  // from a window to the next: three long bursts
 constexpr double rel_most = 0.012;
+// Between whole lags the misfit is taken for a parabola: right to so much of a period at the end of the
+// record.
+constexpr double between_lags = 0.003;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Of following the course: any change will do, but not without a reason.
@@ -183,6 +186,13 @@ double LagCourse::nats_at(std::size_t window, double lag) const {
     return nats[middle] + off * (slope + 0.5 * off * curvature);
 }
 
+// Of the slots that were looked at; a sample stands for the period after it.
+double LagCourse::middle_slot(std::size_t window) const {
+    const std::size_t first = window * window_slots_ + stride_ / 2;
+    const std::size_t last = first + (window_slots_ - 1 - stride_ / 2) / stride_ * stride_;
+    return 0.5 * static_cast<double>(first + last + 1);
+}
+
 double LagCourse::slope_nats(double rel) const {
     double nats = 0.0;
     for (std::size_t window = 0; window < nats_.size(); ++window) {
@@ -192,8 +202,7 @@ double LagCourse::slope_nats(double rel) const {
             at + static_cast<std::int64_t>(window_slots_) + reach > static_cast<std::int64_t>(length_)) {
             continue;
         }
-        const double middle = (static_cast<double>(window) + 0.5) * static_cast<double>(window_slots_);
-        nats += nats_at(window, rel * middle);
+        nats += nats_at(window, rel * middle_slot(window));
     }
     return nats;
 }
@@ -223,6 +232,7 @@ LagSlope LagCourse::slope() const {
         slope.rel += std::clamp(0.5 * (less - more) / curvature, -1.0, 1.0) * width;
         width = std::min(width, slope.sd);
     }
+    slope.sd = std::hypot(slope.sd, between_lags / static_cast<double>(length_));
     return slope;
 }
 

@@ -48,6 +48,7 @@ private:
     void follow();
     void take_bias_off();
     double nats_at(std::size_t window, double lag) const;
+    double middle_slot(std::size_t window) const;
     double slope_nats(double rel) const;
     struct Pair {
         std::size_t first_slot = 0;
