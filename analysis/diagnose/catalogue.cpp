@@ -1,5 +1,6 @@
 #include "analysis/diagnose/catalogue.hpp"
 
+#include "analysis/diagnose/ceiling_test.hpp"
 #include "analysis/diagnose/code_grid_test.hpp"
 #include "analysis/diagnose/line_test.hpp"
 #include "analysis/diagnose/outlier_test.hpp"
@@ -40,6 +41,7 @@ constexpr MethodMaker makers[] = {
     {EvidenceMethod::shared_noise, make_shared_noise_test},
     {EvidenceMethod::repeats, make_repeat_test},
     {EvidenceMethod::code_grid, make_code_grid_test},
+    {EvidenceMethod::ceiling, make_ceiling_test},
     {EvidenceMethod::stamp_gaps, make_stamp_gap_test},
     {EvidenceMethod::stamp_rate, make_stamp_rate_test},
     {EvidenceMethod::stamp_spread, make_stamp_spread_test},

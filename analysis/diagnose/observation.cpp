@@ -164,6 +164,18 @@ void take_off(const UncertainMean& uncertain, const std::vector<double>& fit, st
     }
 }
 
+// By slot.
+std::vector<float> in_time(const UncertainMean& uncertain, const std::vector<double>& parameters,
+                           CosineTransform& transform, std::size_t length) {
+    std::vector<float> cosines(length, 0.0F);
+    take_off(uncertain, parameters, cosines);
+    std::vector<double> work(cosines.begin(), cosines.end());
+    transform.inverse(work);
+    std::vector<float> rates(length);
+    std::ranges::transform(work, rates.begin(), [](double rate) { return static_cast<float>(-rate); });
+    return rates;
+}
+
 // White noise whose level the model has go with time has the same variance throughout afterwards.
 void even_out(const Baseline& baseline, std::size_t axis, std::vector<float>& whitened) {
     const std::vector<float>& course = baseline.white_course(axis);
@@ -222,6 +234,33 @@ void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
     });
 }
 
+// The noise, and how far the uncertain responses give way.
+void Observation::fit_model(std::size_t axis, CosineTransform& transform) {
+    const Baseline& baseline = *baseline_;
+    AxisObservation& seen = axes_[axis];
+    std::vector<double> work(seen.residual_rad_s.begin(), seen.residual_rad_s.end());
+    transform.forward(work);
+    work[0] = 0.0;
+    seen.cosines.assign(work.begin(), work.end());
+    measure_power(baseline.bins(), baseline.rate_hz(), seen.cosines, seen.power);
+    const std::array<double, 3> sd_rel = noise_uncertainty(baseline.model(), axis);
+    seen.density.resize(baseline.bins().size());
+    const auto fit_noise = [&] {
+        seen.noise = fit_nuisance(baseline.bins(), baseline.parts(axis), seen.power, sd_rel, seen.noise);
+        expected_density(baseline.parts(axis), sd_rel, seen.noise.z, seen.density);
+    };
+    fit_noise();
+    const UncertainMean& uncertain = baseline.uncertain(axis);
+    if (uncertain.empty()) { return; }
+    seen.uncertain_products = uncertain.products_with(baseline.bins(), seen.cosines);
+    seen.uncertain_fit.assign(uncertain.size(), 0.0);
+    // What they explain was noise to the first fit.
+    for (int round = 0; round < 3; ++round) {
+        give_way(baseline, axis, seen);
+        fit_noise();
+    }
+}
+
 void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform) {
     const Baseline& baseline = *baseline_;
     const std::size_t length = baseline.length();
@@ -232,29 +271,23 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     take_expected_off(axis, seed, residual);
     seen.mean_rad_s = take_mean_off(residual, present_);
     const double white = baseline.parts(axis).back().sum();
-    fill_holes(residual, present_, std::sqrt(white * rate_hz),
-               RandomStream(seed, stand_in_stream + static_cast<std::uint32_t>(axis)));
-
-    std::vector<double> work(residual.begin(), residual.end());
-    transform.forward(work);
-    work[0] = 0.0;
-    seen.cosines.assign(work.begin(), work.end());
-    const std::array<double, 3> sd_rel = noise_uncertainty(baseline.model(), axis);
-    seen.density.resize(baseline.bins().size());
-    measure_power(baseline.bins(), rate_hz, seen.cosines, seen.power);
-    const auto fit_noise = [&] {
-        seen.noise = fit_nuisance(baseline.bins(), baseline.parts(axis), seen.power, sd_rel, seen.noise);
-        expected_density(baseline.parts(axis), sd_rel, seen.noise.z, seen.density);
+    const auto fill = [&] {
+        fill_holes(residual, present_, std::sqrt(white * rate_hz),
+                   RandomStream(seed, stand_in_stream + static_cast<std::uint32_t>(axis)));
     };
-    fit_noise();
+    fill();
+    fit_model(axis, transform);
     const UncertainMean& uncertain = baseline.uncertain(axis);
+    std::vector<double> work(length);
     if (!uncertain.empty()) {
-        seen.uncertain_products = uncertain.products_with(baseline.bins(), seen.cosines);
-        seen.uncertain_fit.assign(uncertain.size(), 0.0);
-        // What they explain was noise to the first fit.
-        for (int round = 0; round < 3; ++round) {
-            give_way(baseline, axis, seen);
-            fit_noise();
+        // What stands in for a sample follows the motion as the samples do.
+        const bool whole = std::ranges::find(present_, false) == present_.end();
+        for (int round = 0; round < 2 && !whole; ++round) {
+            const std::vector<float> given_way = in_time(uncertain, seen.uncertain_fit, transform, length);
+            for (std::size_t slot = 0; slot < length; ++slot) { residual[slot] -= given_way[slot]; }
+            fill();
+            for (std::size_t slot = 0; slot < length; ++slot) { residual[slot] += given_way[slot]; }
+            fit_model(axis, transform);
         }
         take_off(uncertain, seen.uncertain_fit, seen.cosines);
         std::copy(seen.cosines.begin(), seen.cosines.end(), work.begin());

@@ -50,6 +50,7 @@ public:
 
 private:
     void observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform);
+    void fit_model(std::size_t axis, CosineTransform& transform);
     void take_expected_off(std::size_t axis, std::uint64_t seed, std::vector<float>& residual_rad_s) const;
 
     std::shared_ptr<const Baseline> baseline_;

@@ -18,9 +18,11 @@ void mark(const Column& column, const Recording& recording, std::size_t lag, std
           std::vector<std::uint8_t>& patterns) {
     std::visit(
         [&](const auto& data) {
+            const ValueRange range(data);
             for (const Segment& segment : recording.segments) {
                 for (std::size_t row = segment.first + lag; row < segment.first + segment.count; ++row) {
-                    const unsigned repeats = data[row] == data[row - lag] ? 1U : 0U;
+                    const unsigned repeats =
+                        data[row] == data[row - lag] && !range.ends_at(data[row]) ? 1U : 0U;
                     patterns[row] = static_cast<std::uint8_t>(patterns[row] | repeats << bit);
                 }
             }

@@ -6,6 +6,7 @@
 // rounded value repeats the more often, the less it moves).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -19,7 +20,22 @@ inline constexpr std::size_t repeat_patterns = 1U << repeat_quantities_max;
 
 using PatternCounts = std::array<double, repeat_patterns>;
 
-// Rows whose `lag`-th before belongs to the same segment, by pattern, in `blocks` equal blocks of rows.
+// Clipped samples are equal, too: at its ends a quantity repeats because it goes no further.
+template <typename Value>
+class ValueRange {
+public:
+    explicit ValueRange(const std::vector<Value>& values)
+        : lowest_(std::ranges::min(values)), highest_(std::ranges::max(values)) {}
+
+    bool ends_at(Value value) const { return lowest_ < highest_ && (value == lowest_ || value == highest_); }
+
+private:
+    Value lowest_;
+    Value highest_;
+};
+
+// Rows whose `lag`-th before belongs to the same segment, by pattern, in `blocks` equal blocks of rows. A
+// quantity's lowest and highest value count as no repeats.
 std::vector<PatternCounts> count_patterns(const Recording& recording,
                                           const std::vector<const Column*>& quantities, std::size_t lag,
                                           std::size_t blocks);

@@ -178,8 +178,10 @@ Steps count_steps(const Column& column, const Recording& recording, double code)
     Steps steps;
     std::visit(
         [&](const auto& data) {
+            const ValueRange range(data);
             for (const Segment& segment : recording.segments) {
                 for (std::size_t row = segment.first + 1; row < segment.first + segment.count; ++row) {
+                    if (range.ends_at(data[row])) { continue; }
                     steps.all += 1.0;
                     const double step =
                         std::fabs(static_cast<double>(data[row]) - static_cast<double>(data[row - 1]));

@@ -35,7 +35,9 @@ class ResponseTest final : public EffectTest {
 public:
     ResponseTest(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline)
         : effect_(effect), signature_(*effect.signature), baseline_(std::move(baseline)) {
-        for (const TrialPoint& point : trial_points(signature_)) { trials_.push_back(simulated(point)); }
+        for (const TrialPoint& point : trial_points(signature_, peaks_dps())) {
+            trials_.push_back(simulated(point));
+        }
     }
 
     std::optional<Finding> find(const Observation& observation) const override {
@@ -61,6 +63,19 @@ public:
     }
 
 private:
+    // Of what each axis showed.
+    std::vector<double> peaks_dps() const {
+        std::vector<double> peaks;
+        for (const std::size_t axis : baseline_->axes()) {
+            double peak_rad_s = 0.0;
+            for (const float rate : baseline_->quiet_response_rad_s(axis)) {
+                peak_rad_s = std::max(peak_rad_s, static_cast<double>(std::fabs(rate)));
+            }
+            peaks.push_back(peak_rad_s * deg_per_rad);
+        }
+        return peaks;
+    }
+
     std::optional<Finding> best_near(const Observation& observation,
                                      const std::vector<std::vector<Quick>>& quick, std::size_t trial) const {
         const ParamValues sd = trial_sd(quick, trial);
@@ -192,25 +207,16 @@ private:
                     1.0 / std::sqrt(curvature)};
     }
 
-    double step_of(const TrialValues& values, double at) const {
-        const double steps = values.count - 1;
-        return values.even ? (values.to - values.from) / steps
-                           : at * std::log(values.to / values.from) / steps;
-    }
-
-    std::span<const TrialValues> varied(const TrialPoint& point) const {
-        return signature_.trials.empty() ? std::span<const TrialValues>{} : signature_.trials[point.group];
-    }
-
     ParamValues trial_sd(const std::vector<std::vector<Quick>>& quick, std::size_t trial) const {
         ParamValues sd;
         const TrialPoint& point = trials_[trial].point;
-        const std::span<const TrialValues> values = varied(point);
+        const std::span<const TrialValues> values = point.values;
         for (std::size_t i = 0; i < values.size(); ++i) {
             if (values[i].count < 2 || is_choice(values[i])) { continue; }
             const std::string name(values[i].param);
             const std::optional<Peak> top = peak(quick, trial, i);
-            sd[name] = step_of(values[i], point.params.at(name)) * (top ? std::min(top->sd, 3.0) : 1.0);
+            sd[name] =
+                step_at(values[i], point.peak, point.params.at(name)) * (top ? std::min(top->sd, 3.0) : 1.0);
         }
         return sd;
     }
@@ -218,14 +224,12 @@ private:
     // Parameters on their trial's scale, where a step of 1 is one of the trial values'.
     TrialPoint moved(const TrialPoint& from, const std::vector<double>& steps) const {
         TrialPoint point = from;
-        const std::span<const TrialValues> values = varied(from);
+        const std::span<const TrialValues> values = from.values;
         std::size_t free = 0;
         for (const TrialValues& trial : values) {
             if (trial.count < 2 || is_choice(trial)) { continue; }
             double& value = point.params[std::string(trial.param)];
-            const double step = steps[free++];
-            value = trial.even ? value + step * (trial.to - trial.from) / (trial.count - 1)
-                               : value * std::pow(trial.to / trial.from, step / (trial.count - 1));
+            value = moved_value(trial, from.peak, value, steps[free++]);
         }
         return point;
     }
@@ -238,7 +242,7 @@ private:
 
     std::size_t free_parameters(const TrialPoint& point) const {
         std::size_t count = 0;
-        for (const TrialValues& values : varied(point)) { count += values.count > 1 && !is_choice(values); }
+        for (const TrialValues& values : point.values) { count += values.count > 1 && !is_choice(values); }
         return count;
     }
 
@@ -273,7 +277,7 @@ private:
         ParamValues sd;
         const double here = evidence_at(observation, trial);
         std::size_t free = 0;
-        for (const TrialValues& values : varied(trial.point)) {
+        for (const TrialValues& values : trial.point.values) {
             if (values.count < 2 || is_choice(values)) { continue; }
             const std::string name(values.param);
             double curvature = 0.0;
@@ -289,7 +293,7 @@ private:
                 if (fall > 0.5) { break; }
             }
             const double sd_steps = curvature > 0.0 ? std::min(1.0 / std::sqrt(curvature), 3.0) : 1.0;
-            sd[name] = sd_steps * step_of(values, trial.point.params.at(name));
+            sd[name] = sd_steps * step_at(values, trial.point.peak, trial.point.params.at(name));
             ++free;
         }
         return sd;

@@ -45,8 +45,9 @@ struct TrialValues {
     std::string_view param;
     double from = 0.0;
     double to = 0.0;
-    int count = 1;  // spaced by a constant factor, unless `even`
-    bool even = false;
+    int count = 1;  // spaced by a constant factor
+    // `from` and `to` say how far below the largest rate of an axis, as shares of it; for each axis in turn.
+    bool below_peak = false;
 };
 
 enum class EvidenceMethod {
@@ -62,6 +63,7 @@ enum class EvidenceMethod {
     shared_noise,     // between axes
     repeats,          // samples that are the ones before again
     code_grid,        // the converter's step
+    ceiling,          // a largest rate
     stamp_gaps,
     stamp_rate,
     stamp_spread,

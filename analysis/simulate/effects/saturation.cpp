@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cmath>
+#include <string>
 
+#include "analysis/recording/recording.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/effects/rate_map.hpp"
 
@@ -22,14 +25,40 @@ constexpr EffectParam params[] = {
 };
 
 constexpr TrialValues limit_values[] = {
-    {.param = "limit_dps", .from = 235.0, .to = 495.0, .count = 27, .even = true}};
+    {.param = "limit_dps", .from = 0.002, .to = 0.6, .count = 12, .below_peak = true}};
 constexpr std::span<const TrialValues> trials[] = {limit_values};
 
+// What rounding to a 16-bit code takes from the limit.
+constexpr double rounded_rel = 5e-5;
+// As close to a clipped sample another one may owe to its noise that it is none.
+constexpr std::size_t neighbours = 3;
+
+// Of a clipped sample the noise is unknown, and so is how far the rate went.
+void leave_out_clipped(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool acts = entry.axes.empty() || std::ranges::count(entry.axes, axis_names[axis]) != 0;
+        const Column* column = recording.find(std::string("g") + axis_names[axis]);
+        if (!acts || column == nullptr) { continue; }
+        const double limit_rad_s = EffectValues(entry, axis)["limit_dps"] * rad_per_deg * (1.0 - rounded_rel);
+        for (const Segment& segment : recording.segments) {
+            const std::size_t end = segment.first + segment.count;
+            for (std::size_t row = segment.first; row < end; ++row) {
+                if (std::fabs(column->value(row)) < limit_rad_s) { continue; }
+                const std::size_t from = row - std::min(row - segment.first, neighbours);
+                const std::size_t to = std::min(row + neighbours + 1, end);
+                std::fill(judged.begin() + static_cast<std::ptrdiff_t>(from),
+                          judged.begin() + static_cast<std::ptrdiff_t>(to), false);
+            }
+        }
+    }
+}
+
 constexpr EffectSignature signature = {
-    .method = EvidenceMethod::response,
+    .method = EvidenceMethod::ceiling,
     .place = PlaceKind::rate,
     .needs_reference = true,
     .trials = trials,
+    .unjudged = leave_out_clipped,
     .words = "The output is clipped at {limit_dps}",
     .decided_by = "plateaus of both signs up to full scale",
 };

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/ceiling_test.hpp"
 #include "analysis/diagnose/effect_search.hpp"
 #include "analysis/diagnose/quiet_reference.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
@@ -105,6 +106,46 @@ TEST(MotionEvidence, TakesTheReferencesNoiseForNoDeadZone) {
     if (found != nullptr) { EXPECT_LT(found->evidence_nats, 3.0); }
     const Finding* best = seen.best();
     if (best != nullptr) { EXPECT_LT(best->evidence_nats, 6.0) << best->effect; }
+}
+
+std::shared_ptr<const Recording> moved(const SensorModel& sensor, std::uint64_t seed) {
+    return recorded(sensor, 48000, seed, world_with_rests());
+}
+
+// A noise sigma below the top of the motion, where the mean answer has next to nothing of it.
+TEST(MotionEvidence, OfACeilingIsThePileOfSamplesBelowIt) {
+    const SensorModel model = moving_sensor();
+    const double limit_dps = 2.0 * deg_per_rad - 0.1;
+    const SensorModel clipped = with_effect(model, "saturation", {{"limit_dps", limit_dps}}, {"x"});
+    const auto recording = moved(clipped, 37);
+    const auto finding = found(make_ceiling_test, "saturation", recording, model);
+    ASSERT_TRUE(finding);
+    EXPECT_GT(finding->evidence_nats, 20.0);
+    EXPECT_EQ(finding->where.axes, std::vector<std::size_t>{0});
+    const double lsb_dps = model.lsb_rad_s * deg_per_rad;
+    EXPECT_NEAR(finding->entries.front().params.at("limit_dps"), limit_dps, 0.5001 * lsb_dps);
+    EXPECT_LT(evidence(found(make_ceiling_test, "saturation", recording, with_found(model, *finding))), 0.0);
+}
+
+// What is clipped over whole tops of the motion leaves holes there; gains must not be read from what fills
+// them.
+TEST(MotionEvidence, OfNothingElseIsLeftUnderAKnownCeiling) {
+    SensorModel model = with_effect(moving_sensor(), "saturation", {{"limit_dps", 100.0}}, {"x", "y"});
+    SensorModel sensor = model;
+    sensor.M[0][0] += 2e-4;
+    const auto recording = moved(sensor, 38);
+    const Hypotheses seen = examine(baseline_of(recording, model), recording, 1, 1);
+    const Finding* best = seen.best();
+    if (best != nullptr) { EXPECT_LT(best->evidence_nats, 6.0) << best->effect; }
+}
+
+TEST(MotionEvidence, OfACeilingIsNoneWhereTheMotionTurnsRound) {
+    for (std::uint64_t seed = 41; seed <= 46; ++seed) {
+        EXPECT_LT(
+            evidence(found(make_ceiling_test, "saturation", moved(moving_sensor(), seed), moving_sensor())),
+            3.0)
+            << seed;
+    }
 }
 
 TEST(QuietReference, HasNoNoiseAtRestAndTheWholeMotionOtherwise) {
