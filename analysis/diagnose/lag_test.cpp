@@ -20,23 +20,12 @@ const EffectParam& param(const EffectDefinition& effect, std::string_view name) 
     return *std::ranges::find(effect.params, name, &EffectParam::name);
 }
 
-// What the priors of gains, latency and clock charge for the values they were fitted at.
-double charge_nats(const Observation& observation, std::size_t axis) {
-    const UncertainMean& uncertain = observation.baseline().uncertain(axis);
-    double charge = 0.0;
-    for (std::size_t u = 0; u < uncertain.size(); ++u) {
-        const double z = observation.axis(axis).uncertain_fit[u] / uncertain[u].sd;
-        charge += 0.5 * z * z;
-    }
-    return charge;
-}
-
 // A wrong timing leaves a residual, or pulls the clock's or the latency's uncertainty.
 bool may_be_mistimed(const Observation& observation) {
     double squares = 0.0;
     double count = 0.0;
     for (const std::size_t axis : observation.baseline().axes()) {
-        if (charge_nats(observation, axis) > trace_nats) { return true; }
+        if (uncertain_charge_nats(observation, axis) > trace_nats) { return true; }
         for (const float white : observation.axis(axis).whitened) {
             squares += static_cast<double>(white) * static_cast<double>(white);
         }
@@ -132,14 +121,6 @@ private:
 };
 
 }  // namespace
-
-double log_likelihood_nats(const Observation& observation) {
-    double nats = 0.0;
-    for (const std::size_t axis : observation.baseline().axes()) {
-        nats += observation.axis(axis).noise.log_likelihood_nats - charge_nats(observation, axis);
-    }
-    return nats;
-}
 
 std::unique_ptr<EffectTest> make_lag_slope_test(const EffectDefinition& effect,
                                                 std::shared_ptr<const Baseline> baseline) {

@@ -16,7 +16,4 @@ std::unique_ptr<EffectTest> make_lag_slope_test(const EffectDefinition& effect,
 std::unique_ptr<EffectTest> make_lag_step_test(const EffectDefinition& effect,
                                                std::shared_ptr<const Baseline> baseline);
 
-// Of what is seen, with the priors of all that was fitted.
-double log_likelihood_nats(const Observation& observation);
-
 }  // namespace gyrolog

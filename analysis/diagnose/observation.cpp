@@ -304,4 +304,22 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     even_out(baseline, axis, seen.whitened);
 }
 
+double log_likelihood_nats(const Observation& observation) {
+    double nats = 0.0;
+    for (const std::size_t axis : observation.baseline().axes()) {
+        nats += observation.axis(axis).noise.log_likelihood_nats - uncertain_charge_nats(observation, axis);
+    }
+    return nats;
+}
+
+double uncertain_charge_nats(const Observation& observation, std::size_t axis) {
+    const UncertainMean& uncertain = observation.baseline().uncertain(axis);
+    double charge = 0.0;
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        const double z = observation.axis(axis).uncertain_fit[u] / uncertain[u].sd;
+        charge += 0.5 * z * z;
+    }
+    return charge;
+}
+
 }  // namespace gyrolog

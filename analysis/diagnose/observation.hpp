@@ -61,4 +61,9 @@ private:
     std::array<AxisObservation, 3> axes_;
 };
 
+// Of the spectra, with the priors of all that was fitted.
+double log_likelihood_nats(const Observation& observation);
+// What the priors of the model's uncertain responses charge for the values they were fitted at.
+double uncertain_charge_nats(const Observation& observation, std::size_t axis);
+
 }  // namespace gyrolog

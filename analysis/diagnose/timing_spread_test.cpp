@@ -28,6 +28,7 @@ struct AxisBins {
 constexpr int bins_per_octave = 4;
 constexpr double bins_most = 40.0 * bins_per_octave;
 constexpr double trace_nats = 2.0;
+constexpr double worth_checking_nats = 100.0;
 
 double log_likelihood_nats(const AxisBins& axis, double level, double sd_s) {
     double nats = 0.0;
@@ -86,7 +87,12 @@ public:
             place_of_top([&](double log_s) { return nats(std::exp(log_s)); },
                          std::log(0.2 * range.plausible_from), std::log(3.0 * range.plausible_to));
         const double sd_s = std::exp(log_sd);
-        const double gain_nats = nats(sd_s) - without;
+        double gain_nats = nats(sd_s) - without;
+        if (gain_nats < trace_nats) { return std::nullopt; }
+        // Far from a small spread the squares claim what the whole likelihood does not have.
+        if (gain_nats > worth_checking_nats) {
+            gain_nats = std::min(gain_nats, checked_nats(observation, sd_s));
+        }
         if (gain_nats < trace_nats) { return std::nullopt; }
         constexpr double step = 0.05;
         const double curvature =
@@ -105,6 +111,16 @@ public:
     }
 
 private:
+    // Of the spectra, with the spread in the model.
+    double checked_nats(const Observation& observation, double sd_s) const {
+        SensorModel model = baseline_->model();
+        model.effects.push_back({std::string(effect_->name), {}, {{"sd_s", sd_s}, {"in_stamps", 0.0}}, ""});
+        const std::shared_ptr<const Recording> recording(std::shared_ptr<const Recording>(),
+                                                         &observation.recording());
+        const Observation with(baseline_->with(model), recording, 1);
+        return log_likelihood_nats(with) - log_likelihood_nats(observation);
+    }
+
     AxisBins gathered(const Observation& observation, std::size_t axis) const {
         const AxisObservation& seen = observation.axis(axis);
         const std::vector<float>& change = baseline_->response_change_rad_s2(axis);
