@@ -123,6 +123,16 @@ TEST(TimingSpread, OfInstantsThatTheStampsHideIsFound) {
     }
 }
 
+// What a lag of seconds does to a fast motion is no spread of instants, however large its squares.
+TEST(TimingSpread, ClaimsNoMoreThanAClockThatIsOffHas) {
+    const auto recording =
+        moved(with_effect(sensor(), "clock_rate", {{"rel", -0.001}, {"in_stamps", 0.0}}), 9);
+    const auto clock = found(make_stamp_rate_test, "clock_rate", recording, sensor());
+    ASSERT_TRUE(clock);
+    EXPECT_GT(clock->evidence_nats,
+              evidence(found(make_stamp_spread_test, "clock_jitter", recording, sensor())) + 20.0);
+}
+
 TEST(TimingSpread, OfARightModelIsNone) {
     int above_zero = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {

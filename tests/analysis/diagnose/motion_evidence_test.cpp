@@ -127,6 +127,25 @@ TEST(MotionEvidence, OfACeilingIsThePileOfSamplesBelowIt) {
     EXPECT_LT(evidence(found(make_ceiling_test, "saturation", recording, with_found(model, *finding))), 0.0);
 }
 
+TEST(MotionEvidence, IsNotTakenFromClippedSamplesAndThreeOnEitherSide) {
+    const SensorModel clipped = with_effect(moving_sensor(), "saturation", {{"limit_dps", 100.0}}, {"x"});
+    const auto recording = moved(clipped, 39);
+    std::vector<bool> judged(recording->rows(), true);
+    find_effect("saturation")->signature->unjudged(*recording, clipped.effects.back(), judged);
+    const Column& x = *recording->find("gx");
+    const double highest_rad_s = std::ranges::max(x.values());
+    std::size_t left_out = 0;
+    for (std::size_t row = 3; row + 3 < recording->rows(); ++row) {
+        bool near_clipped = false;
+        for (std::size_t i = row - 3; i <= row + 3; ++i) {
+            near_clipped = near_clipped || std::fabs(x.value(i)) == highest_rad_s;
+        }
+        ASSERT_EQ(judged[row], !near_clipped) << row;
+        left_out += near_clipped ? 1 : 0;
+    }
+    EXPECT_GT(left_out, 500U);
+}
+
 // What is clipped over whole tops of the motion leaves holes there; gains must not be read from what fills
 // them.
 TEST(MotionEvidence, OfNothingElseIsLeftUnderAKnownCeiling) {
