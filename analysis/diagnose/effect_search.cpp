@@ -15,8 +15,6 @@ namespace {
 constexpr double margin_nats = 3.0;
 // How many causes are tried as the first.
 constexpr std::size_t beginnings_most = 4;
-// Of what a cause explains.
-constexpr double next_to_nothing = 1e-4;
 
 class Search {
 public:
@@ -84,7 +82,8 @@ private:
             Hypotheses with_it = with_causes();
             const Finding* next = further(with_it);
             const double nats = finding.evidence_nats + (next != nullptr ? next->evidence_nats : 0.0);
-            const bool explains_all = !is_noise(finding) && leaves_nothing(with_it, next);
+            // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one.
+            const bool explains_all = next == nullptr && !is_noise(finding);
             if (!best || explains_all || nats > best_nats + margin_nats) {
                 best = std::move(with_it);
                 best_causes = causes_;
@@ -94,16 +93,6 @@ private:
         }
         causes_ = std::move(best_causes);
         return best;
-    }
-
-    // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one. Next to
-    // nothing is what is left of a gap where the cause is right and its parameters nearly are: evidence that
-    // is far from right is worth less, however large, and estimates of it do not compare.
-    bool leaves_nothing(const Hypotheses& with_it, const Finding* next) const {
-        if (next == nullptr) { return true; }
-        const double gained_nats =
-            log_likelihood_nats(*with_it.observation) - log_likelihood_nats(*first_.observation);
-        return next->evidence_nats < next_to_nothing * gained_nats;
     }
 
     bool told() const {
