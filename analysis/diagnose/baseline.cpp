@@ -7,13 +7,12 @@
 #include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/quiet_reference.hpp"
 #include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-constexpr std::array<const char*, 3> gyro_columns = {"gx", "gy", "gz"};
 
 std::vector<std::size_t> axes_of(const Recording& recording) {
     std::vector<std::size_t> axes;
@@ -27,10 +26,6 @@ std::vector<std::size_t> axes_of(const Recording& recording) {
 std::size_t slots_of(const Recording& recording) {
     const Segment& last = recording.segments.back();
     return static_cast<std::size_t>(last.first_index - recording.segments.front().first_index) + last.count;
-}
-
-bool acts_on(const EffectModel& effect, std::size_t axis) {
-    return effect.axes.empty() || std::ranges::count(effect.axes, axis_names[axis]) != 0;
 }
 
 double reference_noise(const SensorModel& model, std::size_t axis) {

@@ -1,18 +1,17 @@
 #include "analysis/diagnose/ceiling_test.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "analysis/diagnose/axis_fits.hpp"
 #include "analysis/diagnose/response_test.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-constexpr std::array<const char*, 3> gyro_columns = {"gx", "gy", "gz"};
 // Of a code, for printed decimals.
 constexpr double same_code = 0.25;
 
@@ -63,8 +62,7 @@ private:
     double known_limit_rad_s(std::size_t axis) const {
         double limit_rad_s = baseline_->model().saturation_rad_s;
         for (const EffectModel& entry : baseline_->model().effects) {
-            const bool acts = entry.axes.empty() || std::ranges::count(entry.axes, axis_names[axis]) != 0;
-            if (entry.effect != effect_.name || !acts) { continue; }
+            if (entry.effect != effect_.name || !acts_on(entry, axis)) { continue; }
             limit_rad_s = std::min(limit_rad_s, EffectValues(entry, axis)["limit_dps"] * rad_per_deg);
         }
         return limit_rad_s;

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "analysis/recording/grid_step.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-constexpr std::array<const char*, 3> gyro_columns = {"gx", "gy", "gz"};
 constexpr std::size_t codes_max = 4096;     // a change that is looked at
 constexpr std::size_t coarser_max = 256;    // times the model's step
 constexpr double on_grid_tolerance = 0.05;  // of a step, for printed decimals
@@ -97,8 +97,7 @@ private:
     double expected_step_rad_s(std::size_t axis) const {
         double step_rad_s = baseline_->model().lsb_rad_s;
         for (const EffectModel& entry : baseline_->model().effects) {
-            const bool acts = entry.axes.empty() || std::ranges::count(entry.axes, axis_names[axis]) != 0;
-            if (entry.effect != effect_->name || !acts) { continue; }
+            if (entry.effect != effect_->name || !acts_on(entry, axis)) { continue; }
             step_rad_s = std::max(step_rad_s, EffectValues(entry)["lsb_dps"] * rad_per_deg);
         }
         return step_rad_s;

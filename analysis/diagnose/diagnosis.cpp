@@ -1,7 +1,9 @@
 #include "analysis/diagnose/diagnosis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -11,6 +13,7 @@
 #include "analysis/diagnose/gap_measure.hpp"
 #include "analysis/diagnose/gap_report.hpp"
 #include "analysis/diagnose/null_simulations.hpp"
+#include "analysis/diagnose/seen_line.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
@@ -31,6 +34,9 @@ constexpr std::size_t tie_most = 4;
 // A difference of this evidence is no tie any more, whatever chance does to it.
 constexpr double decided_nats = 8.0;
 constexpr std::size_t simulations_after_most = 100;
+constexpr double faint_line_share = 0.5;
+// Of the mean square of noise; no noise that a model is used for is thirty times as strong as it says.
+constexpr double square_of_motion = 1000.0;
 
 bool judged_by_stamps(const Finding& finding) {
     const EvidenceMethod method = find_effect(finding.effect)->signature->method;
@@ -45,13 +51,14 @@ public:
         : recording_(std::move(recording)), options_(options), answer_() {
         const auto world = std::make_shared<const RecordedWorld>(recording_);
         answer_.warnings = world->warnings();
-        baseline_ = with_own_bias(std::make_shared<const Baseline>(world, model), recording_);
+        baseline_ = with_own_start(std::make_shared<const Baseline>(world, model), recording_);
     }
 
     std::optional<Diagnosis> run(const std::string& model_name) {
         describe(model_name);
         if (!told("looking for effects", 0.0)) { return std::nullopt; }
         first_ = examine(baseline_, recording_, options_.seed, options_.threads);
+        warn_of_motion();
         for (const CatalogueEntry& entry : first_.catalogue) {
             if (!entry.untestable.empty()) {
                 answer_.untestable.push_back({std::string(entry.effect->name), entry.untestable});
@@ -68,15 +75,49 @@ private:
         return !options_.on_progress || options_.on_progress(what, share);
     }
 
-    // A turn-on bias is free; where the output clips, and where it lies between two codes, it matters.
-    std::shared_ptr<const Baseline> with_own_bias(const std::shared_ptr<const Baseline>& baseline,
-                                                  const std::shared_ptr<const Recording>& recording) const {
-        const Observation observation(baseline, recording, options_.seed);
+    // A turn-on bias is free; where the output clips, and where it lies between two codes, it matters. So is
+    // the phase that a line had at the first sample.
+    std::shared_ptr<const Baseline> with_own_start(const std::shared_ptr<const Baseline>& baseline,
+                                                   const std::shared_ptr<const Recording>& recording) {
         SensorModel model = baseline->model();
+        for (EffectModel& entry : model.effects) {
+            if (find_effect(entry.effect)->signature->method != EvidenceMethod::line) { continue; }
+            const SeenLine seen = see_line(*baseline, recording, entry, options_.seed);
+            entry.params["phase_rad"] = seen.phase_rad;
+            if (recording == recording_ && seen.share < faint_line_share) { warn_of_faint(entry, seen); }
+        }
+        const Observation observation(baseline->with(model), recording, options_.seed);
         for (const std::size_t axis : baseline->axes()) {
             model.axes[axis].bias_rad_s += observation.axis(axis).mean_rad_s;
         }
         return baseline->with(model);
+    }
+
+    void warn_of_faint(const EffectModel& line, const SeenLine& seen) {
+        const EffectValues values(line);
+        std::array<char, 160> text{};
+        (void)std::snprintf(text.data(), text.size(),
+                            "the model's %s at %.5g Hz has %.0f %% of its amplitude in the recording: one at "
+                            "that frequency among the causes takes it off again",
+                            line.effect.c_str(), values["f_hz"], 100.0 * seen.share);
+        answer_.warnings.emplace_back(text.data());
+    }
+
+    // Without a reference, what turned is all noise.
+    void warn_of_motion() {
+        if (baseline_->moves()) { return; }
+        for (const std::size_t axis : baseline_->axes()) {
+            double squares = 0.0;
+            for (const float white : first_.observation->axis(axis).whitened) {
+                squares += static_cast<double>(white) * static_cast<double>(white);
+            }
+            if (squares < square_of_motion * static_cast<double>(baseline_->length())) { continue; }
+            answer_.warnings.emplace_back(
+                "the rates stray far more than noise does: the sensor seems to have been turned, and without "
+                "a reference rate (columns ref_x_dps ... or ref_qw ...) nothing of that can be judged; use a "
+                "part at rest");
+            return;
+        }
     }
 
     void describe(const std::string& model_name) {
@@ -194,7 +235,8 @@ private:
             answer_.shrink = answer_.shrink_lo = answer_.shrink_hi = std::clamp(shrink, 0.0, 1.0);
         }
         propose_recordings();
-        answer_.where = answer_.causes.empty() ? before.where : answer_.causes.front().finding.where;
+        answer_.where = explained ? answer_.causes.front().finding.where : before.where;
+        if (!explained && after_) { answer_.left = after.where; }
     }
 
     // What would settle what is open.
@@ -253,8 +295,9 @@ private:
 
     // The gap of a recording that had no part in the fit.
     std::optional<GapSummary> gap_on_holdout(const std::shared_ptr<const RecordedWorld>& world,
-                                             const SensorModel& model) const {
-        const auto baseline = with_own_bias(std::make_shared<const Baseline>(world, model), options_.holdout);
+                                             const SensorModel& model) {
+        const auto baseline =
+            with_own_start(std::make_shared<const Baseline>(world, model), options_.holdout);
         NullSimulationOptions options{
             std::min(options_.simulations, simulations_after_most), options_.seed + 2, options_.threads, {}};
         options.on_progress = [&](double share) { return told("judging the second recording", share); };

@@ -57,6 +57,10 @@ struct GapDomain {
     std::vector<bool> outside_before, outside_after;
     double gap_before = 0.0;  // rms of the standardised differences; 1 is the floor
     double gap_after = 0.0;
+    // -ln of the probability that a simulation is as far off here. With as many domains as there are, one or
+    // another reaches some 7 by chance.
+    double surprise_before_nats = 0.0;
+    double surprise_after_nats = 0.0;
 };
 
 struct Diagnosis {
@@ -74,7 +78,8 @@ struct Diagnosis {
     double p_none = 1.0;
     double p_left = 1.0;  // of what the causes leave
     std::vector<Cause> causes;
-    Place where;
+    Place where;  // the gap; of a known one, its first cause
+    Place left;   // with Verdict::unexplained and causes: what they leave
     Gap gap_before, gap_after;
     double shrink = 0.0, shrink_lo = 0.0, shrink_hi = 0.0;
     std::string held_out;  // the name of the second recording that the gap was measured on; empty without one

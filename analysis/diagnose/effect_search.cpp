@@ -1,6 +1,7 @@
 #include "analysis/diagnose/effect_search.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace {
 
 // Less is no reason to prefer what was not first.
 constexpr double margin_nats = 3.0;
+constexpr double far_better_nats = 8.0;
 // How many causes are tried as the first.
 constexpr std::size_t beginnings_most = 4;
 
@@ -82,8 +84,10 @@ private:
             Hypotheses with_it = with_causes();
             const Finding* next = further(with_it);
             const double nats = finding.evidence_nats + (next != nullptr ? next->evidence_nats : 0.0);
-            // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one.
-            const bool explains_all = next == nullptr && !is_noise(finding);
+            // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one,
+            // unless the noise does far better.
+            const bool explains_all =
+                next == nullptr && !is_noise(finding) && (!best || nats > best_nats - far_better_nats);
             if (!best || explains_all || nats > best_nats + margin_nats) {
                 best = std::move(with_it);
                 best_causes = causes_;
@@ -128,9 +132,19 @@ private:
     }
 
     bool is_new(const Finding& finding) const {
-        return repeats_itself(finding) || std::ranges::none_of(causes_, [&](const FoundCause& cause) {
-                   return cause.finding.effect == finding.effect;
-               });
+        return std::ranges::none_of(causes_, [&](const FoundCause& cause) {
+            if (cause.finding.effect != finding.effect) { return false; }
+            return !repeats_itself(finding) || is_same_line(cause.finding, finding);
+        });
+    }
+
+    // What a steady line leaves beside itself is no other line: it wanders, or swells.
+    bool is_same_line(const Finding& a, const Finding& b) const {
+        constexpr double resolutions = 10.0;
+        if (!a.where.freq_hz || !b.where.freq_hz) { return false; }
+        const double near_hz = resolutions / first_.baseline->duration_s();
+        return a.where.freq_hz->from < b.where.freq_hz->to + near_hz &&
+               b.where.freq_hz->from < a.where.freq_hz->to + near_hz;
     }
 
     SensorModel model_with_all_but(std::size_t left_out) const {
@@ -159,7 +173,11 @@ private:
                 causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(i));
                 continue;
             }
-            causes_[i].rivals = findings;
+            // What is a cause already is no rival of another.
+            causes_[i].rivals.clear();
+            std::ranges::copy_if(findings, std::back_inserter(causes_[i].rivals), [&](const Finding& f) {
+                return f.effect == causes_[i].finding.effect || is_new(f);
+            });
             ++i;
             if (!told()) { return false; }
         }

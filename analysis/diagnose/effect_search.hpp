@@ -38,7 +38,7 @@ struct EffectSearchResult {
 
 struct SearchOptions {
     double evidence_min_nats = 5.0;  // for a further cause
-    std::size_t causes_most = 4;
+    std::size_t causes_most = 6;
     std::uint64_t seed = 1;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // false ends the work

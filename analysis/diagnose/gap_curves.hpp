@@ -13,13 +13,18 @@ namespace gyrolog {
 enum class GapDomainKind {
     allan,
     spectrum,
+    narrow,
     course,
     drift,
     amplitude,
     temperature,
     cross_axis,
     rate,
-    acceleration
+    rate_noise,
+    acceleration,
+    repeats,
+    memory,
+    period
 };
 
 // `value` is on a scale on which chance is nearly normal; x is SI.
@@ -31,7 +36,7 @@ struct GapCurve {
     std::vector<double> value;
 };
 
-// Of one observation: the same curves, of the same x, for every observation of a baseline.
+// Of one observation: the same curves, of as many points, for every observation of a baseline.
 //   allan        ln of the Allan deviation of the residual over averaging times, over the model's
 //   spectrum     ln of the power over the fitted density, thirds of octaves
 //   course       ln of the whitened samples' variance over time
@@ -40,7 +45,9 @@ struct GapCurve {
 //   temperature  mean of the whitened samples by temperature
 //   cross_axis   correlation of two axes by frequency
 //   rate         mean of the whitened samples by reference rate
+//   rate_noise   ln of the whitened samples' variance by reference rate
 //   acceleration mean of the whitened samples by change of the rate
+//   narrow, repeats, memory, period: structure_curves.hpp
 std::vector<GapCurve> gap_curves(const Observation& observation);
 
 }  // namespace gyrolog

@@ -22,6 +22,10 @@ double variance_dB(double log_variance) { return 0.5 * db_per_neper * log_varian
 // zero.
 double power_dB(double value) { return 1.5 * db_per_neper * std::log(std::max(1.0 + value / 3.0, 0.2)); }
 
+double variance_ratio_dB(double cube_root_less_1) {
+    return 1.5 * db_per_neper * std::log(std::max(1.0 + cube_root_less_1, 0.2));
+}
+
 // How a kind of curve is shown.
 struct DomainLook {
     const char* name;
@@ -43,6 +47,8 @@ DomainLook look_of(GapDomainKind kind) {
                 "Allan deviation", "averaging time (s)", "σ(τ) (deg/s)", as_it_is, deviation_dps, true, true};
         case GapDomainKind::spectrum:
             return {"spectrum", "frequency (Hz)", "over the model (dB)", as_it_is, power_dB, true, false};
+        case GapDomainKind::narrow:
+            return {"narrow lines", "frequency (Hz)", "excess (its sd)", as_it_is, as_it_is, true};
         case GapDomainKind::course:
             return {"noise over time", "time (s)", "over the model (dB)", as_it_is, variance_dB};
         case GapDomainKind::drift:
@@ -56,6 +62,16 @@ DomainLook look_of(GapDomainKind kind) {
             return {"correlation with ", "frequency (Hz)", "correlation (its sd)", as_it_is, as_it_is, true};
         case GapDomainKind::rate:
             return {"rate about ", "reference rate (deg/s)", standard_deviations, in_degrees, as_it_is};
+        case GapDomainKind::rate_noise:
+            return {"noise by rate", "reference rate (deg/s)", "over the model (dB)", in_degrees,
+                    variance_dB};
+        case GapDomainKind::repeats:
+            return {"repeated samples", "lag (s)", "excess (its sd)", as_it_is, as_it_is};
+        case GapDomainKind::memory:
+            return {"bursts of noise", "length (s)",      "over the model (dB)",
+                    as_it_is,          variance_ratio_dB, true};
+        case GapDomainKind::period:
+            return {"what comes back", "period (s)", "excess (its sd)", as_it_is, as_it_is, true};
         case GapDomainKind::acceleration:
             return {"change of the rate", "change of the rate (deg/s^2)", standard_deviations, in_degrees,
                     as_it_is};
@@ -121,7 +137,9 @@ std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap*
         domain.before_lo = std::move(band.lo);
         domain.before_hi = std::move(band.hi);
         domain.outside_before = std::move(band.outside);
-        domain.gap_before = gap_of(curve, before.reference, c).distance;
+        const CurveDistance gap_before = gap_of(curve, before.reference, c);
+        domain.gap_before = gap_before.distance;
+        domain.surprise_before_nats = gap_before.surprise_nats;
         if (after != nullptr && c < after->curves.size() &&
             after->curves[c].value.size() == curve.value.size()) {
             for (std::size_t i = 0; i < points; ++i) {
@@ -131,7 +149,9 @@ std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap*
             domain.after_lo = std::move(band.lo);
             domain.after_hi = std::move(band.hi);
             domain.outside_after = std::move(band.outside);
-            domain.gap_after = gap_of(after->curves[c], after->reference, c).distance;
+            const CurveDistance gap_after = gap_of(after->curves[c], after->reference, c);
+            domain.gap_after = gap_after.distance;
+            domain.surprise_after_nats = gap_after.surprise_nats;
         }
         domains.push_back(std::move(domain));
     }

@@ -11,7 +11,16 @@ namespace {
 
 // Where no simulation differs from another, rounding is no scale, and one sample further out than any of
 // theirs is no wonder.
-double least_sd(GapDomainKind kind) { return kind == GapDomainKind::amplitude ? 0.5 : 1e-6; }
+double least_sd(GapDomainKind kind) {
+    switch (kind) {
+        case GapDomainKind::amplitude:
+            return 0.5;
+        case GapDomainKind::repeats:
+            return 1.0;
+        default:
+            return 1e-6;
+    }
+}
 
 double sum_of_squares(const std::vector<double>& z) {
     double sum = 0.0;

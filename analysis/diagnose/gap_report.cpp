@@ -28,8 +28,11 @@ void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
     const std::optional<Span> span = outside(curve, z);
     switch (curve.kind) {
         case GapDomainKind::allan:
+        case GapDomainKind::memory:
+        case GapDomainKind::period:
             where.tau_s = span;
             break;
+        case GapDomainKind::narrow:
         case GapDomainKind::spectrum:
             where.freq_hz = span;
             break;
@@ -47,6 +50,10 @@ void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
             where.structure = "cross_axis";
             where.freq_hz = span;
             break;
+        case GapDomainKind::repeats:
+            where.structure = "duplicated_samples";
+            break;
+        case GapDomainKind::rate_noise:
         case GapDomainKind::rate:
             where.rate_rad_s = span;
             break;

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/simulate/effect_axes.hpp"
+
 namespace gyrolog {
 
 namespace {
 
-constexpr std::array<const char*, 3> gyro_columns = {"gx", "gy", "gz"};
 constexpr double window_s = 1.0;
 constexpr double quickest_motion_s = 0.08;
 constexpr int reach = 60;      // of the lags on either side of the course

@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/axis_fits.hpp"
 #include "analysis/diagnose/steady_line.hpp"
+#include "analysis/simulate/recording_simulator.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 
 namespace gyrolog {
@@ -308,13 +309,15 @@ private:
     // What else the model has, a delay or a filter, acts on what is added: entries are such that the line
     // comes out as it was seen.
     void refer_to_model(Finding& finding) const {
-        SensorModel model = without_noise(baseline_->model());
+        SensorModel model = without_noise(without_what_is_recorded(baseline_->model(), baseline_->world()));
         model.full_scale_rad_s = model.saturation_rad_s = 1e6;
         for (EffectModel& entry : finding.entries) {
             const std::size_t axis = axis_of(entry);
             const double f_hz = entry.params.at("f_hz");
+            // A hidden clock reads the world faster or slower than its samples follow each other.
+            entry.params["f_hz"] = f_hz / world_time_per_time(model);
             EffectModel unit = entry;
-            unit.params = {{"f_hz", f_hz}, {"amplitude_dps", 1.0}, {"phase_rad", 0.0}};
+            unit.params = {{"f_hz", entry.params.at("f_hz")}, {"amplitude_dps", 1.0}, {"phase_rad", 0.0}};
             SensorModel with = model;
             with.effects.push_back(unit);
             const auto [gain, phase_rad] = response(model, with, axis, f_hz);
@@ -329,6 +332,13 @@ private:
             if (std::ranges::count(entry.axes, axis_names[axis]) != 0) { return axis; }
         }
         return 0;
+    }
+
+    double world_time_per_time(const SensorModel& model) const {
+        SensorSimulator simulator(model, baseline_->rate_hz(), 1);
+        const SampleBlock& first = simulator.next_block();
+        return (first.world_s.back() - first.world_s.front()) * baseline_->rate_hz() /
+               static_cast<double>(block_samples - 1);
     }
 
     // Amplitude in deg/s and phase by which the models' answers differ at rest.

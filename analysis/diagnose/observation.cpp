@@ -8,12 +8,12 @@
 #include "analysis/diagnose/white_share.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/counter_random.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-constexpr std::array<const char*, 3> gyro_columns = {"gx", "gy", "gz"};
 constexpr std::uint32_t stand_in_stream = 0x03000000;
 constexpr std::uint32_t reference_stream = 0x05000000;
 

@@ -6,12 +6,12 @@
 
 #include "analysis/diagnose/repeat_patterns.hpp"
 #include "analysis/recording/grid_step.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-constexpr std::array<const char*, 3> gyro_columns = {"gx", "gy", "gz"};
 constexpr std::size_t block_rows = 2048;
 constexpr std::size_t blocks_max = 512;
 // What repeats as often as this carries no news: a dead axis, a thermometer in coarse steps.
@@ -136,10 +136,6 @@ private:
     const EffectDefinition* effect_;
     std::shared_ptr<const Baseline> baseline_;
 };
-
-bool acts_on(const EffectModel& entry, std::size_t axis) {
-    return entry.axes.empty() || std::ranges::count(entry.axes, axis_names[axis]) != 0;
-}
 
 double RepeatTest::expected_eps(const Quantities& moving, std::size_t set) const {
     double fresh = 1.0;

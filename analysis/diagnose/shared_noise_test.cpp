@@ -10,6 +10,7 @@
 #include "analysis/diagnose/axis_subsets.hpp"
 #include "analysis/diagnose/simplex_search.hpp"
 #include "analysis/diagnose/white_share.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
 
@@ -139,7 +140,7 @@ private:
     Eigen::Vector3d shared_of(const Statistics& sum, const EffectModel& entry) const {
         Eigen::Vector3d h = Eigen::Vector3d::Zero();
         for (const std::size_t axis : baseline_->axes()) {
-            if (!entry.axes.empty() && std::ranges::count(entry.axes, axis_names[axis]) == 0) { continue; }
+            if (!acts_on(entry, axis)) { continue; }
             const auto a = static_cast<Eigen::Index>(axis);
             const EffectValues values(entry, axis);
             h[a] = values[effect_.params[0].name] * values[effect_.params[1 + axis].name] * rad_per_deg *

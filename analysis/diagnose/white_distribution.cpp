@@ -6,6 +6,7 @@
 
 #include "analysis/diagnose/white_share.hpp"
 #include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
 
@@ -30,9 +31,7 @@ double white_degrees_of_freedom(const Baseline& baseline, std::size_t axis) {
     for (const EffectModel& entry : baseline.model().effects) {
         const EffectSignature* signature = find_effect(entry.effect)->signature;
         if (signature == nullptr || signature->degrees_of_freedom == nullptr) { continue; }
-        if (entry.axes.empty() || std::ranges::count(entry.axes, axis_names[axis]) != 0) {
-            nu = signature->degrees_of_freedom(EffectValues(entry));
-        }
+        if (acts_on(entry, axis)) { nu = signature->degrees_of_freedom(EffectValues(entry)); }
     }
     return nu;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
 
@@ -46,9 +47,7 @@ double EffectUse::or_else(std::string_view param, double from_model) const {
     return given != effect_->params.end() ? given->second : from_model;
 }
 
-bool EffectUse::acts_on(std::size_t axis) const {
-    return effect_->axes.empty() || std::ranges::count(effect_->axes, axis_names[axis]) != 0;
-}
+bool EffectUse::acts_on(std::size_t axis) const { return gyrolog::acts_on(*effect_, axis); }
 
 double EffectValues::operator[](std::string_view param) const {
     const auto given = effect_->params.find(std::string(param));

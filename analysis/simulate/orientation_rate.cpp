@@ -32,23 +32,55 @@ double arctangent(double t) {
     return 4.0 * quarter * series;
 }
 
-// Slope by row, about the mean of the rows.
-std::array<double, 3> slope_of(std::span<const KnownRow> rows) {
-    const std::size_t origin = rows.front().row;
+// A cubic bends with the motion; at the end of its rows it would bend with the noise.
+constexpr std::size_t rows_of_cubic = 6;
+constexpr double off_middle_most = 0.25;  // of the rows' span
+
+// Slope by row at `row` of the polynomial of least squares through the rows, in polynomials that are
+// orthogonal on them (G. E. Forsythe, J. SIAM 5 (1957) 74, equations 7 to 10).
+std::array<double, 3> slope_at(std::size_t row, std::span<const KnownRow> rows) {
+    const auto offset = [&](const KnownRow& known) {
+        return static_cast<double>(known.row) - static_cast<double>(row);
+    };
+    const double from = offset(rows.front());
+    const double to = offset(rows.back());
+    const bool in_middle = std::fabs(0.5 * (from + to)) <= off_middle_most * (to - from);
+    const int degree = rows.size() >= rows_of_cubic && in_middle ? 3 : 1;
     const std::array<double, 3>& start_rad = rows.front().turned_rad;
-    double mean = 0.0;
-    for (const KnownRow& known : rows) { mean += static_cast<double>(known.row - origin); }
-    mean /= static_cast<double>(rows.size());
-    double squares = 0.0;
-    std::array<double, 3> products{};
-    for (const KnownRow& known : rows) {
-        const double off = static_cast<double>(known.row - origin) - mean;
-        squares += off * off;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            products[axis] += off * (known.turned_rad[axis] - start_rad[axis]);
+    std::vector<double> before(rows.size(), 0.0);
+    std::vector<double> now(rows.size(), 1.0);
+    double norm_before = 1.0;
+    double value_before = 0.0;  // and slope, of the polynomial before, at the row
+    double slope_before = 0.0;
+    double value = 1.0;
+    double slope = 0.0;
+    std::array<double, 3> sum{};
+    for (int order = 0;; ++order) {
+        double norm = 0.0;
+        double moment = 0.0;
+        std::array<double, 3> product{};
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            norm += now[i] * now[i];
+            moment += offset(rows[i]) * now[i] * now[i];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                product[axis] += now[i] * (rows[i].turned_rad[axis] - start_rad[axis]);
+            }
         }
+        for (std::size_t axis = 0; axis < 3; ++axis) { sum[axis] += product[axis] / norm * slope; }
+        if (order == degree) { return sum; }
+        const double alpha = moment / norm;
+        const double beta = order == 0 ? 0.0 : norm / norm_before;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const double next = (offset(rows[i]) - alpha) * now[i] - beta * before[i];
+            before[i] = now[i];
+            now[i] = next;
+        }
+        const double next_slope = value - alpha * slope - beta * slope_before;
+        const double next_value = -alpha * value - beta * value_before;
+        value_before = value, value = next_value;
+        slope_before = slope, slope = next_slope;
+        norm_before = norm;
     }
-    return {products[0] / squares, products[1] / squares, products[2] / squares};
 }
 
 // Rates of all rows from the run's first to its last; no two known rows are more than half_rows apart.
@@ -60,7 +92,7 @@ void fit_run(std::span<const KnownRow> run, std::size_t half_rows, double rate_h
     for (std::size_t row = run.front().row; row <= run.back().row; ++row) {
         while (run[begin].row + half_rows < row) { ++begin; }
         while (end < run.size() && run[end].row <= row + half_rows) { ++end; }
-        const auto slope = slope_of(run.subspan(begin, end - begin));
+        const auto slope = slope_at(row, run.subspan(begin, end - begin));
         for (std::size_t axis = 0; axis < 3; ++axis) { rates[row][axis] = slope[axis] * rate_hz; }
     }
 }

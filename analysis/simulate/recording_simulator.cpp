@@ -120,7 +120,8 @@ bool shows_in_stamps(const EffectModel& effect, const EffectDefinition& definiti
     return param != definition.params.end() && value_of(effect, *param) != 0.0;
 }
 
-// What a recording's stamps and temperature have in them already does not act a second time.
+}  // namespace
+
 SensorModel without_what_is_recorded(SensorModel model, const RecordedWorld& like) {
     std::erase_if(model.effects, [&](const EffectModel& effect) {
         const EffectDefinition* definition = find_effect(effect.effect);
@@ -129,8 +130,6 @@ SensorModel without_what_is_recorded(SensorModel model, const RecordedWorld& lik
     });
     return model;
 }
-
-}  // namespace
 
 std::vector<std::string> terms_of_temperature(const SensorModel& model) {
     std::vector<std::string> terms;

@@ -25,6 +25,9 @@ struct SimulationRequest {
     std::shared_ptr<const RecordedWorld> like{};  // its rows, time stamps and columns other than gyros
 };
 
+// Of a simulation like a recording: what its stamps and its temperature have in them does not act again.
+SensorModel without_what_is_recorded(SensorModel model, const RecordedWorld& like);
+
 // What of the model has no effect on time stamps that are copied: the model's keys and effects by name.
 std::vector<std::string> terms_of_stamps(const SensorModel& model);
 // The same of a temperature that is copied.

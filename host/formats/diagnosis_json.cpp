@@ -88,6 +88,13 @@ Json tie_group_json(const Cause& cause) {
     return group;
 }
 
+Json whole_place_json(const Place& place) {
+    Json json = Json::object();
+    if (!place.axes.empty()) { json["axes"] = axes_json(place.axes); }
+    json.update(place_json(place));
+    return json;
+}
+
 Json cause_json(const Cause& cause) {
     const Finding& finding = cause.finding;
     Json json;
@@ -158,9 +165,9 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
     json["p_left"] = diagnosis.p_left;
     json["causes"] = Json::array();
     for (const Cause& cause : diagnosis.causes) { json["causes"].push_back(cause_json(cause)); }
-    json["where"] = Json::object();
-    if (!diagnosis.where.axes.empty()) { json["where"]["axes"] = axes_json(diagnosis.where.axes); }
-    json["where"].update(place_json(diagnosis.where));
+    json["where"] = whole_place_json(diagnosis.where);
+    const Json left = whole_place_json(diagnosis.left);
+    if (!left.empty()) { json["left"] = left; }
     json["gap_before"] = gap_json(diagnosis.gap_before);
     json["gap_after"] = gap_json(diagnosis.gap_after);
     json["shrink"] = diagnosis.shrink;

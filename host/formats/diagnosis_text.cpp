@@ -126,8 +126,10 @@ std::string summary_text(const Diagnosis& diagnosis) {
     }
     if (!diagnosis.causes.empty()) { sentences.push_back(gap_after_sentence(diagnosis)); }
     if (diagnosis.verdict == Verdict::unexplained && !diagnosis.causes.empty()) {
-        sentences.push_back(
-            fmt::format("What is left is not by chance either ({}).", probability_text(diagnosis.p_left)));
+        const std::string place = place_text(diagnosis.left);
+        sentences.push_back(fmt::format("What is left is not by chance either ({}){}.",
+                                        probability_text(diagnosis.p_left),
+                                        place.empty() ? "" : ": " + place));
     }
     return wrapped_text("", fmt::format("{}", fmt::join(sentences, " ")));
 }
@@ -195,6 +197,15 @@ std::string outside_text(const std::vector<bool>& outside, std::size_t points) {
     return fmt::format("{} of {}", std::ranges::count(outside, true), points);
 }
 
+// Of many places only those with something to see are listed.
+constexpr std::size_t listed_whole_most = 6;
+constexpr double stands_out_nats = 7.0;
+
+bool is_listed(const Diagnosis& diagnosis, const GapDomain& domain) {
+    return diagnosis.domains.size() <= listed_whole_most ||
+           std::max(domain.surprise_before_nats, domain.surprise_after_nats) >= stands_out_nats;
+}
+
 std::string domains_text(const Diagnosis& diagnosis) {
     if (diagnosis.domains.empty()) { return {}; }
     const bool corrected = std::ranges::any_of(
@@ -202,7 +213,12 @@ std::string domains_text(const Diagnosis& diagnosis) {
     std::vector<std::string> heads{"gap", "points outside"};
     if (corrected) { heads = {"gap before", "after", "points outside before", "after"}; }
     std::vector<TextRow> rows;
+    std::size_t quiet = 0;
     for (const GapDomain& domain : diagnosis.domains) {
+        if (!is_listed(diagnosis, domain)) {
+            ++quiet;
+            continue;
+        }
         TextRow row{fmt::format("{} {}", axis_names.at(domain.axis), domain.name), "", {}};
         const std::string before = outside_text(domain.outside_before, domain.x.size());
         row.cells = {fmt::format("{:.2g}", domain.gap_before), before};
@@ -214,11 +230,13 @@ std::string domains_text(const Diagnosis& diagnosis) {
         }
         rows.push_back(std::move(row));
     }
-    return fmt::format(
-               "\nwhere (1 is the floor: what two simulations differ by; {:.3g} % of simulated points are "
-               "inside)\n",
-               100.0 * diagnosis.band_probability) +
-           text_table(heads, rows);
+    if (rows.empty()) { return fmt::format("\nwhere: nothing stands out in any of {} comparisons\n", quiet); }
+    std::string text = fmt::format(
+        "\nwhere (1 is the floor: what two simulations differ by; {:.3g} % of simulated points are inside)\n",
+        100.0 * diagnosis.band_probability);
+    text += text_table(heads, rows);
+    if (quiet > 0) { text += fmt::format("  nothing stands out in {} other comparisons\n", quiet); }
+    return text;
 }
 
 std::string untestable_text(const Diagnosis& diagnosis) {

@@ -178,8 +178,8 @@ TEST(Simulate, LikeAMotionTurnsAsItsOrientationReferenceDoes) {
     ASSERT_EQ(like.t_s, original.t_s);
     // The real gyro's scale is good to 0.5 %, its misalignment to the markers about 1 %, and the gyro is by
     // far the quieter of the two: the regression of the simulated rate on it is 1, unless axes, signs or
-    // times are wrong, less what the fit of the rate takes off the fast part of this motion (METHODS.md).
-    std::map<std::string, double> stated = {{"gx", 0.945}, {"gy", 0.959}, {"gz", 0.983}};
+    // times are wrong; the gyro is some 5 ms late (METHODS.md).
+    std::map<std::string, double> stated = {{"gx", 0.989}, {"gy", 0.993}, {"gz", 0.998}};
     for (const char* axis : {"gx", "gy", "gz"}) {
         double together = 0.0;
         double squares = 0.0;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "analysis/recording/recording.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/effects/rate_map.hpp"
 
@@ -36,9 +37,8 @@ constexpr std::size_t neighbours = 3;
 // Of a clipped sample the noise is unknown, and so is how far the rate went.
 void leave_out_clipped(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const bool acts = entry.axes.empty() || std::ranges::count(entry.axes, axis_names[axis]) != 0;
-        const Column* column = recording.find(std::string("g") + axis_names[axis]);
-        if (!acts || column == nullptr) { continue; }
+        const Column* column = recording.find(gyro_columns[axis]);
+        if (!acts_on(entry, axis) || column == nullptr) { continue; }
         const double limit_rad_s = EffectValues(entry, axis)["limit_dps"] * rad_per_deg * (1.0 - rounded_rel);
         for (const Segment& segment : recording.segments) {
             const std::size_t end = segment.first + segment.count;

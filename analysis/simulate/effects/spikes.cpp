@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "analysis/recording/recording.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/effects/arrivals.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/stages/per_axis.hpp"
@@ -108,11 +109,10 @@ double median_around(const Column& column, std::size_t row) {
 // reaches some twice in a million samples.
 void unjudged(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
     constexpr double noise_sigma = 5.0;
-    constexpr std::array<const char*, 3> columns = {"gx", "gy", "gz"};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Column* column = recording.find(columns[axis]);
+        const Column* column = recording.find(gyro_columns[axis]);
         if (column == nullptr || column->unit != "rad/s") { continue; }
-        if (!entry.axes.empty() && std::ranges::count(entry.axes, axis_names[axis]) == 0) { continue; }
+        if (!acts_on(entry, axis)) { continue; }
         const double limit_rad_s = std::max(noise_sigma * white_sd(*column),
                                             0.5 * EffectValues(entry)["smallest_dps"] * rad_per_deg);
         for (std::size_t row = 1; row + 1 < column->size(); ++row) {

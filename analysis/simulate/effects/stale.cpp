@@ -3,6 +3,7 @@
 #include <string>
 
 #include "analysis/recording/recording.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 
 namespace gyrolog {
@@ -61,9 +62,8 @@ constexpr EffectParam params[] = {
 void leave_out_repeats(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
     std::vector<const Column*> columns;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const bool acts = entry.axes.empty() || std::ranges::count(entry.axes, axis_names[axis]) != 0;
-        const Column* column = recording.find(std::string("g") + axis_names[axis]);
-        if (acts && column != nullptr) { columns.push_back(column); }
+        const Column* column = recording.find(gyro_columns[axis]);
+        if (acts_on(entry, axis) && column != nullptr) { columns.push_back(column); }
     }
     if (columns.empty()) { return; }
     for (const Segment& segment : recording.segments) {

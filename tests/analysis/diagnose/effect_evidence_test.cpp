@@ -144,6 +144,41 @@ TEST(EffectSearch, TakesTelegraphNoiseOnARampForNoRandomWalk) {
     EXPECT_EQ(names, (std::vector<std::string>{"rate_ramp", "rtn"}));
 }
 
+// What a steady line leaves of one that swells is no further line at the same place.
+TEST(EffectSearch, TakesALineThatSwellsOnce) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel tone = model;
+    tone.effects.push_back({"tone", {"x"}, {{"f_hz", 31.0}, {"amplitude_dps", 0.02}}, ""});
+    Recording swelling = *recorded(model, 120000, 26);
+    const auto steady = recorded(tone, 120000, 26);
+    const Column& with_line = *steady->find("gx");
+    Column& column = swelling.columns.front();
+    ASSERT_EQ(column.name, "gx");
+    std::vector<double> rates;
+    for (std::size_t row = 0; row < column.size(); ++row) {
+        const double part = static_cast<double>(row) / static_cast<double>(column.size());
+        rates.push_back((1.0 - part) * column.value(row) + part * with_line.value(row));
+    }
+    column.data = std::move(rates);
+    column.scale = 1.0;
+    column.offset = 0.0;
+    const Hypotheses first = examined(std::make_shared<const Recording>(swelling), model);
+    const std::optional<EffectSearchResult> found =
+        search_effects(first, std::make_shared<const Recording>(swelling), {});
+    ASSERT_TRUE(found);
+    EXPECT_EQ(std::ranges::count(found->causes, "tone",
+                                 [](const FoundCause& cause) { return cause.finding.effect; }),
+              1);
+    for (const FoundCause& cause : found->causes) {
+        for (const Finding& rival : cause.rivals) {
+            const bool is_other_cause = std::ranges::any_of(found->causes, [&](const FoundCause& other) {
+                return &other != &cause && other.finding.effect == rival.effect;
+            });
+            EXPECT_FALSE(is_other_cause) << rival.effect;
+        }
+    }
+}
+
 TEST(OccamCost, RisesSmoothlyBeyondWhatIsPlausible) {
     const EffectParam size{.name = "a", .meaning = "", .plausible_from = -3.0, .plausible_to = 3.0};
     const double sd = 0.01;

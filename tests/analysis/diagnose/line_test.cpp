@@ -102,6 +102,23 @@ TEST(LineTest, LeavesNothingOfALineThatIsAddedToTheModel) {
     EXPECT_LT(evidence(again), 3.0);
 }
 
+// A clock of which the stamps tell acts no more on what is added; one that they hide does.
+TEST(LineTest, LeavesNothingOfALineBesideAWrongClock) {
+    for (const double in_stamps : {1.0, 0.0}) {
+        const SensorModel model =
+            with_effect(calibrated_sensor(), "clock_rate", {{"rel", 0.0016}, {"in_stamps", in_stamps}});
+        const SensorModel truth =
+            with_effect(model, "tone", {{"f_hz", 31.4}, {"amplitude_dps", 0.05}, {"phase_rad", 0.3}}, {"y"});
+        const auto recording = recorded(truth, 60000, 7);
+        const auto finding = found(make_line_test, "tone", recording, model);
+        ASSERT_TRUE(finding);
+        EXPECT_NEAR(finding->entries.front().params.at("amplitude_dps"), 0.05, 0.002) << in_stamps;
+        EXPECT_NEAR(finding->entries.front().params.at("f_hz"), 31.4, 1e-3) << in_stamps;
+        const auto again = found(make_line_test, "tone", recording, with_found(model, *finding));
+        EXPECT_LT(evidence(again), 3.0) << in_stamps;
+    }
+}
+
 TEST(LineTest, TakesSeveralLinesOneAfterAnother) {
     const SensorModel model = calibrated_sensor();
     const SensorModel truth =

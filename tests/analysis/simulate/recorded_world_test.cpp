@@ -196,8 +196,8 @@ TEST(OrientationRate, IsUnknownOnlyWhereTheOrientationIsForLongerThanTheFitsHalf
     }
 }
 
-TEST(OrientationRate, OfASwingIsLessByTheGainOfAStraightLine) {
-    for (const double f_hz : {1.0, 5.8}) {
+TEST(OrientationRate, OfASwingIsLessByTheGainOfACubic) {
+    for (const double f_hz : {2.0, 4.8, 12.5}) {
         const double pulsation_rad_s = 2.0 * 3.14159265358979 * f_hz;
         std::vector<Quaternion> orientation;
         for (int k = 0; k < 2000; ++k) {
@@ -205,13 +205,18 @@ TEST(OrientationRate, OfASwingIsLessByTheGainOfAStraightLine) {
         }
         const auto rates = orientation_rate(orientation, 1000.0);
         const double u = pulsation_rad_s * 0.05;
-        const double gain = 3.0 * (std::sin(u) - u * std::cos(u)) / (u * u * u);
-        EXPECT_NEAR(gain, f_hz == 1.0 ? 0.99 : std::sqrt(0.5), 0.005);
+        const double j1 = std::sin(u) / (u * u) - std::cos(u) / u;
+        const double j3 =
+            (15.0 / (u * u * u) - 6.0 / u) * std::sin(u) / u - (15.0 / (u * u) - 1.0) * std::cos(u) / u;
+        const double gain = (3.0 * j1 + 10.5 * j3) / u;
+        EXPECT_NEAR(gain, f_hz == 2.0 ? 0.9997 : f_hz == 4.8 ? 0.99 : std::sqrt(0.5), 0.005);
         for (std::size_t k = 50; k < 1950; ++k) {
             const double rate_rad_s =
                 0.1 * pulsation_rad_s * std::cos(pulsation_rad_s * static_cast<double>(k) * 0.001);
-            // 101 rows are 1 % wider than the 100 ms of the formula; its slope is u / 5 at most.
-            ASSERT_NEAR(rates[k][1], gain * rate_rad_s, 0.1 * pulsation_rad_s * 0.01 * u * u / 5.0) << k;
+            // 101 rows are 1 % wider than the 100 ms of the formula; the gain falls by 4 u^4 / 504 for each.
+            ASSERT_NEAR(rates[k][1], gain * rate_rad_s,
+                        0.1 * pulsation_rad_s * (1e-4 + 0.015 * std::pow(u, 4.0) * 4.0 / 504.0))
+                << k;
         }
     }
 }
@@ -223,12 +228,13 @@ TEST(OrientationRate, HasTheNoiseThatAFitLeavesOfTheOrientations) {
     for (int k = 0; k < 40'000; ++k) {
         orientation.push_back({1.0, error_rad(random) / 2.0, error_rad(random) / 2.0, 0.0});
     }
-    const auto rates = orientation_rate(orientation, 200.0);
+    const auto rates = orientation_rate(orientation, 1000.0);
     double squares = 0.0;
     for (const auto& rate : rates) { squares += rate[0] * rate[0]; }
-    const double expected_rad_s = 1e-3 * 200.0 * std::sqrt(3.0 / (10.0 * 11.0 * 21.0));
-    // At least one independent value in 21.
-    EXPECT_NEAR(std::sqrt(squares / 40e3) / expected_rad_s, 1.0, 4.0 / std::sqrt(2.0 * 40e3 / 21.0));
+    // Of a line, and 5/2 of it for the cubic of many rows: with 101 of them 1 % off.
+    const double expected_rad_s = 2.5e-3 * 1000.0 * std::sqrt(3.0 / (50.0 * 51.0 * 101.0));
+    // At least one independent value in 101.
+    EXPECT_NEAR(std::sqrt(squares / 40e3) / expected_rad_s, 1.0, 0.01 + 4.0 / std::sqrt(2.0 * 40e3 / 101.0));
 }
 
 TEST(RecordedWorld, StandsStillWhereTheOrientationIsLongUnknownAndGoesOnAcrossAMoment) {
@@ -294,7 +300,7 @@ TEST(RecordedWorld, OfARealOrientationHasTheNoiseAtRestThatMethodsStates) {
     constexpr std::size_t first = 51300;
     constexpr std::size_t last = 58200;
     constexpr double stated_real_dps[] = {0.10, 0.09, 0.10};
-    constexpr double stated_dps[] = {0.60, 0.46, 0.18};
+    constexpr double stated_dps[] = {1.47, 1.12, 0.43};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Column& gyro = *recording->find(std::string("g") + "xyz"[axis]);
         std::vector<double> real_dps;

@@ -342,6 +342,38 @@ TEST(DiagnosisText, SaysEveryKindOfPlace) {
     EXPECT_EQ(place_text({}), "");
 }
 
+TEST(DiagnosisText, SaysWhereWhatIsLeftLies) {
+    Diagnosis diagnosis = known();
+    diagnosis.verdict = Verdict::unexplained;
+    diagnosis.p_left = 1e-9;
+    EXPECT_THAT(diagnosis_text(diagnosis), HasSubstr("by chance either (p < 1e-6)."));
+    EXPECT_FALSE(json::parse(diagnosis_json(diagnosis)).contains("left"));
+    diagnosis.left.axes = {1};
+    diagnosis.left.freq_hz = Span{37.9, 38.1};
+    EXPECT_THAT(diagnosis_text(diagnosis),
+                HasSubstr("by chance either (p < 1e-6): y axis, 37.9 Hz to 38.1 Hz."));
+    const json left = json::parse(diagnosis_json(diagnosis))["left"];
+    EXPECT_EQ(left, json::parse(R"({"axes": ["y"], "freq_hz": [37.9, 38.1]})"));
+}
+
+TEST(DiagnosisText, OfManyPlacesListsThoseThatStandOut) {
+    Diagnosis diagnosis = known();
+    diagnosis.domains.assign(9, allan_domain());
+    for (std::size_t i = 0; i < 9; ++i) { diagnosis.domains[i].name = "place " + std::to_string(i); }
+    diagnosis.domains[3].surprise_before_nats = 30.0;
+    diagnosis.domains[5].surprise_after_nats = 30.0;
+    const std::string text = diagnosis_text(diagnosis);
+    for (std::size_t i = 0; i < 9; ++i) {
+        const bool is_listed = text.find("place " + std::to_string(i)) != std::string::npos;
+        EXPECT_EQ(is_listed, i == 3 || i == 5) << i;
+    }
+    EXPECT_THAT(text, HasSubstr("nothing stands out in 7 other comparisons"));
+    for (GapDomain& domain : diagnosis.domains) {
+        domain.surprise_before_nats = domain.surprise_after_nats = 0.0;
+    }
+    EXPECT_THAT(diagnosis_text(diagnosis), HasSubstr("nothing stands out in any of 9 comparisons"));
+}
+
 TEST(DiagnosisText, OfNoGapClaimsNoPlaceAndNoCause) {
     const std::string text = diagnosis_text(none());
     EXPECT_THAT(text, HasSubstr("43 of 100 would differ as much (p = 0.43)"));

@@ -1,0 +1,34 @@
+// Numbers that white noise of the right level and shape has by itself, and that samples which are made in
+// another way have not, whatever that way is.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "analysis/diagnose/gap_curves.hpp"
+
+namespace gyrolog {
+
+// By lag in seconds: samples that equal the one before or the one before that, beyond what the lags after
+// these show, in standard deviations of a count. Colour makes codes equal at all of these lags, nearly.
+GapCurve repeats_curve(const Observation& observation, std::size_t axis);
+
+// By block length in seconds, doubling: cube root of the Allan variance of the squared whitened samples over
+// that of independent ones, (variance of the squares) / (block length) (D. W. Allan, Proc. IEEE 54 (1966)
+// 221, on squares), less 1. Noise that comes in bursts shows at their length. 0 where too few samples are
+// judged.
+GapCurve memory_curve(const Observation& observation, std::size_t axis);
+
+// By period in seconds, octaves: the most that the autocorrelation has, summed over all multiples of a whole
+// number of samples, as the normal deviate that is as rare among as many periods. What comes back every P
+// samples has no line that stands out when it is short, but all of its multiples agree.
+GapCurve period_curve(const Observation& observation, std::size_t axis);
+
+// By frequency: the largest sum of whitened power over neighbouring coefficients, in windows of several
+// widths within a band, over the band's own level where that is above the model's; as the normal deviate that
+// is as rare among as many windows. A line that wanders is too weak for its band and too broad for a steady
+// line. `edges`: first bin of every band, and the end. x is where the window lies.
+GapCurve narrow_curve(const Observation& observation, std::size_t axis,
+                      const std::vector<std::size_t>& edges);
+
+}  // namespace gyrolog

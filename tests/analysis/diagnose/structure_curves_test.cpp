@@ -1,0 +1,164 @@
+#include "analysis/diagnose/structure_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/analysis/diagnose/observed.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint64_t samples = 120'000;  // 20 min at 100 Hz
+constexpr std::size_t changed_axis = 0;
+
+// What is done to the codes of one axis.
+using Change = std::function<void(std::vector<double>& codes)>;
+
+std::vector<GapCurve> curves_of(std::uint64_t seed, const Change& change) {
+    const SensorModel model = calibrated_sensor();
+    Recording recording = *recorded(model, samples, seed);
+    Column& column =
+        *std::ranges::find(recording.columns, std::string("gx"), [](const Column& c) { return c.name; });
+    std::vector<double> codes;
+    for (std::size_t row = 0; row < column.size(); ++row) {
+        codes.push_back(std::round((column.value(row) - column.offset) / column.scale));
+    }
+    if (change) { change(codes); }
+    column.data = std::move(codes);
+    return gap_curves(Observation(baseline_of(std::make_shared<const Recording>(recording), model),
+                                  std::make_shared<const Recording>(recording), 1));
+}
+
+const GapCurve& curve_of(const std::vector<GapCurve>& curves, GapDomainKind kind, std::size_t axis) {
+    return *std::ranges::find_if(
+        curves, [&](const GapCurve& curve) { return curve.kind == kind && curve.axis == axis; });
+}
+
+double most(const GapCurve& curve) { return std::ranges::max(curve.value); }
+
+double white_sd_codes(const std::vector<double>& codes) {
+    double squares = 0.0;
+    for (std::size_t i = 1; i < codes.size(); ++i) { squares += std::pow(codes[i] - codes[i - 1], 2.0); }
+    return std::sqrt(0.5 * squares / static_cast<double>(codes.size() - 1));
+}
+
+TEST(StructureCurves, OfOrdinaryNoiseAreRarelyLarge) {
+    constexpr std::uint64_t seeds = 12;
+    double count = 0.0;
+    double large = 0.0;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        const std::vector<GapCurve> curves = curves_of(seed, {});
+        for (const GapDomainKind kind :
+             {GapDomainKind::repeats, GapDomainKind::period, GapDomainKind::narrow}) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                for (const double value : curve_of(curves, kind, axis).value) {
+                    EXPECT_LT(value, 4.9) << "seed " << seed;  // 1 of two millions
+                    large += value > 2.326;
+                    count += 1.0;
+                }
+            }
+        }
+        for (const double value : curve_of(curves, GapDomainKind::memory, 0).value) {
+            EXPECT_LT(std::fabs(value), 1.5) << "seed " << seed;
+        }
+    }
+    // One of a hundred by the normal distribution, and four standard deviations of that number.
+    EXPECT_LT(large, 0.01 * count + 4.0 * std::sqrt(0.01 * count));
+}
+
+TEST(StructureCurves, HaveAsManyPointsWhateverIsJudged) {
+    SensorModel model = calibrated_sensor();
+    const auto recording = recorded(model, samples, 1);
+    const std::vector<GapCurve> whole = gap_curves(Observation(baseline_of(recording, model), recording, 1));
+    // Of a sensor known to be read too fast, the samples that repeat are not judged.
+    EffectModel stale;
+    stale.effect = "stale";
+    stale.params = {{"eps", 0.45}};
+    model.effects = {stale};
+    const auto repeating = recorded(model, samples, 1);
+    const std::vector<GapCurve> part = gap_curves(Observation(baseline_of(repeating, model), repeating, 1));
+    ASSERT_EQ(part.size(), whole.size());
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        EXPECT_EQ(part[i].value.size(), whole[i].value.size()) << i;
+        for (const double value : part[i].value) { EXPECT_TRUE(std::isfinite(value)) << i; }
+    }
+}
+
+TEST(StructureCurves, ShowSamplesThatStick) {
+    const std::vector<GapCurve> curves = curves_of(3, [](std::vector<double>& codes) {
+        std::mt19937_64 random(1);
+        std::bernoulli_distribution sticks(0.01);
+        for (std::size_t i = 1; i < codes.size(); ++i) {
+            if (sticks(random)) { codes[i] = codes[i - 1]; }
+        }
+    });
+    const GapCurve& repeats = curve_of(curves, GapDomainKind::repeats, changed_axis);
+    EXPECT_GT(repeats.value[0], 5.0);
+    EXPECT_LT(std::fabs(repeats.value[1]), 4.5);
+    EXPECT_LT(std::fabs(curve_of(curves, GapDomainKind::repeats, 1).value[0]), 4.5);
+}
+
+TEST(StructureCurves, ShowWhatComesBackTooFaintToSeeOnce) {
+    constexpr std::size_t every = 390;
+    const std::vector<GapCurve> curves = curves_of(4, [](std::vector<double>& codes) {
+        const double height = 1.3 * white_sd_codes(codes);
+        for (std::size_t i = 9; i < codes.size(); i += every) { codes[i] += std::round(height); }
+    });
+    const GapCurve& period = curve_of(curves, GapDomainKind::period, changed_axis);
+    const auto peak = std::ranges::max_element(period.value) - period.value.begin();
+    EXPECT_GT(most(period), 6.0);
+    // Within the octave, or one above for its multiple.
+    EXPECT_NEAR(std::log2(period.x[static_cast<std::size_t>(peak)] * 100.0 / every), 0.5, 1.0);
+    EXPECT_LT(most(curve_of(curves, GapDomainKind::period, 1)), 4.5);
+    // Neither its tails nor a line say so.
+    EXPECT_LT(most(curve_of(curves, GapDomainKind::narrow, changed_axis)), 4.5);
+}
+
+TEST(StructureCurves, ShowNoiseInBurstsOfOneLength) {
+    constexpr std::size_t burst = 64;
+    const std::vector<GapCurve> curves = curves_of(5, [](std::vector<double>& codes) {
+        std::mt19937_64 random(2);
+        std::bernoulli_distribution loud(0.5);
+        double mean = 0.0;
+        for (const double code : codes) { mean += code / static_cast<double>(codes.size()); }
+        for (std::size_t first = 0; first < codes.size(); first += burst) {
+            const double factor = loud(random) ? std::sqrt(1.3) : std::sqrt(0.7);
+            for (std::size_t i = first; i < std::min(first + burst, codes.size()); ++i) {
+                codes[i] = mean + factor * (codes[i] - mean);
+            }
+        }
+    });
+    const GapCurve& memory = curve_of(curves, GapDomainKind::memory, changed_axis);
+    const GapCurve& quiet = curve_of(curves, GapDomainKind::memory, 1);
+    // Blocks of m samples have 2/m for themselves and 0.3^2 of the bursts.
+    const auto at = static_cast<std::size_t>(std::log2(burst));
+    EXPECT_NEAR(std::pow(1.0 + memory.value[at], 3.0), 1.0 + 0.09 * burst / (2.0 * 1.135), 0.6);
+    EXPECT_NEAR(quiet.value[at], 0.0, 0.15);
+}
+
+TEST(StructureCurves, ShowALineThatWandersAndWhere) {
+    constexpr double f_hz = 31.0;
+    const std::vector<GapCurve> curves = curves_of(6, [](std::vector<double>& codes) {
+        std::mt19937_64 random(3);
+        std::normal_distribution<double> step_rad(0.0, 0.05);
+        const double height = 0.12 * white_sd_codes(codes);
+        double phase_rad = 0.0;
+        for (std::size_t i = 0; i < codes.size(); ++i) {
+            phase_rad += step_rad(random);
+            codes[i] +=
+                height * std::sin(2.0 * 3.14159265358979 * f_hz * static_cast<double>(i) / 100.0 + phase_rad);
+        }
+    });
+    const GapCurve& narrow = curve_of(curves, GapDomainKind::narrow, changed_axis);
+    const auto peak = std::ranges::max_element(narrow.value) - narrow.value.begin();
+    EXPECT_GT(most(narrow), 6.0);
+    EXPECT_NEAR(narrow.x[static_cast<std::size_t>(peak)], f_hz, 0.3);
+    EXPECT_LT(most(curve_of(curves, GapDomainKind::narrow, 1)), 4.5);
+}
+
+}  // namespace
+}  // namespace gyrolog
