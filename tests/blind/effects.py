@@ -335,7 +335,7 @@ class Tone(Acting):
 
     def alias_hz(self, axis=None):
         f = float(np.ravel(self.params["f_hz"])[0])
-        rate = self.context.rate_hz
+        rate = self.context.rate_hz * (1.0 + self.context.sensor.rate_rel)  # the unit's own
         return abs(f - rate * np.round(f / rate))
 
     def noise(self, axis, rng, around):

@@ -251,21 +251,18 @@ def full_panel(rng, count, minutes, motion_minutes):
 
 
 SMALL = [  # effect, class, motion
-    ([], False), ([], False), ([], False), ([], True), ([], True),
-    ([("arw_scale", "clear")], False), ([("tone", "moderate")], False), ([("temp_linear", "clear")], False),
-    ([("heavy_tail", "moderate")], False), ([("spikes", "clear")], False), ([("bias_step", "clear")], False),
-    ([("stale", "clear")], False), ([("gauss_markov", "clear")], False), ([("variance_change", "clear")], False),
-    ([("common_mode", "moderate")], False), ([("clock_rate", "clear")], False), ([("quantization", "clear")], False),
-    ([("scale_factor", "clear")], True), ([("misalignment", "clear")], True), ([("latency", "moderate")], True),
-    ([("g_sensitivity", "clear")], True), ([("tone", "clear"), ("bias_step", "clear")], False),
-    ([("resonance", "clear")], False), ([("breathing_noise", "clear")], False),
+    ([], False), ([], False), ([], True), ([("arw_scale", "clear")], False), ([("tone", "moderate")], False),
+    ([("temp_linear", "clear")], False), ([("bias_step", "clear")], False), ([("gauss_markov", "clear")], False),
+    ([("stale", "clear")], False), ([("misalignment", "clear")], True), ([("latency", "moderate")], True),
+    ([("tone", "clear"), ("bias_step", "clear")], False), ([("resonance", "clear")], False),
+    ([("noise_bursts", "clear")], False),
 ]
 
 
 def panel(kind, count, seed, minutes, motion_minutes, only_effects=None, only_classes=None):
     rng = np.random.default_rng(seed)
     if kind == "small":
-        minutes, motion_minutes = minutes or 35.0, motion_minutes or 12.0
+        minutes, motion_minutes = minutes or 20.0, motion_minutes or 8.0
         out = [spec(rng.integers(1, 2**31), effects, motion, motion_minutes if motion else minutes)
                for effects, motion in SMALL]
     elif kind == "none":

@@ -19,6 +19,7 @@ import score
 from generate import panel
 
 RISK = 1e-3
+SIMULATIONS = 60
 
 
 def least(of, share):
@@ -39,7 +40,8 @@ def main():
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as directory:
         cases = panel("small", None, arguments.seed, None, None)
-        run.run(os.path.abspath(arguments.program), directory, cases, arguments.jobs, False, {"panel": "small"})
+        run.run(os.path.abspath(arguments.program), directory, cases, arguments.jobs, False, {"panel": "small"},
+                SIMULATIONS)
         rows, figures = score.score(directory)
     print(score.as_text("Cases", ["id", "truth", "answer", "", "shrink"], [score.describe_case(r) for r in rows]))
     for table in score.tables(figures)[:2]:

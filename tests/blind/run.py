@@ -64,8 +64,9 @@ def output_of(command):
         return ""
 
 
-def run(program, directory, cases, jobs, keep, about):
+def run(program, directory, cases, jobs, keep, about, simulations=None):
     """cases: ID to specification, or to None for one that is there."""
+    about = {**about, "simulations": simulations}
     answers = os.path.join(directory, "answers")
     os.makedirs(answers, exist_ok=True)
     # What was answered is taken up only if it answers the same: this panel, by this very program.
@@ -78,7 +79,8 @@ def run(program, directory, cases, jobs, keep, about):
                 sys.exit(f"{answers} holds answers to another panel or of another program: remove it first")
     with open(mark, "w") as file:
         file.write(same)
-    options = ["--threads", "1"] if "--threads" in output_of([program, "diagnose", "--help"]) else []
+    options = ["--simulations", str(simulations)] if simulations else []
+    options += ["--threads", "1"] if "--threads" in output_of([program, "diagnose", "--help"]) else []
     work = [(program, options, directory, case_id, case_spec, keep) for case_id, case_spec in cases.items()]
     outcomes = {}
     with multiprocessing.Pool(jobs) as pool:
@@ -100,6 +102,7 @@ def main():
     parser.add_argument("--existing", action="store_true", help="take the cases that are in DIR/cases")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", action="store_true", help="keep the recordings")
+    parser.add_argument("--simulations", type=int, help="in place of the program's own number")
     panel_arguments(parser)
     arguments = parser.parse_args()
     if arguments.existing:
@@ -110,7 +113,8 @@ def main():
         about = {"panel": arguments.panel, "seed": arguments.seed, "count": arguments.count,
                  "minutes": arguments.minutes, "motion_minutes": arguments.motion_minutes,
                  "effect": arguments.effect, "class": arguments.classes}
-    run(os.path.abspath(arguments.program), arguments.directory, cases, arguments.jobs, arguments.keep, about)
+    run(os.path.abspath(arguments.program), arguments.directory, cases, arguments.jobs, arguments.keep, about,
+        arguments.simulations)
     return 0
 
 
