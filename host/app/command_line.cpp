@@ -19,6 +19,7 @@ constexpr std::array commands{
     Command{"compare", "Hold a recording against a model's simulations, or against another one",
             setup_compare},
     Command{"diagnose", "Find what a model lacks: where it parts from a recording, and why", setup_diagnose},
+    Command{"denoise", "Combine an array of gyros and take noise out, sample by sample", setup_denoise},
     Command{"simulate", "Make a recording of a simulated sensor", setup_simulate},
     Command{"export", "Write a recording or its noise for other programs", setup_export},
 };

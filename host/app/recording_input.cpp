@@ -11,7 +11,7 @@
 namespace gyrolog {
 namespace {
 
-Result<Recording> read_capture(const RecordingInput& input) {
+Result<TimedRecording> read_capture(const RecordingInput& input) {
     GYROLOG_TRY(LoadedCapture capture, load_capture(input.path, true, input.on_stage));
     input.on_stage("place");
     auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
@@ -31,19 +31,25 @@ Result<Recording> read_capture(const RecordingInput& input) {
         recording->rate_hz = *input.rate_hz;
         recording->rate_sd_hz.reset();
     }
-    return recording;
+    return TimedRecording{std::move(recording).value(), capture.decoder->recording_host_start_s()};
 }
 
 }  // namespace
 
 Result<Recording> read_recording(const RecordingInput& input) {
+    GYROLOG_TRY(TimedRecording timed, read_timed_recording(input));
+    return std::move(timed.recording);
+}
+
+Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
     if (looks_like_capture(input.path)) { return read_capture(input); }
     input.on_stage("read");
     CsvReadOptions options;
     options.rate_hz = input.rate_hz;
     options.lsb_dps = input.lsb_dps;
     options.allow_unscaled_counts = true;
-    return read_recording_csv(input.path, options);
+    GYROLOG_TRY(Recording recording, read_recording_csv(input.path, options));
+    return TimedRecording{std::move(recording), std::nullopt};
 }
 
 }  // namespace gyrolog

@@ -19,4 +19,11 @@ struct RecordingInput {
 
 Result<Recording> read_recording(const RecordingInput& input);
 
+// With the time of its sampling instant 0 by the clock of the host that captured it; of text none.
+struct TimedRecording {
+    Recording recording;
+    std::optional<double> host_start_s;
+};
+Result<TimedRecording> read_timed_recording(const RecordingInput& input);
+
 }  // namespace gyrolog

@@ -224,6 +224,10 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
     set_rate(stretch, timeline, recording);
     if (recording.rate_hz <= 0.0) { return Error{ErrorCode::malformed, "the board says that its rate is 0"}; }
     enter_dropouts(link, place_on_grid(stretch.pieces, timeline, recording), recording);
+    const Piece& first = stretch.pieces.front();
+    const auto device_s = timeline.device_time_s(first.run, first.first_index, recording.rate_hz);
+    const auto clock = timeline.host_clock();
+    if (device_s && clock) { host_start_s_ = clock->offset_s + clock->ratio * *device_s; }
     std::size_t field = 0;
     for (const Quantity& quantity : quantities(stretch.layout, *stretch.config)) {
         recording.columns.push_back({quantity.name, quantity.unit, std::move(stretch.fields[field++]),

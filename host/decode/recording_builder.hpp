@@ -34,6 +34,9 @@ public:
     // Error `malformed` when there are no samples, or none whose configuration was told. Leaves the builder
     // empty.
     Result<Recording> finish(std::string name, const SampleTimeline& timeline, const LinkReport& link);
+    // Of sampling instant 0 of the recording that was finished: its device time on the host's clock, in
+    // seconds.
+    std::optional<double> host_start_s() const { return host_start_s_; }
 
 private:
     static constexpr std::size_t fields_max = 7;
@@ -84,6 +87,7 @@ private:
     Stretch longest_;
     std::uint64_t left_out_ = 0;
     std::uint64_t without_config_ = 0;
+    std::optional<double> host_start_s_;
 };
 
 }  // namespace gyrolog

@@ -55,6 +55,8 @@ public:
     Result<Recording> take_recording(std::string name) {
         return builder_.finish(std::move(name), timeline_, report());
     }
+    // Of the recording that was taken: sampling instant 0 by the host's clock.
+    std::optional<double> recording_host_start_s() const { return builder_.host_start_s(); }
 
 private:
     void on_hello(const ReceivedFrame& frame, const glp_hello& hello) override;

@@ -1,0 +1,25 @@
+// The recordings that make an array: one with several gyros, several of one time, or a virtual array.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/recording/recording.hpp"
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+struct ArrayInput {
+    std::vector<std::string> paths;  // files, or "sim:..." for boards= simulated boards
+    std::optional<double> rate_hz;
+    std::optional<double> lsb_dps;
+    double simulated_s = 60.0;
+    // Several files: by their first samples instead of by their clocks (device time on the host's clock of
+    // captures, time stamps of text).
+    bool align_starts = false;
+};
+
+Result<Recording> read_array(const ArrayInput& input);
+
+}  // namespace gyrolog

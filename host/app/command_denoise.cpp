@@ -1,0 +1,523 @@
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/plot/denoise_figure.hpp"
+#include "host/app/array_input.hpp"
+#include "host/app/command.hpp"
+#include "host/app/option_check.hpp"
+#include "host/app/output_paths.hpp"
+#include "host/app/quantity.hpp"
+#include "host/app/recording_input.hpp"
+#include "host/app/result_output.hpp"
+#include "host/base/file_output.hpp"
+#include "host/formats/denoise_json.hpp"
+#include "host/formats/denoise_text.hpp"
+#include "host/formats/model_json.hpp"
+#include "host/formats/recording_csv.hpp"
+
+namespace gyrolog {
+namespace {
+
+struct Request {
+    ArrayInput input;
+    std::string output;
+    std::string method = "joint";
+    std::string rate_model;
+    std::optional<double> bandwidth_hz;
+    std::string gain = "varying";
+    std::string still;        // "FROM,TO" in seconds
+    std::string calibration;  // another recording, at rest
+    std::vector<std::string> models;
+    std::string duration;
+    std::optional<double> saturation_dps;
+    std::size_t window = 256;
+    bool watch_off = false;
+    bool all_methods = false;
+    std::string align = "clock";
+    std::string json_path;  // "-" is standard output; empty: not wanted
+    std::string plot_path;
+};
+
+Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+Result<TimeSpan> parse_span(const std::string& text) {
+    TimeSpan span;
+    const char* const end = text.data() + text.size();
+    const auto from = std::from_chars(text.data(), end, span.from_s);
+    if (from.ec == std::errc() && from.ptr != end && *from.ptr == ',') {
+        const auto to = std::from_chars(from.ptr + 1, end, span.to_s);
+        if (to.ec == std::errc() && to.ptr == end && span.from_s >= 0.0 && span.to_s > span.from_s) {
+            return span;
+        }
+    }
+    return wrong("--still '" + text +
+                 "': wants two times in seconds from the first sample, FROM,TO, such as 0,120");
+}
+
+// What rates are shown in: SI, unless the columns are counts without a scale.
+struct ShownUnit {
+    std::string name = "dps";
+    double per_column_unit = deg_per_rad;
+    std::string on_figure = "°/s";
+};
+
+ShownUnit shown_unit(const Column& column) {
+    if (column.unit == "lsb") { return {"lsb", 1.0, "lsb"}; }
+    if (column.source_unit == "rad_s") { return {"rad_s", 1.0, "rad/s"}; }
+    return {};
+}
+
+class DenoiseRun {
+public:
+    explicit DenoiseRun(const Request& request) : request_(request) {}
+
+    Status run() {
+        GYROLOG_TRY(recording_, read_input());
+        GYROLOG_CHECK(check_array());
+        GYROLOG_TRY(std::vector<DenoiseDesign> designs, choose_designs());
+        GYROLOG_CHECK(find_still());
+        GYROLOG_TRY(std::vector<AxisKnowledge> knowledge, learn());
+        DenoiseRequest work;
+        work.designs = std::move(designs);
+        work.still = still_;
+        work.threads = 0;
+        report_.axes = denoise(recording_, std::move(knowledge), work);
+        fill_report();
+        return {};
+    }
+
+    const DenoiseReport& report() const { return report_; }
+
+    Status write_recording() const {
+        CsvWriteOptions options;
+        for (const AxisDenoising& axis : report_.axes) {
+            options.resolved.push_back("g" + axis.knowledge.axis);
+        }
+        return write_recording_csv(denoised_recording(recording_, report_.axes), request_.output, options);
+    }
+
+    Status write_plot() const {
+        const ShownUnit unit = shown_unit(*array_axes(recording_).front().units.front());
+        DenoiseFigure figure{recording_, report_.axes, still_, {}, unit.on_figure, unit.per_column_unit};
+        figure.facts = {fmt::format("{:.6g} Hz", recording_.rate_hz), format_duration(report_.duration_s),
+                        fmt::format("{} units", array_axes(recording_).front().units.size()),
+                        design_text(report_.axes.front().signals.front().design)};
+        const Rendering rendering = render(figure);
+        if (!rendering.ok()) {
+            return Error{ErrorCode::failed, "draw '" + request_.plot_path + "': " + rendering.problem};
+        }
+        return write_file(request_.plot_path, rendering.png);
+    }
+
+private:
+    Result<Recording> read_input() const {
+        ArrayInput input = request_.input;
+        input.align_starts = request_.align == "start";
+        std::optional<double> duration_s;
+        if (!request_.duration.empty()) {
+            GYROLOG_TRY(duration_s, parse_duration_s(request_.duration));
+            input.simulated_s = *duration_s;
+        }
+        GYROLOG_TRY(Recording recording, read_array(input));
+        if (duration_s && !recording.segments.empty()) {
+            std::size_t rows = 0;
+            for (const Segment& segment :
+                 segments_within(recording.segments, recording.rate_hz, {0.0, *duration_s})) {
+                rows = segment.first + segment.count;
+            }
+            if (rows == 0) { return wrong("--duration '" + request_.duration + "' holds no sample"); }
+            recording = first_rows(std::move(recording), rows);
+        }
+        return recording;
+    }
+
+    Status check_array() const {
+        const std::vector<ArrayAxis> axes = array_axes(recording_);
+        if (axes.empty()) { return Error{ErrorCode::failed, "'" + recording_.name + "' has no gyro column"}; }
+        for (const ArrayAxis& axis : axes) {
+            if (axis.units.size() > units_max) {
+                return Error{ErrorCode::unsupported,
+                             fmt::format("'{}' has {} units on axis {}; an array has at most {}",
+                                         recording_.name, axis.units.size(), axis.name, units_max)};
+            }
+            for (const Column* unit : axis.units) {
+                if (unit->unit != axis.units.front()->unit) {
+                    return Error{ErrorCode::failed,
+                                 fmt::format("'{}': {} and {} have different units; give the counts' scale "
+                                             "with --lsb-dps",
+                                             recording_.name, axis.units.front()->name, unit->name)};
+                }
+            }
+        }
+        return {};
+    }
+
+    Result<std::vector<DenoiseDesign>> choose_designs() const {
+        DenoiseDesign chosen;
+        chosen.method = denoise_method(request_.method).value_or(DenoiseMethod::joint);
+        chosen.rate = default_rate_design(chosen.method, recording_.rate_hz);
+        if (chosen.method == DenoiseMethod::wavelet &&
+            (request_.bandwidth_hz || !request_.rate_model.empty())) {
+            return wrong(
+                "--bandwidth and --rate-model are of the Kalman filter: use them with kalman or joint");
+        }
+        if (!request_.rate_model.empty()) {
+            chosen.rate.model = rate_model(request_.rate_model).value_or(RateModel::free);
+        }
+        if (request_.bandwidth_hz) {
+            if (chosen.rate.model == RateModel::free) {
+                if (!request_.rate_model.empty()) {
+                    return wrong("a free rate has no bandwidth: use --rate-model walk or trend");
+                }
+                chosen.rate.model = RateModel::trend;
+            }
+            chosen.rate.bandwidth_hz = *request_.bandwidth_hz;
+        } else if (chosen.rate.model != RateModel::free && !(chosen.rate.bandwidth_hz > 0.0)) {
+            chosen.rate.bandwidth_hz =
+                default_rate_design(DenoiseMethod::joint, recording_.rate_hz).bandwidth_hz;
+        }
+        if (chosen.rate.model != RateModel::free && !(chosen.rate.bandwidth_hz < 0.45 * recording_.rate_hz)) {
+            return wrong(fmt::format(
+                "--bandwidth {:g} Hz: less than {:.4g} Hz, 0.45 of the rate, can be told apart from "
+                "noise; --rate-model free passes everything",
+                chosen.rate.bandwidth_hz, 0.45 * recording_.rate_hz));
+        }
+        chosen.gain = request_.gain == "steady" ? FilterGain::steady : FilterGain::varying;
+        chosen.window = request_.window;
+        chosen.watch = !request_.watch_off;
+        std::vector<DenoiseDesign> designs{chosen};
+        if (!request_.all_methods) { return designs; }
+        for (const DenoiseMethod method : all_denoise_methods) {
+            if (method == chosen.method) { continue; }
+            DenoiseDesign other = chosen;
+            other.method = method;
+            other.rate = default_rate_design(method, recording_.rate_hz);
+            const bool told = request_.bandwidth_hz || !request_.rate_model.empty();
+            if (told && method != DenoiseMethod::wavelet) { other.rate = chosen.rate; }
+            designs.push_back(other);
+        }
+        return designs;
+    }
+
+    Status find_still() {
+        if (!request_.still.empty()) {
+            GYROLOG_TRY(still_, parse_span(request_.still));
+            if (segments_within(recording_.segments, recording_.rate_hz, still_).empty()) {
+                return wrong(fmt::format("--still {}: the recording has no sample there, it lasts {:.6g} s",
+                                         request_.still, recording_.duration_s()));
+            }
+            still_.to_s = std::min(still_.to_s, recording_.duration_s());
+            return {};
+        }
+        std::vector<std::vector<double>> means;
+        for (const ArrayAxis& axis : array_axes(recording_)) {
+            std::vector<double> mean(recording_.rows(), 0.0);
+            for (std::size_t row = 0; row < mean.size(); ++row) {
+                double count = 0.0;
+                for (const Column* unit : axis.units) {
+                    const double value = unit->value(row);
+                    if (!(value == value)) { continue; }
+                    mean[row] += value;
+                    count += 1.0;
+                }
+                mean[row] /= std::max(1.0, count);
+            }
+            means.push_back(std::move(mean));
+        }
+        still_ = still_part(recording_, means);
+        return {};
+    }
+
+    Result<Recording> calibration_recording() const {
+        GYROLOG_TRY(
+            Recording other,
+            read_recording({request_.calibration, request_.input.rate_hz, request_.input.lsb_dps, {}}));
+        const std::vector<ArrayAxis> here = array_axes(recording_);
+        const std::vector<ArrayAxis> there = array_axes(other);
+        bool same = here.size() == there.size();
+        for (std::size_t i = 0; same && i < here.size(); ++i) {
+            same = here[i].name == there[i].name && here[i].units.size() == there[i].units.size();
+        }
+        if (!same) {
+            return wrong("--calibration '" + request_.calibration +
+                         "' does not have the axes and units that '" + recording_.name + "' has");
+        }
+        return other;
+    }
+
+    Result<std::vector<AxisKnowledge>> learn() {
+        std::optional<double> saturation;
+        if (request_.saturation_dps) { saturation = *request_.saturation_dps * rad_per_deg; }
+        Recording still;
+        if (!request_.calibration.empty()) {
+            GYROLOG_TRY(still, calibration_recording());
+            report_.learned_from = "of " + request_.calibration;
+        } else {
+            if (!(still_.to_s > still_.from_s)) {
+                return Error{
+                    ErrorCode::failed,
+                    "'" + recording_.name +
+                        "' has no part of a few seconds at rest from which the units' noise could be "
+                        "learned: name one with --still FROM,TO, or a recording at rest with "
+                        "--calibration FILE"};
+            }
+            std::vector<const Column*> gyros;
+            for (const ArrayAxis& axis : array_axes(recording_)) {
+                gyros.insert(gyros.end(), axis.units.begin(), axis.units.end());
+            }
+            const std::vector<Segment> parts =
+                segments_known(gyros, segments_within(recording_.segments, recording_.rate_hz, still_));
+            still = rows_of(recording_, gyros, parts);
+            constexpr std::size_t rows_least = 64;
+            if (still.rows() < rows_least) {
+                return Error{
+                    ErrorCode::failed,
+                    fmt::format("the part at rest, {:.6g} s to {:.6g} s, has {} samples of all units; "
+                                "{} are needed: name another with --still FROM,TO",
+                                still_.from_s, still_.to_s, still.rows(), rows_least)};
+            }
+            report_.learned_from =
+                fmt::format("of {:.6g} s to {:.6g} s, at rest{}", still_.from_s, still_.to_s,
+                            request_.still.empty() ? " as it seems (--still says otherwise)" : "");
+        }
+        std::vector<AxisKnowledge> knowledge = learn_units(still, saturation);
+        for (const AxisKnowledge& axis : knowledge) {
+            for (const UnitKnowledge& unit : axis.units) {
+                if (unit.variance > 0.0) { continue; }
+                report_.warnings.push_back(fmt::format(
+                    "g{}{} does not change at rest: its noise is not known", axis.axis, unit.name));
+            }
+        }
+        GYROLOG_CHECK(take_models(knowledge));
+        return knowledge;
+    }
+
+    Status take_models(std::vector<AxisKnowledge>& knowledge) {
+        if (request_.models.empty()) { return {}; }
+        std::vector<SensorModel> models;
+        for (const std::string& path : request_.models) {
+            GYROLOG_TRY(SensorModel model, read_model(path));
+            models.push_back(std::move(model));
+        }
+        std::vector<std::vector<NoiseModel>> given;
+        for (const AxisKnowledge& axis : knowledge) {
+            if (models.size() != 1 && models.size() != axis.units.size()) {
+                return wrong(
+                    fmt::format("{} models for {} units on axis {}: give one for all, or one for each, "
+                                "in the units' order",
+                                models.size(), axis.units.size(), axis.axis));
+            }
+            std::vector<NoiseModel> units;
+            for (std::size_t i = 0; i < axis.units.size(); ++i) {
+                const SensorModel& model = models[models.size() == 1 ? 0 : i];
+                const auto at = static_cast<std::size_t>(axis.axis.front() - 'x');
+                NoiseModel noise;
+                noise.coefficients = model.axes.at(at).noise;
+                noise.converter = {model.lsb_rad_s, recording_.rate_hz};
+                if (!(noise.coefficients.N_rad_per_sqrt_s > 0.0)) {
+                    return wrong("model '" + request_.models[models.size() == 1 ? 0 : i] +
+                                 "' has no N on axis " + axis.axis + ": nothing to weigh its unit by");
+                }
+                units.push_back(noise);
+            }
+            given.push_back(std::move(units));
+        }
+        use_models(knowledge, given);
+        report_.learned_from = "of " + fmt::format("{}", fmt::join(request_.models, ", ")) +
+                               ", correlation " + report_.learned_from;
+        return {};
+    }
+
+    void fill_report() {
+        report_.name =
+            request_.input.paths.front().starts_with("sim:") ? request_.input.paths.front() : recording_.name;
+        if (request_.input.paths.size() > 1) {
+            report_.name =
+                fmt::format("{} recordings, {} first", request_.input.paths.size(), recording_.name);
+        }
+        report_.rate_hz = recording_.rate_hz;
+        report_.duration_s = recording_.duration_s();
+        report_.samples = recording_.rows();
+        report_.still = still_;
+        report_.warnings.insert(report_.warnings.begin(), recording_.warnings.begin(),
+                                recording_.warnings.end());
+        const ShownUnit unit = shown_unit(*array_axes(recording_).front().units.front());
+        report_.unit = unit.name;
+        report_.per_column_unit = unit.per_column_unit;
+        for (const AxisDenoising& axis : report_.axes) { warn_of(axis); }
+    }
+
+    void warn_of(const AxisDenoising& axis) {
+        warn_of_discord(axis);
+        for (const UnitKnowledge& unit : axis.knowledge.units) {
+            std::size_t left_out = 0;
+            for (const UnitFailure& failure : axis.failures) {
+                if (failure.unit == unit.name) { left_out += failure.samples; }
+            }
+            if (left_out == 0) { continue; }
+            report_.warnings.push_back(
+                fmt::format("g{}{} is left out at {} of {} samples (below: why and when)",
+                            axis.knowledge.axis, unit.name, left_out, recording_.rows()));
+        }
+    }
+
+    // Where most units seem noisy at one time or another it is not they that failed.
+    void warn_of_discord(const AxisDenoising& axis) {
+        std::size_t suspects = 0;
+        for (const UnitKnowledge& unit : axis.knowledge.units) {
+            std::size_t noisy = 0;
+            for (const UnitFailure& failure : axis.failures) {
+                if (failure.unit == unit.name && failure.state == UnitState::noisy) {
+                    noisy += failure.samples;
+                }
+            }
+            if (100 * noisy > recording_.rows()) { ++suspects; }
+        }
+        if (2 * suspects < axis.knowledge.units.size() || suspects < 2) { return; }
+        report_.warnings.push_back(
+            fmt::format("on axis {} {} of {} units part from each other by more than noise: units of an "
+                        "array must have parallel "
+                        "axes (a flipped one has the other sign), equal scales and one clock; --no-watch "
+                        "keeps all of them in",
+                        axis.knowledge.axis, suspects, axis.knowledge.units.size()));
+    }
+
+    const Request& request_;
+    Recording recording_;
+    TimeSpan still_;
+    DenoiseReport report_;
+};
+
+Status write_results(Console& console, const Request& request, const DenoiseRun& run) {
+    const DenoiseReport& report = run.report();
+    if (request.json_path == "-") {
+        for (const std::string& warning : report.warnings) {
+            console.err << "gyrolog denoise: warning: " << warning << '\n';
+        }
+    } else {
+        GYROLOG_CHECK(write_text(console, "-", denoise_text(report)));
+    }
+    if (!request.output.empty()) { GYROLOG_CHECK(run.write_recording()); }
+    if (!request.json_path.empty()) {
+        GYROLOG_CHECK(write_json(console, request.json_path, denoise_json(report)));
+    }
+    if (!request.plot_path.empty()) { GYROLOG_CHECK(run.write_plot()); }
+    for (const std::string* path : {&request.output, &request.json_path, &request.plot_path}) {
+        if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
+    }
+    return {};
+}
+
+Status check(const Request& request) {
+    for (const char* ending : {".csv", ".csv.gz", ".csv.xz", ".csv.zst", ".csv.bz2"}) {
+        if (request.output.empty() || request.output.ends_with(ending)) { return {}; }
+    }
+    std::error_code none;
+    const auto there = std::filesystem::status(request.output, none);
+    if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
+        !std::filesystem::is_directory(there)) {
+        return {};
+    }
+    return wrong("'" + request.output +
+                 "': a denoised recording is text; end its name in .csv (.gz, .xz, .zst)");
+}
+
+ExitCode denoise_command(Console& console, const Request& request) {
+    const auto fail = [&](const Error& error) { return report_error(console, "denoise", error); };
+    if (const Status fine = check(request); !fine.ok()) { return fail(fine.error()); }
+    std::vector<NamedPath> read;
+    for (const std::string& path : request.input.paths) { read.push_back({"RECORDING", path}); }
+    read.push_back({"--calibration", request.calibration});
+    const NamedPath outputs[] = {
+        {"--output", request.output}, {"--json", request.json_path}, {"--plot", request.plot_path}};
+    if (const Status fine = check_output_paths(read, outputs); !fine.ok()) { return fail(fine.error()); }
+    DenoiseRun run(request);
+    if (const Status done = run.run(); !done.ok()) { return fail(done.error()); }
+    const Status written = write_results(console, request, run);
+    return written.ok() ? ExitCode::ok : fail(written.error());
+}
+
+void add_filter_options(CLI::App& app, Request& request) {
+    app.add_option("--method", request.method,
+                   "kalman: the units combined; wavelet: its threshold on what is combined; joint: both")
+        ->check(CLI::IsMember({"kalman", "wavelet", "joint"}))
+        ->capture_default_str();
+    app.add_option(
+           "--bandwidth", request.bandwidth_hz,
+           "Of the rate that passes the Kalman filter; without it kalman passes all, joint a fourth of "
+           "the sampling rate")
+        ->type_name("HZ")
+        ->check(number_from_to(1e-6, 1e7, "Hz"));
+    app.add_option(
+           "--rate-model", request.rate_model,
+           "How the rate moves: free (no smoothing), walk (first order), trend (second order, without "
+           "lag at constant acceleration), adaptive (narrow when calm, the whole bandwidth in motion)")
+        ->check(CLI::IsMember({"free", "walk", "trend", "adaptive"}));
+    app.add_option("--gain", request.gain,
+                   "varying: by what is known at each sample; steady: the settled gain from the first on")
+        ->check(CLI::IsMember({"varying", "steady"}))
+        ->capture_default_str();
+    app.add_option("--window", request.window, "Of the wavelet: samples it looks back")
+        ->check(CLI::Range(std::size_t{14}, std::size_t{65536}))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_flag("--no-watch", request.watch_off, "Do not leave units out that fail");
+    app.add_option("--saturation", request.saturation_dps,
+                   "Size of rate at which a unit is saturated; without it counts at the end of 16 bits are")
+        ->type_name("DPS")
+        ->check(positive_number());
+}
+
+void add_input_options(CLI::App& app, Request& request) {
+    app.add_option("RECORDING", request.input.paths,
+                   "One recording with several gyros (gx1 gx2 ...) or one, several of the same time, or "
+                   "sim:boards=N,...")
+        ->required();
+    app.add_option("--still", request.still, "The part at rest from which the units' noise is learned")
+        ->type_name("FROM,TO");
+    app.add_option("--calibration", request.calibration, "A recording of the same units at rest, instead")
+        ->type_name("RECORDING");
+    app.add_option("--model", request.models,
+                   "The units' noise (gyrolog-model/1, as analyze writes it): one for all or one for each")
+        ->type_name("FILE");
+    app.add_option("--align", request.align,
+                   "Several recordings: by their clocks, or by their first samples (start)")
+        ->check(CLI::IsMember({"clock", "start"}))
+        ->capture_default_str();
+    app.add_option("--duration", request.duration,
+                   "The first part only; of a simulated array its length (60s)")
+        ->type_name("T");
+    app.add_option("--rate", request.input.rate_hz, "Sampling rate, in place of what time stamps say")
+        ->type_name("HZ")
+        ->check(positive_number());
+    app.add_option("--lsb-dps", request.input.lsb_dps, "Scale of gyro columns that are counts (_lsb)")
+        ->type_name("DPS")
+        ->check(positive_number());
+}
+
+}  // namespace
+
+Action setup_denoise(CLI::App& app) {
+    auto request = std::make_shared<Request>();
+    add_input_options(app, *request);
+    add_filter_options(app, *request);
+    app.add_option("-o,--output", request->output,
+                   "The denoised recording: gx gy gz, with time stamps and other columns as they were (.csv, "
+                   ".gz, .xz, .zst)")
+        ->type_name("FILE");
+    app.add_flag("--all-methods", request->all_methods, "Report all three methods side by side");
+    app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")
+        ->type_name("FILE");
+    app.add_option("--plot", request->plot_path, "Draw before and after")
+        ->type_name("FILE.png")
+        ->check(png_file());
+    return [request](Console& console) { return denoise_command(console, *request); };
+}
+
+}  // namespace gyrolog

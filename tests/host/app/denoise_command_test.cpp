@@ -1,0 +1,182 @@
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/simulate/counter_random.hpp"
+#include "host/app/command_line.hpp"
+#include "host/formats/model_json.hpp"
+#include "host/formats/recording_csv.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr std::size_t rows = 6000;
+constexpr std::size_t still_rows = 3000;
+constexpr double rate_hz = 200.0;
+
+// Units of 0.2 dps a sample, 0.1 dps apart; a quarter of a minute each at rest and swinging.
+Recording array_of(std::size_t units, std::uint64_t seed = 1) {
+    Recording recording;
+    recording.rate_hz = rate_hz;
+    recording.segments = {{0, rows, 0}};
+    std::vector<double> reference(rows, 0.0);
+    for (std::size_t i = still_rows; i < rows; ++i) {
+        reference[i] =
+            5.0 * std::sin(6.283185307179586 * 0.3 * static_cast<double>(i - still_rows) / rate_hz);
+    }
+    for (std::size_t unit = 0; unit < units; ++unit) {
+        std::vector<double> x(rows);
+        RandomStream(seed, static_cast<std::uint32_t>(unit)).normals(0, x);
+        for (std::size_t i = 0; i < rows; ++i) {
+            x[i] = 0.2 * x[i] + reference[i] + 0.1 * static_cast<double>(unit);
+        }
+        recording.columns.push_back(
+            {units == 1 ? "gx" : "gx" + std::to_string(unit + 1), "rad/s", x, rad_per_deg, 0.0, "dps"});
+    }
+    recording.columns.push_back({"ref_x", "rad/s", reference, rad_per_deg, 0.0, "dps"});
+    return recording;
+}
+
+class DenoiseCommand : public testing::Test {
+protected:
+    void SetUp() override { ASSERT_TRUE(write_recording_csv(array_of(3), recording).ok()); }
+
+    ExitCode denoise(std::vector<std::string> arguments) {
+        out.str("");
+        err.str("");
+        arguments.insert(arguments.begin(), "denoise");
+        return run_command_line(std::move(arguments), {out, err});
+    }
+    Recording read(const std::string& path) const {
+        auto result = read_recording_csv(path, {});
+        EXPECT_TRUE(result.ok());
+        return result.ok() ? std::move(result).value() : Recording{};
+    }
+
+    TemporaryFolder folder;
+    std::string recording = folder.path("array.csv");
+    std::string fused = folder.path("fused.csv");
+    std::ostringstream out;
+    std::ostringstream err;
+};
+
+TEST_F(DenoiseCommand, WritesTheFusedRateReportAndFigure) {
+    EXPECT_EQ(denoise({recording, "-o", fused, "--all-methods", "--json", folder.path("d.json"), "--plot",
+                       folder.path("d.png")}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_THAT(out.str(), HasSubstr("their plain mean"));
+    EXPECT_EQ(read_whole_file(folder.path("d.png")).substr(1, 3), "PNG");
+    const json answer = json::parse(read_whole_file(folder.path("d.json")));
+    EXPECT_EQ(answer["schema"], "gyrolog-denoise/1");
+    EXPECT_EQ(answer["method"], "joint");
+    EXPECT_LT(answer["still"]["to_s"], 17.0);
+    EXPECT_GT(answer["still"]["to_s"], 13.0);
+    const json& x = answer["axes"]["x"];
+    EXPECT_EQ(x["units"].size(), 3U);
+    EXPECT_GT(x["methods"]["joint"]["reduction"], x["methods"]["wavelet"]["reduction"]);
+    EXPECT_NEAR(x["methods"]["kalman"]["reduction"].get<double>(), 3.0, 0.5);
+    EXPECT_LT(x["methods"]["joint"]["motion"]["error_variance"], x["first_unit_motion"]["error_variance"]);
+    const Recording result = read(fused);
+    ASSERT_EQ(result.columns.size(), 2U);
+    EXPECT_EQ(result.columns[0].name, "gx");
+    EXPECT_EQ(result.columns[0].source_unit, "dps");
+    EXPECT_EQ(result.columns[1].name, "ref_x");
+    EXPECT_EQ(result.rows(), rows);
+    EXPECT_NEAR(result.t_s[100], 0.5, 1e-9);
+}
+
+TEST_F(DenoiseCommand, OneUnitAndNoWaveletIsTheIdentity) {
+    const std::string one = folder.path("one.csv");
+    const Recording before = array_of(1);
+    ASSERT_TRUE(write_recording_csv(before, one).ok());
+    ASSERT_EQ(denoise({one, "-o", fused, "--method", "kalman"}), ExitCode::ok) << err.str();
+    const Recording after = read(fused);
+    for (std::size_t i = 0; i < rows; ++i) {
+        ASSERT_NEAR(after.columns[0].value(i), before.columns[0].value(i), 1e-10) << i;
+    }
+}
+
+TEST_F(DenoiseCommand, SeveralRecordingsAreTheArrayThatOneWouldBe) {
+    const Recording whole = array_of(3);
+    for (std::size_t unit = 0; unit < 3; ++unit) {
+        Recording alone = whole;
+        alone.columns = {whole.columns[unit], whole.columns[3]};
+        alone.columns.front().name = "gx";
+        ASSERT_TRUE(write_recording_csv(alone, folder.path(std::to_string(unit) + ".csv")).ok());
+    }
+    ASSERT_EQ(denoise({recording, "-o", fused}), ExitCode::ok) << err.str();
+    ASSERT_EQ(denoise({folder.path("0.csv"), folder.path("1.csv"), folder.path("2.csv"), "-o",
+                       folder.path("joined.csv")}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_EQ(read_whole_file(fused), read_whole_file(folder.path("joined.csv")));
+}
+
+TEST_F(DenoiseCommand, AVirtualArrayIsDenoisedByItself) {
+    ASSERT_EQ(
+        denoise({"sim:boards=3,rate=200,seed=5", "--duration", "20s", "--method", "kalman", "--json", "-"}),
+        ExitCode::ok)
+        << err.str();
+    const json answer = json::parse(out.str());
+    EXPECT_EQ(answer["axes"].size(), 3U);
+    EXPECT_EQ(answer["samples"], 4000);
+    for (const auto& axis : answer["axes"]) {
+        EXPECT_EQ(axis["units"].size(), 3U);
+        EXPECT_NEAR(axis["methods"]["kalman"]["reduction"].get<double>(), 3.0, 0.4);
+    }
+}
+
+TEST_F(DenoiseCommand, ReadsModelsInPlaceOfFits) {
+    SensorModel quiet = typical_mpu9250();
+    SensorModel loud = typical_mpu9250();
+    for (AxisModel& axis : loud.axes) { axis.noise.N_rad_per_sqrt_s *= 10.0; }
+    ASSERT_TRUE(write_model(quiet, folder.path("quiet.json")).ok());
+    ASSERT_TRUE(write_model(loud, folder.path("loud.json")).ok());
+    ASSERT_EQ(denoise({recording, "--method", "kalman", "--model", folder.path("quiet.json"), "--model",
+                       folder.path("loud.json"), "--model", folder.path("loud.json"), "--json", "-"}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_GT(json::parse(out.str())["axes"]["x"]["units"][0]["weight"], 0.9);
+    EXPECT_EQ(denoise({recording, "--model", folder.path("quiet.json"), "--model", folder.path("loud.json")}),
+              ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("2 models for 3 units"));
+}
+
+TEST_F(DenoiseCommand, SaysWhatIsWrong) {
+    EXPECT_EQ(denoise({recording, "--still", "120"}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("FROM,TO"));
+    EXPECT_EQ(denoise({recording, "--still", "900,1000"}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("it lasts 30 s"));
+    EXPECT_EQ(denoise({recording, "-o", folder.path("fused.mat")}), ExitCode::usage);
+    EXPECT_EQ(denoise({recording, "-o", recording}), ExitCode::usage);
+    EXPECT_EQ(denoise({recording, "--method", "wavelet", "--bandwidth", "5"}), ExitCode::usage);
+    EXPECT_EQ(denoise({recording, "--bandwidth", "99"}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("0.45 of the rate"));
+    EXPECT_EQ(denoise({folder.path("none.csv")}), ExitCode::failed);
+    std::ofstream(folder.path("bad.csv")) << "t_s,gx1_dps\n0,1\n0.1,x\n";
+    EXPECT_EQ(denoise({folder.path("bad.csv")}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("line 3"));
+    EXPECT_EQ(denoise({"sim:boards=2", recording}), ExitCode::usage);
+}
+
+TEST_F(DenoiseCommand, LeavesAFailingUnitOutAndSaysSo) {
+    Recording array = array_of(3);
+    auto& second = std::get<std::vector<double>>(array.columns[1].data);
+    for (std::size_t i = 4000; i < 5000; ++i) { second[i] = 0.0; }
+    ASSERT_TRUE(write_recording_csv(array, recording).ok());
+    ASSERT_EQ(denoise({recording, "--method", "kalman"}), ExitCode::ok) << err.str();
+    EXPECT_THAT(out.str(), HasSubstr("unit 2 stuck, left out from 20"));
+}
+
+}  // namespace
+}  // namespace gyrolog
