@@ -39,6 +39,18 @@ void CaptureOptions::declare(CLI::App& app) {
     app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")
         ->type_name("DPS");
     app.add_option("--dlpf", dlpf, "The sensor's low-pass filter: bandwidth, or off")->type_name("HZ|off");
+    app.add_option("--on-unplug", on_unplug,
+                   "When the board is lost: wait for it and go on in FILE.2, or exit")
+        ->type_name("wait|exit")
+        ->check(CLI::IsMember({"wait", "exit"}))
+        ->capture_default_str();
+    app.add_option("--rotate-size", rotate_size, "Go on in the next file after so many bytes: 500M, 2G")
+        ->type_name("SIZE");
+    app.add_option("--rotate-every", rotate_every, "Go on in the next file after this time: 15m, 6h")
+        ->type_name("T");
+    app.add_option("--min-free", min_free, "End before the disk has less room than this; 0 fills it")
+        ->type_name("SIZE")
+        ->capture_default_str();
     app.add_flag("--force", force, "Replace a file that exists");
 }
 
@@ -47,6 +59,10 @@ Result<CaptureRequest> CaptureOptions::request() const {
     request.overwrite = force;
     request.samples = samples;
     if (!duration.empty()) { GYROLOG_TRY(request.duration_s, parse_duration_s(duration)); }
+    request.on_unplug = on_unplug == "exit" ? OnUnplug::end : OnUnplug::wait;
+    if (!rotate_size.empty()) { GYROLOG_TRY(request.rotate_bytes, parse_bytes(rotate_size)); }
+    if (!rotate_every.empty()) { GYROLOG_TRY(request.rotate_s, parse_duration_s(rotate_every)); }
+    if (min_free != "0") { GYROLOG_TRY(request.min_free_bytes, parse_bytes(min_free)); }
     if (!dlpf.empty()) { GYROLOG_TRY(request.configure.dlpf_hz, parse_dlpf(dlpf)); }
     if (full_scale_dps) { request.configure.gyro_full_scale_dps = *full_scale_dps; }
     if (rate_hz) {

@@ -18,6 +18,10 @@ struct CaptureOptions {
     std::optional<std::uint16_t> full_scale_dps;
     std::string dlpf;
     bool force = false;
+    std::string on_unplug = "wait";
+    std::string rotate_size;
+    std::string rotate_every;
+    std::string min_free = "100M";
 
     void declare(CLI::App& app);
     // Without the path. Error invalid_argument names the option.

@@ -116,6 +116,7 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
             {"file", path},
             {"end", name_of(file.end)},
             {"closed", closed_by_writer(capture)},
+            {"files", capture.files},
             {"bytes",
              {{"total", link.bytes.total},
               {"in_frames", link.bytes.in_frames},
@@ -146,6 +147,9 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
 std::string check_text(const std::string& path, const LoadedCapture& capture) {
     const LinkReport link = capture.decoder->report();
     std::string text = path + "\n";
+    if (capture.files.size() > 1) {
+        text += fmt::format("  in {} files, up to {}\n", capture.files.size(), capture.files.back());
+    }
     text += fmt::format("  end of file: {}\n", end_text(path, capture));
     text += row("bytes of the stream", link.bytes.total);
     text += row("  in frames", link.bytes.in_frames);

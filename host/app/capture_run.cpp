@@ -40,6 +40,15 @@ void sum_up(Console& console, const CaptureOutcome& outcome, const LinkReport& l
     if (link.frames.corrupted > 0) {
         console.err << fmt::format("  {} damaged frames were refused\n", link.frames.corrupted);
     }
+    if (link.samples_in_joins > 0 || !link.joins.empty()) {
+        console.err << fmt::format("  {} of them while the board was away or began anew\n",
+                                   format_count(link.samples_in_joins));
+    }
+    if (outcome.paths.size() > 1) {
+        console.err << fmt::format(
+            "  in {} files, {} to {}: every command takes them all by the first one's name\n",
+            outcome.paths.size(), outcome.paths.front(), outcome.paths.back());
+    }
     if (outcome.transfers_dropped > 0) {
         console.err << fmt::format(
             "  {} transfers ({}) found the queue full and were lost on this computer\n",
@@ -52,13 +61,42 @@ ExitCode exit_code_of(const CaptureOutcome& outcome) {
         case CaptureEnd::device_lost:
             return ExitCode::device_lost;
         case CaptureEnd::storage_failed:
-            return gyrolog::exit_code_of(*outcome.error);
+            return ExitCode::disk_full;
         case CaptureEnd::complete:
         case CaptureEnd::interrupted:
             break;
     }
     return outcome.data_lost() ? ExitCode::data_lost : ExitCode::ok;
 }
+
+// Says once when the board is lost and waited for, and once when it is back.
+class ParkingNotice {
+public:
+    ParkingNotice(Console& console, LiveView& view) : console_(console), view_(view) {}
+
+    void tell(const CaptureProgress& progress) {
+        if (progress.parked && progress.parked_why != why_) {
+            view_.finish();
+            console_.err << fmt::format(
+                "  {}{}\n", progress.parked_why,
+                why_.empty() ? "; waiting for the board to come back (Ctrl-C ends)" : "");
+            why_ = progress.parked_why;
+        }
+        if (progress.parked) {
+            away_s_ = progress.parked_s;
+        } else if (!why_.empty()) {
+            const std::string after = away_s_ >= 0.1 ? " after " + format_duration(away_s_) : "";
+            console_.err << fmt::format("  the board is back{}: going on in {}\n", after, progress.path);
+            why_.clear();
+        }
+    }
+
+private:
+    Console& console_;
+    LiveView& view_;
+    std::string why_;
+    double away_s_ = 0.0;
+};
 
 // A board that cannot be opened, for whatever reason, is "no device" to a script.
 ExitCode exit_code_of_opening(const Error& error) {
@@ -106,8 +144,10 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
                 << (real_time && console.progress ? "; Ctrl-C stops, closes the file and analyses it\n"
                                                   : "\n");
     LiveView view(console);
+    ParkingNotice parking(console, view);
     const auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
-        view.show(progress);
+        parking.tell(progress);
+        if (!progress.parked) { view.show(progress); }
         return !console.stop_wanted();
     });
     view.finish();

@@ -26,6 +26,26 @@ Result<double> parse_duration_s(std::string_view text) {
     return duration_s;
 }
 
+Result<std::uint64_t> parse_bytes(std::string_view text) {
+    double value = 0.0;
+    const auto [rest, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    std::string_view unit(rest, static_cast<std::size_t>(text.data() + text.size() - rest));
+    if (unit.ends_with('B')) { unit.remove_suffix(1); }
+    const bool binary = unit.ends_with('i');
+    if (binary) { unit.remove_suffix(1); }
+    constexpr std::string_view prefixes = "kMGT";
+    const std::size_t at = unit.size() == 1 ? prefixes.find(unit == "K" ? 'k' : unit.front()) : prefixes.npos;
+    const bool known = unit.empty() ? !binary : at != std::string_view::npos;
+    const double factor =
+        unit.empty() ? 1.0 : std::pow(binary ? 1024.0 : 1000.0, static_cast<double>(at + 1));
+    const double bytes = std::round(value * factor);
+    if (problem != std::errc() || !known || !(bytes >= 1.0 && bytes <= 1e18)) {
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("'{}' is no size: write 64k, 500M, 2G, 1T or 1GiB", text)};
+    }
+    return static_cast<std::uint64_t>(bytes);
+}
+
 Result<std::vector<std::int64_t>> parse_whole_numbers(std::string_view text) {
     std::vector<std::int64_t> numbers;
     const char* at = text.data();

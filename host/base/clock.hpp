@@ -1,4 +1,7 @@
 // Host time. The monotonic clock orders and measures; the real-time clock only labels.
+//
+// Transfers are timed by CLOCK_BOOTTIME: the monotonic clock, but it does not stand still while the computer
+// is suspended. A pause of a capture is then as long as it was.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +21,6 @@ inline std::int64_t clock_ns(clockid_t clock) {
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-inline HostTime host_now() { return {clock_ns(CLOCK_MONOTONIC), clock_ns(CLOCK_REALTIME)}; }
+inline HostTime host_now() { return {clock_ns(CLOCK_BOOTTIME), clock_ns(CLOCK_REALTIME)}; }
 
 }  // namespace gyrolog

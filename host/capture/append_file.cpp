@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 namespace gyrolog {
@@ -85,9 +86,13 @@ private:
     std::string path_;
 };
 
-Status sync_directory_of(const std::string& path) {
+std::string directory_of(const std::string& path) {
     const std::size_t slash = path.rfind('/');
-    const std::string directory = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+    return slash == std::string::npos ? "." : path.substr(0, slash + 1);
+}
+
+Status sync_directory_of(const std::string& path) {
+    const std::string directory = directory_of(path);
     const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0) { return errno_error("open directory '" + directory + "'"); }
     const bool synced = ::fsync(descriptor) == 0 || errno == EINVAL;
@@ -95,6 +100,21 @@ Status sync_directory_of(const std::string& path) {
     ::close(descriptor);
     return status;
 }
+
+class ComputersDisk final : public Disk {
+public:
+    Result<std::unique_ptr<AppendFile>> create(const std::string& path, IfExists if_exists) override {
+        return create_append_file(path, if_exists);
+    }
+    Result<std::uint64_t> free_bytes(const std::string& path) override {
+        struct statvfs disk {};
+        const std::string directory = directory_of(path);
+        if (::statvfs(directory.c_str(), &disk) != 0) {
+            return errno_error("ask for the room on the disk of '" + directory + "'");
+        }
+        return std::uint64_t{disk.f_bavail} * disk.f_frsize;
+    }
+};
 
 }  // namespace
 
@@ -105,6 +125,11 @@ Result<std::unique_ptr<AppendFile>> create_append_file(const std::string& path, 
     auto file = std::make_unique<PosixAppendFile>(descriptor, path);
     GYROLOG_CHECK(sync_directory_of(path));
     return std::unique_ptr<AppendFile>(std::move(file));
+}
+
+Disk& computers_disk() {
+    static ComputersDisk disk;
+    return disk;
 }
 
 }  // namespace gyrolog

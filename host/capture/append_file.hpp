@@ -29,4 +29,15 @@ enum class IfExists { refuse, overwrite };
 // permission_denied, disk_full, storage_failed.
 Result<std::unique_ptr<AppendFile>> create_append_file(const std::string& path, IfExists if_exists);
 
+// Where files are made. A seam: tests put a disk behind it that fails as they want.
+class Disk {
+public:
+    virtual ~Disk() = default;
+    virtual Result<std::unique_ptr<AppendFile>> create(const std::string& path, IfExists if_exists) = 0;
+    // What a program that is not root may still write beside this path.
+    virtual Result<std::uint64_t> free_bytes(const std::string& path) = 0;
+};
+
+Disk& computers_disk();
+
 }  // namespace gyrolog

@@ -131,7 +131,7 @@ std::string utc_text(std::int64_t realtime_ns) {
 
 std::string metadata_json(const CaptureMetadata& metadata) {
     const SourceIdentity& source = metadata.source;
-    return dump({{"schema", capture_schema},
+    Json json = {{"schema", capture_schema},
                  {"program", metadata.program},
                  {"started", utc_text(metadata.started.realtime_ns)},
                  {"clock", clock_json(metadata.started)},
@@ -145,7 +145,13 @@ std::string metadata_json(const CaptureMetadata& metadata) {
                    {"product", bounded(source.product)},
                    {"serial", bounded(source.serial)},
                    {"device_descriptor", hex(source.device_descriptor)},
-                   {"configuration_descriptor", hex(source.configuration_descriptor)}}}});
+                   {"configuration_descriptor", hex(source.configuration_descriptor)}}}};
+    if (metadata.segment) {
+        json["segment"] = {{"capture", bounded(metadata.segment->capture)},
+                           {"number", metadata.segment->number},
+                           {"connection", metadata.segment->connection}};
+    }
+    return dump(json);
 }
 
 std::string checkpoint_json(const CaptureCheckpoint& checkpoint) {
@@ -185,6 +191,14 @@ std::optional<CaptureMetadata> read_metadata_json(std::string_view text) {
     source.text("serial", metadata.source.serial);
     source.descriptor("device_descriptor", metadata.source.device_descriptor);
     source.descriptor("configuration_descriptor", metadata.source.configuration_descriptor);
+
+    const Json segment_json = fields.object("segment");
+    const Fields segment(segment_json);
+    CaptureSegment part;
+    segment.text("capture", part.capture);
+    segment.number("number", part.number);
+    segment.number("connection", part.connection);
+    if (!part.capture.empty()) { metadata.segment = part; }
     return metadata;
 }
 

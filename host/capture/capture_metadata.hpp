@@ -15,10 +15,19 @@ namespace gyrolog {
 constexpr std::string_view capture_schema = "gyrolog-capture/1";
 constexpr std::string_view checkpoint_schema = "gyrolog-checkpoint/1";
 
+// Which part of a capture a file is. A capture goes on in another file when its file is long enough, and when
+// a board that was lost comes back.
+struct CaptureSegment {
+    std::string capture;           // differs from capture to capture
+    std::uint64_t number = 1;      // from 1, in the order of the stream
+    std::uint64_t connection = 1;  // from 1; another one begins the stream anew
+};
+
 struct CaptureMetadata {
     std::string program;  // "gyrolog 0.1.0"
     SourceIdentity source;
     HostTime started;  // both clocks at one moment: the file's time stamps are real time by this pair
+    std::optional<CaptureSegment> segment{};  // absent in files of older versions
 };
 
 struct CaptureCheckpoint {

@@ -112,6 +112,7 @@ void CaptureReader::enter_section(const CaptureBlock& block) {
     std::optional<CaptureMetadata> metadata = comment ? read_metadata_json(*comment) : std::nullopt;
     if (!metadata) { return; }
     monotonic_behind_ns_ = metadata->started.realtime_ns - metadata->started.monotonic_ns;
+    segment_ = metadata->segment;
     if (!metadata_) { metadata_ = std::move(metadata); }
 }
 

@@ -48,6 +48,8 @@ public:
 
     // What the file's section header says. No value in a foreign capture, or when it is damaged.
     const std::optional<CaptureMetadata>& metadata() const { return metadata_; }
+    // Which part of a capture the present section is; no value where it does not say.
+    const std::optional<CaptureSegment>& segment() const { return segment_; }
     // Of a foreign capture: which device was picked.
     const std::optional<UsbAddress>& picked_device() const { return picked_; }
     // The checkpoint read last.
@@ -70,6 +72,7 @@ private:
 
     BlockScanner scanner_;
     std::optional<CaptureMetadata> metadata_;
+    std::optional<CaptureSegment> segment_;
     std::optional<CaptureCheckpoint> checkpoint_;
     std::optional<UsbAddress> picked_;
     std::uint8_t picked_endpoint_ = 0;

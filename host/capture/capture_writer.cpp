@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/capture/capture_metadata.hpp"
 #include "host/capture/head_records.hpp"
 #include "host/capture/pcapng.hpp"
 
@@ -28,9 +27,9 @@ Result<CaptureWriter> CaptureWriter::create(const std::string& path, const Sourc
 }
 
 Result<CaptureWriter> CaptureWriter::create(std::unique_ptr<AppendFile> file, const SourceIdentity& identity,
-                                            HostTime started) {
+                                            HostTime started, const std::optional<CaptureSegment>& segment) {
     CaptureWriter writer(std::move(file), identity, started);
-    writer.append_head(identity);
+    writer.append_head(identity, segment);
     GYROLOG_CHECK(writer.flush());
     return writer;
 }
@@ -46,8 +45,9 @@ CaptureWriter::CaptureWriter(std::unique_ptr<AppendFile> file, const SourceIdent
     buffer_.reserve(buffer_bytes + pcapng::packet_bytes_max);
 }
 
-void CaptureWriter::append_head(const SourceIdentity& identity) {
-    pcapng::append_section_header(buffer_, metadata_json({program_name(), identity, started_}),
+void CaptureWriter::append_head(const SourceIdentity& identity,
+                                const std::optional<CaptureSegment>& segment) {
+    pcapng::append_section_header(buffer_, metadata_json({program_name(), identity, started_, segment}),
                                   program_name());
     block_ends_.push_back(buffer_.size());
     pcapng::append_interface(buffer_, link_type_usb_linux_mmapped, identity.uri.substr(0, 255));

@@ -16,6 +16,7 @@
 #include "host/base/result.hpp"
 #include "host/capture/append_file.hpp"
 #include "host/capture/capture_counters.hpp"
+#include "host/capture/capture_metadata.hpp"
 #include "host/capture/usbmon_record.hpp"
 #include "host/transport/byte_source.hpp"
 #include "host/transport/transfer.hpp"
@@ -31,7 +32,8 @@ public:
     static Result<CaptureWriter> create(const std::string& path, const SourceIdentity& identity,
                                         bool overwrite);
     static Result<CaptureWriter> create(std::unique_ptr<AppendFile> file, const SourceIdentity& identity,
-                                        HostTime started);
+                                        HostTime started,
+                                        const std::optional<CaptureSegment>& segment = std::nullopt);
 
     // After any storage error the writer is finished: the file is cut back to its last whole block, and every
     // later call repeats the first error. Writing on would bury half a block in the middle of the file.
@@ -55,7 +57,7 @@ public:
 private:
     CaptureWriter(std::unique_ptr<AppendFile> file, const SourceIdentity& identity, HostTime started);
 
-    void append_head(const SourceIdentity& identity);
+    void append_head(const SourceIdentity& identity, const std::optional<CaptureSegment>& segment);
     void append_checkpoint(const CaptureCounters& counters, HostTime now, bool last);
     void append_record(const Transfer& transfer);
     std::int64_t file_time_ns(HostTime time) const;

@@ -36,7 +36,7 @@ Result<RecoveryReport> recover_capture(std::unique_ptr<InputFile> damaged, Appen
             section = true;
             interface = false;
         } else if (!section) {
-            pcapng::append_section_header(batch, metadata_json({program_name(), {}, {}}), program_name());
+            pcapng::append_section_header(batch, metadata_json({program_name(), {}, {}, {}}), program_name());
             section = true;
             report.header_rewritten = true;
         }

@@ -46,6 +46,13 @@ void FrameDecoder::feed(ByteView bytes, HostTime arrival, MessageHandler& handle
     }
 }
 
+void FrameDecoder::cut() {
+    stream_.bytes_skipped += glp_stream_buffered(&stream_);
+    stream_.encoded_bytes = 0;
+    stream_.leading_delimiter = false;
+    stream_.overlong = false;
+}
+
 void FrameDecoder::deliver(const ReceivedFrame& received, MessageHandler& handler) {
     if (stream_.frames == 1) { skipped_at_head_ = stream_.bytes_skipped; }
     const glp_status status = deliver_by_type(received, handler);

@@ -51,6 +51,9 @@ public:
     // The cuts between feeds carry no meaning: any slicing of a stream gives the same messages.
     void feed(ByteView bytes, HostTime arrival, MessageHandler& handler);
 
+    // What comes next does not continue what came before: a frame that waits for its rest is skipped.
+    void cut();
+
     ByteAccounts bytes() const;
     // Bytes skipped before the first intact frame: a stream that was joined in its middle begins with half a
     // frame.

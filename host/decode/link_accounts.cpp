@@ -8,6 +8,7 @@ namespace {
 
 // A stream that is broken all the time must not fill the memory with its dropouts; the counts stay exact.
 constexpr std::size_t dropouts_kept = 100'000;
+constexpr std::size_t joins_kept = 10'000;
 
 // No gap of one capture is this long (more than a year at 32 kHz): an index that jumps further is not on the
 // grid.
@@ -58,6 +59,10 @@ std::string_view dropout_cause_name(DropoutCause cause) {
             return "device";
         case DropoutCause::link:
             return "link";
+        case DropoutCause::unplugged:
+            return "unplugged";
+        case DropoutCause::reset:
+            return "reset";
     }
     return "device";
 }
@@ -66,11 +71,14 @@ std::string_view dropout_cause_name(DropoutCause cause) {
 // HELLO can say that the numbers have begun again.
 bool LinkAccounts::take_number(const glp_frame& frame, bool new_boot) {
     ++intact_;
-    const std::uint32_t jump = next_sequence_ && !new_boot ? frame.sequence - *next_sequence_ : 0U;
+    std::uint32_t jump = next_sequence_ && !new_boot ? frame.sequence - *next_sequence_ : 0U;
+    // The first frame of a connection may be a board's that has booted meanwhile: its HELLO comes later.
+    if (jump >= 0x8000'0000U && numbers_unsure_) { jump = 0; }
     if (jump >= 0x8000'0000U) {
         ++frames_.duplicated;
         return false;
     }
+    numbers_unsure_ = false;
     if (new_boot) { begin_boot(); }
     next_sequence_ = frame.sequence + 1U;
     frames_missing_ += jump;
@@ -177,8 +185,17 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
         const bool start_was_in_stream =
             in_run_ || start_seen_ || (frame.flags & glp_flag_first_after_start) != 0;
         const bool from_zero = start_was_in_stream && samples.first_index < implausible_jump;
+        const bool joins = in_run_ && (connection_lost_ || booted_since_samples_);
+        LinkJoin next{.run_before = run_, .end_index = next_index_};
+        for (const LinkDropout& part : tail_gap()) { next.end_index += part.samples; }
         enter(tail_gap());
         begin_run(from_zero ? 0 : samples.first_index, from_zero ? 0 : samples.lost_samples);
+        if (joins) {
+            next.run_after = run_;
+            next.first_index = next_index_;
+            next.cause = booted_since_samples_ ? DropoutCause::reset : DropoutCause::unplugged;
+            join(next);
+        }
     } else if (samples.config_generation != generation_ || samples.layout != layout_ ||
                (frame.flags & glp_flag_time_discontinuity) != 0) {
         ++run_;
@@ -201,6 +218,7 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
     frames_missing_ = 0;
     told_flags_ = 0;
     booted_since_samples_ = false;
+    connection_lost_ = false;
     tail_.reset();
     return SamplePlace{boot_, run_};
 }
@@ -241,6 +259,14 @@ void LinkAccounts::enter(const std::vector<LinkDropout>& gap) {
     }
 }
 
+void LinkAccounts::join(const LinkJoin& next) {
+    if (joins_.size() < joins_kept) {
+        joins_.push_back(next);
+    } else {
+        ++dropouts_unlisted_;
+    }
+}
+
 LinkReport LinkAccounts::report(const FrameDecoder& decoder) const {
     LinkReport report;
     report.bytes = decoder.bytes();
@@ -255,6 +281,7 @@ LinkReport LinkAccounts::report(const FrameDecoder& decoder) const {
     report.samples = samples_;
     report.dropouts = dropouts_;
     report.dropouts_unlisted = dropouts_unlisted_;
+    report.joins = joins_;
     for (const LinkDropout& part : tail_gap()) {
         report.samples.missing += part.samples;
         report.dropouts.push_back(part);

@@ -7,8 +7,8 @@
 //   - The indices after a start begin at 0, so a run whose first frames were lost still shows how much is
 //     missing.
 //   - At the end of a run the STATUS and EVENT frames tell how far the board had counted.
-// Across a reset of the board (another boot id, or numbers that begin again) nothing is missing that these do
-// not prove.
+// Across a reset of the board (another boot id, or numbers that begin again) and across a lost connection the
+// numbers prove nothing: such a join is told with its two ends, and the clocks say what lies between.
 #pragma once
 
 #include <array>
@@ -28,6 +28,8 @@ enum class DropoutCause : std::uint8_t {
     ring_overflow,         // the board says so: the host did not take frames in time
     device,                // the board counted the loss, but the frame that names the cause was lost too
     link,                  // frames are missing, and the board counted no loss
+    unplugged,             // the connection was lost, and the board has kept its memory
+    reset,                 // the board began anew, with or without a lost connection
 };
 
 std::string_view dropout_cause_name(DropoutCause cause);
@@ -38,6 +40,16 @@ struct LinkDropout {
     std::uint64_t first_index = 0;
     std::uint64_t samples = 0;
     DropoutCause cause = DropoutCause::link;
+};
+
+// Where the board came back: nothing was sampled between instant end_index of one run, the first one that is
+// not accounted for there, and first_index of the next.
+struct LinkJoin {
+    std::uint32_t run_before = 0;
+    std::uint64_t end_index = 0;
+    std::uint32_t run_after = 0;
+    std::uint64_t first_index = 0;
+    DropoutCause cause = DropoutCause::reset;
 };
 
 struct FrameAccounts {
@@ -65,11 +77,13 @@ struct LinkReport {
     SampleAccounts samples;
     std::vector<LinkDropout> dropouts;  // in order of arrival
     std::uint64_t dropouts_unlisted = 0;
+    std::vector<LinkJoin> joins;  // each is a dropout, too, as soon as the clocks say of how many samples
+    std::uint64_t samples_in_joins = 0;     // of the missing ones
     std::uint64_t frames_before_start = 0;  // intact, of a stream that ran before this host raised DTR
     std::uint64_t boots = 0;                // of the board, as far as the stream shows
     std::uint64_t runs = 0;
 
-    bool complete() const { return frames.missing == 0 && samples.missing == 0; }
+    bool complete() const { return frames.missing == 0 && samples.missing == 0 && joins.empty(); }
 };
 
 // Where a SAMPLES frame belongs. A run is a stretch with one boot, one start, one configuration and one
@@ -83,6 +97,9 @@ struct SamplePlace {
 // duplicate and must be used for nothing.
 class LinkAccounts {
 public:
+    // What comes next comes over another connection.
+    void begin_connection() { connection_lost_ = numbers_unsure_ = true; }
+
     bool take_hello(const glp_frame& frame, const glp_hello& hello);
     bool take_config(const glp_frame& frame, const glp_config& config);
     std::optional<SamplePlace> take_samples(const glp_frame& frame, const glp_samples& samples);
@@ -113,6 +130,7 @@ private:
     std::vector<LinkDropout> split(std::uint64_t missing, std::uint64_t lost, std::uint16_t flags) const;
     std::vector<LinkDropout> tail_gap() const;
     void enter(const std::vector<LinkDropout>& gap);
+    void join(const LinkJoin& next);
 
     FrameAccounts frames_;
     std::uint64_t intact_ = 0;
@@ -122,11 +140,14 @@ private:
     std::optional<std::uint32_t> boot_id_;
     std::uint32_t boot_ = 0;
     bool booted_since_samples_ = false;
+    bool connection_lost_ = false;  // since the last SAMPLES
+    bool numbers_unsure_ = false;   // until the first frame of a connection
     bool start_seen_ = false;
 
     SampleAccounts samples_;
     std::vector<LinkDropout> dropouts_;
     std::uint64_t dropouts_unlisted_ = 0;
+    std::vector<LinkJoin> joins_;
     std::uint32_t run_ = 0;
     bool in_run_ = false;
     std::uint64_t next_index_ = 0;

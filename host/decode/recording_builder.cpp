@@ -176,8 +176,13 @@ void RecordingBuilder::enter_dropouts(const LinkReport& link, const std::vector<
         if (origin == origins.end() || origin->run != dropout.run) { continue; }
         const std::int64_t at = origin->grid_index(dropout.first_index);
         if (at <= 0 || at > last) { continue; }
-        recording.dropouts.push_back({static_cast<double>(at) / recording.rate_hz,
-                                      static_cast<std::int64_t>(dropout.samples),
+        auto samples = static_cast<std::int64_t>(dropout.samples);
+        const bool join = dropout.cause == DropoutCause::unplugged || dropout.cause == DropoutCause::reset;
+        // The grid is laid with the rate of the whole recording, the account with that of the run before.
+        if (join && std::next(origin) != origins.end()) {
+            samples = std::max<std::int64_t>(std::next(origin)->grid_index(0) - at, 0);
+        }
+        recording.dropouts.push_back({static_cast<double>(at) / recording.rate_hz, samples,
                                       std::string(dropout_cause_name(dropout.cause))});
     }
     std::ranges::stable_sort(recording.dropouts, {}, &Dropout::at_s);

@@ -66,7 +66,15 @@ void SampleTimeline::take_samples(const SamplePlace& place, const glp_samples& s
     const std::int64_t arrival_ns = std::clamp(arrival.monotonic_ns, -far_ns, far_ns);
     if (boots_.empty() || boots_.back().number != place.boot) {
         if (boots_.size() == runs_kept) { return; }
-        boots_.push_back({place.boot, arrival_ns});
+        Boot boot;
+        boot.number = place.boot;
+        boot.arrival_ns = arrival_ns;
+        if (!boots_.empty()) {
+            const Boot& before = boots_.back();
+            boot.base_s = start_of(before) + static_cast<double>(arrival_ns - before.arrival_ns) * 1e-9 -
+                          before.tail_delay_s();
+        }
+        boots_.push_back(boot);
         ticks_ = 0;
     } else {
         const std::int64_t step = ticks_since_last(samples, arrival_ns);
@@ -89,6 +97,26 @@ void SampleTimeline::take_samples(const SamplePlace& place, const glp_samples& s
     const auto index = static_cast<std::int64_t>(samples.first_index - run.first_index);
     run.last = {index, ticks_ - run.start_ticks, arrival_ns_, samples.count - 1};
     keep(run, run.last);
+    note_delay(boots_.back(), run);
+}
+
+double SampleTimeline::Boot::tail_delay_s() const {
+    const auto kept = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(frames, delays_kept));
+    return kept == 0 ? 0.0 : *std::min_element(last_delays_s.begin(), last_delays_s.begin() + kept);
+}
+
+// A frame's span is known by the spacing of the run's samples so far, hence from its second frame on.
+void SampleTimeline::note_delay(Boot& boot, const Run& run) const {
+    if (tick_hz_.value_or(0) == 0 || run.last.index <= 0) { return; }
+    const double spacing = static_cast<double>(run.last.ticks) / static_cast<double>(run.last.index);
+    const double ticks = static_cast<double>(run.start_ticks) + static_cast<double>(run.last.ticks) +
+                         spacing * static_cast<double>(run.last.last);
+    const double delay_s =
+        static_cast<double>(run.last.arrival_ns - boot.arrival_ns) * 1e-9 - ticks / *tick_hz_;
+    if (boot.frames == 0) { boot.head_delay_s = delay_s; }
+    if (boot.frames < Boot::delays_kept) { boot.head_delay_s = std::min(boot.head_delay_s, delay_s); }
+    boot.last_delays_s[boot.frames % Boot::delays_kept] = delay_s;
+    ++boot.frames;
 }
 
 // Of `stride` frames in a row the one with the smallest delay is kept. When there is no room, neighbours are
@@ -246,11 +274,14 @@ std::optional<HostClockFit> SampleTimeline::host_clock() const {
     return fit;
 }
 
+double SampleTimeline::start_of(const Boot& boot) const {
+    return &boot == &boots_.front() ? 0.0 : boot.base_s + boot.head_delay_s;
+}
+
 double SampleTimeline::start_of(const Run& run) const {
     const auto boot = std::lower_bound(boots_.begin(), boots_.end(), run.boot,
                                        [](const Boot& b, std::uint32_t n) { return b.number < n; });
-    return static_cast<double>(boot->arrival_ns - boots_.front().arrival_ns) * 1e-9 +
-           static_cast<double>(run.start_ticks) / tick_hz_.value_or(1);
+    return start_of(*boot) + static_cast<double>(run.start_ticks) / tick_hz_.value_or(1);
 }
 
 std::optional<double> SampleTimeline::device_time_s(std::uint32_t run_number, std::uint64_t index,

@@ -2,7 +2,9 @@
 // against the host's.
 //
 //   device time   unwrapped ticks / tick_hz, from the first sample of the capture; a boot of the board begins
-//                 anew, and is placed by the host's clock
+//                 anew, and is placed behind the one before by the host's clock: by the smallest delays of
+//                 the last frames there and of the first ones here, so that only the pause is measured by
+//                 that clock
 //   sensor rate   least squares of device time over sampling index, one intercept a run and one slope for all
 //   host clock    host = offset + ratio * device. Delays only ever add, so the line is the lower envelope of
 //                 the arrivals: the edge of their convex hull above their mean abscissa, which has the least
@@ -10,6 +12,7 @@
 //                 Algorithms for Network Measurements", INFOCOM 2002, section III)
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -30,7 +33,7 @@ struct RateEstimate {
 };
 
 struct HostClockFit {
-    double offset_s = 0.0;  // CLOCK_MONOTONIC at device time 0, late by the smallest delay of the link
+    double offset_s = 0.0;  // monotonic host time at device time 0, late by the smallest delay of the link
     double ratio = 1.0;     // host seconds per device second; far from 1 for a simulation that does not wait
     double offset_sd_s = 0.0;  // one sigma, from the scatter of the smallest delays of parts of the capture
     double ratio_sd = 0.0;
@@ -73,14 +76,26 @@ private:
         Stamp last;  // of its last frame
     };
     struct Boot {
+        static constexpr std::size_t delays_kept = 32;
+
         std::uint32_t number = 0;
         std::int64_t arrival_ns = 0;  // of its first SAMPLES frame
+        double base_s = 0.0;          // device time of that arrival, were all delays those of the boot before
+        // From a frame's last sample, by this boot's ticks, to its arrival, beside the first frame's.
+        double head_delay_s = 0.0;  // smallest of its first frames
+        std::array<double, delays_kept> last_delays_s{};
+        std::uint64_t frames = 0;
+
+        double tail_delay_s() const;
     };
 
     std::int64_t ticks_since_last(const glp_samples& samples, std::int64_t arrival_ns) const;
     void keep(Run& run, const Stamp& stamp) const;
+    void note_delay(Boot& boot, const Run& run) const;
     const Run* find(std::uint32_t number) const;
-    double start_of(const Run& run) const;  // device time of its first sample
+    // Device time of the first sample.
+    double start_of(const Boot& boot) const;
+    double start_of(const Run& run) const;
 
     std::vector<Boot> boots_;
     std::vector<Run> runs_;

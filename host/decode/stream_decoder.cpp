@@ -1,5 +1,8 @@
 #include "host/decode/stream_decoder.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gyrolog_protocol/usb_identity.h>
 
 namespace gyrolog {
@@ -20,7 +23,9 @@ bool StreamDecoder::take(const Transfer& transfer) {
         feed(transfer.data, transfer.time);
         return false;
     }
-    if (before_start_ || !raises_line(transfer)) { return false; }
+    if (line_raised_ || !raises_line(transfer)) { return false; }
+    line_raised_ = true;
+    if (before_start_ || connections_ > 1) { return true; }
     before_start_ = report();
     accounts_ = {};
     timeline_ = {};
@@ -32,8 +37,39 @@ bool StreamDecoder::take(const Transfer& transfer) {
     return true;
 }
 
+void StreamDecoder::begin_connection() {
+    frames_.cut();
+    accounts_.begin_connection();
+    line_raised_ = false;
+    ++connections_;
+}
+
+// Nothing numbers the instants between two runs; the grid on which a recording is laid has so many places
+// there.
+void StreamDecoder::enter_joins(LinkReport& report) const {
+    constexpr double longest_s = 1e9;
+    for (const LinkJoin& join : report.joins) {
+        const auto estimate = timeline_.rate(join.run_before, join.run_before);
+        const double nominal_hz = config_ ? config_->rate_mHz * 1e-3 : 0.0;
+        const double rate_hz = estimate ? estimate->rate_hz : nominal_hz;
+        const auto from_s = timeline_.device_time_s(join.run_before, join.end_index, rate_hz);
+        const auto to_s = timeline_.device_time_s(join.run_after, join.first_index, rate_hz);
+        LinkDropout dropout{join.run_before, join.end_index, 0, join.cause};
+        if (from_s && to_s) {
+            dropout.samples = static_cast<std::uint64_t>(
+                std::llround(std::clamp(*to_s - *from_s, 0.0, longest_s) * rate_hz));
+        }
+        report.samples.missing += dropout.samples;
+        report.samples_in_joins += dropout.samples;
+        const auto behind = std::find_if(report.dropouts.begin(), report.dropouts.end(),
+                                         [&](const LinkDropout& d) { return d.run > join.run_before; });
+        report.dropouts.insert(behind, dropout);
+    }
+}
+
 LinkReport StreamDecoder::report() const {
     LinkReport report = accounts_.report(frames_);
+    enter_joins(report);
     if (before_start_) {
         report.frames_before_start = before_start_->frames.good;
         report.frames.corrupted -= before_start_->frames.corrupted;

@@ -35,14 +35,16 @@ public:
         : options_(options), builder_(options.stream_bytes) {}
 
     // Feeds what a transfer carries of the stream. The transfer by which the host first raises DTR begins the
-    // accounts anew and is answered by true: what a board still had from an earlier listener is in the bytes,
-    // but its gaps are not this stream's.
+    // accounts anew: what a board still had from an earlier listener is in the bytes, but its gaps are not
+    // this stream's. True for that transfer, and for the first such one of each later connection.
     bool take(const Transfer& transfer);
+    // What comes next comes over another connection: the board was unplugged, or given up for lost.
+    void begin_connection();
     void feed(ByteView bytes, HostTime arrival) { frames_.feed(bytes, arrival, *this); }
 
     LinkReport report() const;
     const SampleTimeline& timeline() const { return timeline_; }
-    // As last told by the board.
+    // As last told by the board, over whatever connection.
     const std::optional<glp_hello>& hello() const { return hello_; }
     const std::optional<glp_config>& config() const { return config_; }
     const std::optional<glp_device_status>& device_status() const { return status_; }
@@ -67,6 +69,7 @@ private:
     void on_reply(const ReceivedFrame& frame, const glp_reply& reply) override;
     void on_unknown(const ReceivedFrame& frame) override;
     void on_malformed(const ReceivedFrame& frame, glp_status reason) override;
+    void enter_joins(LinkReport& report) const;
 
     StreamDecoderOptions options_;
     FrameDecoder frames_;
@@ -78,6 +81,8 @@ private:
     std::optional<glp_device_status> status_;
     std::uint32_t run_ = 0;
     std::optional<LinkReport> before_start_;
+    unsigned connections_ = 1;
+    bool line_raised_ = false;  // in the present connection
 };
 
 }  // namespace gyrolog

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "host/capture/capture_writer.hpp"
+#include "host/capture/segment_writer.hpp"
 #include "host/session/transfer_queue.hpp"
 
 namespace gyrolog {
@@ -57,6 +57,12 @@ public:
         queue_.close();
     }
 
+    void reopen() {
+        const std::lock_guard lock(mutex_);
+        end_.reset();
+        error_.reset();
+    }
+
     // No value while the source runs.
     std::optional<SourceEnd> end() const {
         const std::lock_guard lock(mutex_);
@@ -90,7 +96,7 @@ private:
 // what came.
 class WriterThread final : private MessageHandler {
 public:
-    WriterThread(TransferQueue& queue, const QueueingSink& sink, CaptureWriter& writer,
+    WriterThread(TransferQueue& queue, const QueueingSink& sink, SegmentWriter& writer,
                  const CaptureRequest& request)
         : queue_(queue),
           sink_(sink),
@@ -107,6 +113,17 @@ public:
         if (thread_.joinable()) { thread_.join(); }
     }
 
+    // After join(), with the queue open again: what comes next comes over another connection.
+    void resume() {
+        decoder_.begin_connection();
+        started_ = false;
+        hello_came_ = false;
+        config_came_ = false;
+        next_index_.reset();
+        publish();
+        thread_ = std::thread([this] { run(); });
+    }
+
     // Waits until `wanted(*this)` holds or the time is over; the lock is held while it looks.
     template <typename Wanted>
     bool wait(milliseconds time, Wanted&& wanted) {
@@ -115,8 +132,8 @@ public:
     }
     // The ones below: inside wait(), or after join().
     bool line_was_raised() const { return line_was_raised_; }
-    bool has_hello() const { return progress_.hello.has_value(); }
-    bool has_config() const { return progress_.config.has_value(); }
+    bool has_hello() const { return has_hello_; }  // in the present connection
+    bool has_config() const { return has_config_; }
     bool enough() const { return enough_; }
     const std::optional<Error>& storage_error() const { return storage_error_; }
     const std::vector<glp_reply>& replies() const { return replies_; }
@@ -147,7 +164,10 @@ private:
         if (transfer.carries_stream()) { bytes_since_checkpoint_ += transfer.data.size(); }
         if (decoder_.take(transfer)) {
             started_ = true;
-            instants_ = 0;
+            hello_came_ = false;
+            config_came_ = false;
+            if (!any_start_) { instants_ = 0; }
+            any_start_ = true;
             next_index_.reset();
             latest_.reset();
         }
@@ -189,6 +209,7 @@ private:
         progress_.dropouts = link.dropouts.size() + link.dropouts_unlisted;
         progress_.frames_corrupted = link.frames.corrupted;
         progress_.file_bytes = writer_.bytes_written();
+        progress_.path = writer_.paths().back();
         progress_.rate_hz = decoder_.rate_hz();
         progress_.hello = decoder_.hello();
         progress_.config = decoder_.config();
@@ -196,16 +217,23 @@ private:
             progress_.temperature_C = progress_.config->temp_offset_mC * 1e-3 +
                                       latest_->temperature * 1e-9 * progress_.config->temp_nC_per_lsb;
         }
-        if (progress_.rate_hz) { progress_.device_s = static_cast<double>(instants_) / *progress_.rate_hz; }
+        const std::uint64_t instants = instants_ + link.samples_in_joins;
+        if (progress_.rate_hz) { progress_.device_s = static_cast<double>(instants) / *progress_.rate_hz; }
         line_was_raised_ = started_;
+        has_hello_ = hello_came_;
+        has_config_ = config_came_;
         replies_.insert(replies_.end(), new_replies_.begin(), new_replies_.end());
         new_replies_.clear();
-        enough_ = (request_.samples && instants_ >= *request_.samples) ||
+        enough_ = (request_.samples && instants >= *request_.samples) ||
                   (request_.duration_s && progress_.rate_hz &&
-                   static_cast<double>(instants_) >= *request_.duration_s * *progress_.rate_hz);
+                   static_cast<double>(instants) >= *request_.duration_s * *progress_.rate_hz);
         changed_.notify_all();
     }
 
+    void on_hello(const ReceivedFrame& /*frame*/, const glp_hello& /*hello*/) override { hello_came_ = true; }
+    void on_config(const ReceivedFrame& /*frame*/, const glp_config& /*config*/) override {
+        config_came_ = true;
+    }
     void on_samples(const ReceivedFrame& received, const glp_samples& samples) override {
         latest_ = samples;
         latest_->samples = nullptr;
@@ -222,14 +250,17 @@ private:
 
     TransferQueue& queue_;
     const QueueingSink& sink_;
-    CaptureWriter& writer_;
+    SegmentWriter& writer_;
     const CaptureRequest& request_;
 
     // The writer thread's own.
     StreamDecoder decoder_;
     std::uint64_t bytes_since_checkpoint_ = 0;
     std::int64_t last_sync_ns_ = clock_ns(CLOCK_MONOTONIC);
-    bool started_ = false;  // by DTR
+    bool started_ = false;  // by DTR, in the present connection
+    bool any_start_ = false;
+    bool hello_came_ = false;
+    bool config_came_ = false;
     std::optional<glp_samples> latest_;
     // Sampling instants that this capture covers, gaps within a run included. A sample's index alone would
     // not do: it counts from the board's start, and a board may have been streaming for hours before the
@@ -245,6 +276,8 @@ private:
     std::optional<Error> storage_error_;
     bool enough_ = false;
     bool line_was_raised_ = false;
+    bool has_hello_ = false;
+    bool has_config_ = false;
 
     std::thread thread_;  // last: starts when everything else is there
 };
@@ -376,10 +409,10 @@ Error storage_error_of(Error error) {
 
 // From a silent board to a stream whose HELLO and CONFIG have come.
 Status begin(ByteSource& source, QueueingSink& sink, WriterThread& writer, BoardControl& control,
-             const CaptureRequest& request) {
+             const glp_configure& configure, const CaptureRequest& request) {
     GYROLOG_CHECK(source.start(sink));
     GYROLOG_CHECK(control.quiet());
-    GYROLOG_CHECK(control.configure(request.configure));
+    GYROLOG_CHECK(control.configure(configure));
     GYROLOG_CHECK(control.start());
     // A HELLO from before the start may be that of a stream which somebody else had started.
     const auto identified = [&] {
@@ -412,76 +445,229 @@ Error explain(const Error& error, const ByteSource& source, const LinkReport& li
                 uri, link.bytes.total)};
 }
 
-// Runs until there is enough, the caller or the source ends it, or the disk refuses.
-CaptureEnd stream_until_end(const ByteSource& source, WriterThread& writer, QueueingSink& sink,
-                            const CaptureRequest& request, const CaptureObserver& observe,
-                            std::optional<Error>& error) {
-    sink.restart_silence();
-    const auto start = Clock::now();
-    while (true) {
-        bool enough = false;
-        bool refused = false;
-        writer.wait(progress_interval, [&] {
-            enough = writer.enough();
-            refused = writer.storage_error().has_value();
-            return enough || refused || sink.end().has_value();
-        });
-        CaptureProgress progress = writer.progress();
-        progress.elapsed_s = seconds_since(start);
-        const bool go_on = observe(progress);
-        if (refused) { return CaptureEnd::storage_failed; }
-        if (enough) { return CaptureEnd::complete; }
-        if (const auto end = sink.end()) {
-            error = sink.error();
-            if (*end == SourceEnd::exhausted || *end == SourceEnd::stopped) { return CaptureEnd::complete; }
-            return CaptureEnd::device_lost;
-        }
-        if (!go_on) { return CaptureEnd::interrupted; }
-        if (sink.silence_s() > request.idle_timeout_s) {
-            error = Error{ErrorCode::device_lost, fmt::format("{}: silent for {:g} s", source.identity().uri,
-                                                              request.idle_timeout_s)};
-            return CaptureEnd::device_lost;
-        }
+// A board may have lost its memory with its power: it is set up again as it last said that it was.
+glp_configure configuration_of(const glp_config& config) {
+    glp_configure wanted{};
+    wanted.rate_mHz = config.rate_mHz;
+    wanted.gyro_full_scale_dps = config.gyro_full_scale_dps;
+    wanted.accel_full_scale_g = config.accel_full_scale_g;
+    wanted.dlpf_hz = config.dlpf_hz == 0 ? std::uint16_t{GLP_DLPF_OFF} : config.dlpf_hz;
+    wanted.layout = config.layout;
+    wanted.samples_per_frame = config.samples_per_frame;
+    return wanted;
+}
+
+// Whether another try may succeed once the board is back, or wide awake.
+bool may_come_back(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::not_found:
+        case ErrorCode::permission_denied:
+        case ErrorCode::busy:
+        case ErrorCode::timeout:
+        case ErrorCode::device_lost:
+        case ErrorCode::malformed:
+        case ErrorCode::failed:
+            return true;
+        default:
+            return false;
     }
 }
+
+class Session {
+public:
+    Session(ByteSource& source, const CaptureRequest& request, const CaptureObserver& observe,
+            SegmentWriter& writer)
+        : source_(source),
+          request_(request),
+          observe_(observe),
+          writer_(writer),
+          queue_(request.queue_bytes),
+          sink_(queue_, source.can_wait()),
+          thread_(queue_, sink_, writer, request),
+          control_(source, thread_, sink_) {}
+
+    Result<CaptureOutcome> run() {
+        const Status began = begin(source_, sink_, thread_, control_, request_.configure, request_);
+        if (began.ok()) {
+            stream_until_end();
+            while (outcome_.end == CaptureEnd::device_lost && request_.on_unplug == OnUnplug::wait &&
+                   park()) {
+                stream_until_end();
+            }
+        }
+        control_.stop();
+        wind_up();
+        Status closed = thread_.storage_error() ? Status(*thread_.storage_error()) : Status();
+        outcome_.link = thread_.link();
+        if (!began.ok() && outcome_.link.bytes.total == 0) { writer_.drop(); }
+        const Status last = writer_.close();
+        if (closed.ok()) { closed = last; }
+        if (!began.ok()) {
+            return closed.ok() ? explain(began.error(), source_, outcome_.link) : closed.error();
+        }
+        if (!closed.ok()) {
+            outcome_.end = CaptureEnd::storage_failed;
+            outcome_.error = closed.error();
+        }
+        outcome_.progress = thread_.progress();
+        outcome_.progress.file_bytes = writer_.bytes_written();
+        outcome_.progress.connections = connections_;
+        outcome_.paths = writer_.paths();
+        outcome_.transfers_dropped = sink_.transfers_dropped();
+        outcome_.bytes_dropped = sink_.bytes_dropped();
+        outcome_.queue_high_water_bytes = queue_.high_water_bytes();
+        return std::move(outcome_);
+    }
+
+private:
+    // In this order: the source (its last callback closes the queue), the queue, the writer.
+    void wind_up() {
+        source_.stop();
+        queue_.close();
+        thread_.join();
+    }
+
+    CaptureProgress progress() const {
+        CaptureProgress progress = thread_.progress();
+        progress.elapsed_s = seconds_since(start_);
+        progress.connections = connections_;
+        return progress;
+    }
+
+    // Runs until there is enough, the caller or the source ends it, or the disk refuses.
+    void stream_until_end() {
+        sink_.restart_silence();
+        outcome_.error.reset();
+        while (true) {
+            bool enough = false;
+            bool refused = false;
+            thread_.wait(progress_interval, [&] {
+                enough = thread_.enough();
+                refused = thread_.storage_error().has_value();
+                return enough || refused || sink_.end().has_value();
+            });
+            const bool go_on = observe_(progress());
+            if (refused) { return end(CaptureEnd::storage_failed); }
+            if (enough) { return end(CaptureEnd::complete); }
+            if (const auto ended = sink_.end()) {
+                outcome_.error = sink_.error();
+                const bool done = *ended == SourceEnd::exhausted || *ended == SourceEnd::stopped;
+                return end(done ? CaptureEnd::complete : CaptureEnd::device_lost);
+            }
+            if (!go_on) { return end(CaptureEnd::interrupted); }
+            if (sink_.silence_s() > request_.idle_timeout_s) {
+                outcome_.error = Error{
+                    ErrorCode::device_lost,
+                    fmt::format("{}: silent for {:g} s", source_.identity().uri, request_.idle_timeout_s)};
+                return end(CaptureEnd::device_lost);
+            }
+        }
+    }
+    void end(CaptureEnd how) { outcome_.end = how; }
+
+    // True when the board streams again. Otherwise the outcome stays that of a lost device, or is a disk that
+    // refused the next file.
+    bool park() {
+        wind_up();
+        if (thread_.storage_error()) { return false; }
+        if (Status closed = writer_.close(); !closed.ok()) {
+            return storage_failed(std::move(closed).error());
+        }
+        const auto lost_at = Clock::now();
+        std::string why = outcome_.error ? outcome_.error->message : source_.identity().uri + ": lost";
+        auto next_try = lost_at;
+        while (true) {
+            CaptureProgress parked = progress();
+            parked.parked = true;
+            parked.parked_s = seconds_since(lost_at);
+            parked.parked_why = why;
+            if (!observe_(parked) || over(parked)) { return false; }
+            if (Clock::now() < next_try) {
+                std::this_thread::sleep_for(
+                    std::min<Clock::duration>(progress_interval, next_try - Clock::now()));
+                continue;
+            }
+            Status back = source_.reconnect();
+            if (back.ok()) { back = resume(); }
+            if (back.ok()) { return true; }
+            if (outcome_.end == CaptureEnd::storage_failed) { return false; }
+            if (!may_come_back(back.error().code)) {
+                // A source that cannot come back at all has nothing to add to how it was lost.
+                if (back.error().code != ErrorCode::unsupported) { outcome_.error = std::move(back).error(); }
+                return false;
+            }
+            why = back.error().message;
+            next_try = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                          std::chrono::duration<double>(request_.reconnect_interval_s));
+        }
+    }
+
+    // The next file, and the handshake with a board that is back.
+    Status resume() {
+        ++connections_;
+        if (Status opened = writer_.begin_connection(source_.identity()); !opened.ok()) {
+            storage_failed(storage_error_of(std::move(opened).error()));
+            return *outcome_.error;
+        }
+        const CaptureProgress before = thread_.progress();
+        const glp_configure again = before.config ? configuration_of(*before.config) : request_.configure;
+        const std::uint64_t bytes_before = thread_.link().bytes.total;
+        queue_.reopen();
+        sink_.reopen();
+        thread_.resume();
+        Status began = begin(source_, sink_, thread_, control_, again, request_);
+        if (began.ok()) { return {}; }
+        wind_up();
+        LinkReport link = thread_.link();
+        link.bytes.total -= bytes_before;
+        began = explain(began.error(), source_, link);
+        if (thread_.storage_error()) {
+            storage_failed(*thread_.storage_error());
+        } else if (link.bytes.total == 0) {
+            writer_.drop();
+        } else if (Status closed = writer_.close(); !closed.ok()) {
+            storage_failed(std::move(closed).error());
+        }
+        return began;
+    }
+
+    bool storage_failed(Error error) {
+        outcome_.end = CaptureEnd::storage_failed;
+        outcome_.error = std::move(error);
+        return false;
+    }
+
+    // The pause has used up what was left of the duration.
+    bool over(const CaptureProgress& parked) const {
+        return request_.duration_s && parked.device_s + parked.parked_s >= *request_.duration_s;
+    }
+
+    ByteSource& source_;
+    const CaptureRequest& request_;
+    const CaptureObserver& observe_;
+    SegmentWriter& writer_;
+    TransferQueue queue_;
+    QueueingSink sink_;
+    WriterThread thread_;
+    BoardControl control_;
+    const Clock::time_point start_ = Clock::now();
+    unsigned connections_ = 1;
+    CaptureOutcome outcome_;
+};
 
 }  // namespace
 
 Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request,
                                    const CaptureObserver& observe) {
-    auto created = CaptureWriter::create(request.path, source.identity(), request.overwrite);
-    if (!created.ok()) { return storage_error_of(std::move(created).error()); }
-    CaptureWriter writer = std::move(created).value();
-    TransferQueue queue(request.queue_bytes);
-    QueueingSink sink(queue, source.can_wait());
-    WriterThread thread(queue, sink, writer, request);
-    BoardControl control(source, thread, sink);
-
-    CaptureOutcome outcome;
-    const Status began = begin(source, sink, thread, control, request);
-    if (began.ok()) { outcome.end = stream_until_end(source, thread, sink, request, observe, outcome.error); }
-    control.stop();
-    // Tear-down, in this order: the source (its last callback closes the queue), the queue, the writer, the
-    // file.
-    source.stop();
-    queue.close();
-    thread.join();
-    Status closed = writer.close();
-    if (thread.storage_error()) { closed = *thread.storage_error(); }
-    outcome.link = thread.link();
-    if (!began.ok()) {
-        if (outcome.link.bytes.total == 0) { static_cast<void>(std::remove(request.path.c_str())); }
-        return closed.ok() ? explain(began.error(), source, outcome.link) : closed.error();
-    }
-    if (!closed.ok()) {
-        outcome.end = CaptureEnd::storage_failed;
-        outcome.error = closed.error();
-    }
-    outcome.progress = thread.progress();
-    outcome.transfers_dropped = sink.transfers_dropped();
-    outcome.bytes_dropped = sink.bytes_dropped();
-    outcome.queue_high_water_bytes = queue.high_water_bytes();
-    return outcome;
+    auto writer =
+        SegmentWriter::create({.path = request.path,
+                               .overwrite = request.overwrite,
+                               .rotate_bytes = request.rotate_bytes,
+                               .rotate_s = request.rotate_s,
+                               .min_free_bytes = request.min_free_bytes},
+                              source.identity(), request.disk != nullptr ? *request.disk : computers_disk());
+    if (!writer.ok()) { return storage_error_of(std::move(writer).error()); }
+    return Session(source, request, observe, *writer).run();
 }
 
 }  // namespace gyrolog

@@ -1,5 +1,5 @@
 // One capture from start to finish: source -> queue -> writer, with the handshake before and the accounts
-// after.
+// after. A board that is lost is waited for, if that is wanted, and the capture goes on in another file.
 //
 // Threads: the source's own (pushes transfers, never waits for the disk), the writer's (appends, decodes for
 // the accounts, syncs), the caller's (handshake, progress, stop).
@@ -9,13 +9,17 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/base/result.hpp"
+#include "host/capture/append_file.hpp"
 #include "host/decode/protocol.hpp"
 #include "host/decode/stream_decoder.hpp"
 #include "host/transport/byte_source.hpp"
 
 namespace gyrolog {
+
+enum class OnUnplug { end, wait };
 
 struct CaptureRequest {
     std::string path;
@@ -26,9 +30,21 @@ struct CaptureRequest {
     double hello_timeout_s = 3.0;
     double idle_timeout_s = 10.0;  // silence that counts as a lost device
     std::size_t queue_bytes = std::size_t{16} << 20U;
+
+    OnUnplug on_unplug = OnUnplug::end;
+    double reconnect_interval_s = 0.25;         // between two looks for a board that was lost
+    std::optional<std::uint64_t> rotate_bytes;  // as in SegmentPlan
+    std::optional<double> rotate_s;
+    std::uint64_t min_free_bytes = 0;
+    Disk* disk = nullptr;  // null: the computer's
 };
 
 struct CaptureProgress {
+    bool parked = false;     // the board is away, and waited for
+    double parked_s = 0.0;   // for how long
+    std::string parked_why;  // what became of the board, or of the last try to go on with it
+    unsigned connections = 1;
+    std::string path;        // of the present file
     double elapsed_s = 0.0;  // of host time since the stream began
     double device_s = 0.0;   // of device time
     std::optional<double> rate_hz;
@@ -45,7 +61,7 @@ struct CaptureProgress {
 enum class CaptureEnd {
     complete,     // the duration or number of samples asked for, or the source had no more
     interrupted,  // the caller stopped it
-    device_lost,
+    device_lost,  // and not waited for, or not back in time
     storage_failed,
 };
 
@@ -54,6 +70,7 @@ struct CaptureOutcome {
     std::optional<Error> error;  // with device_lost and storage_failed
     CaptureProgress progress;
     LinkReport link;
+    std::vector<std::string> paths;  // of the files, in order
     // Transfers that found the queue full, and their bytes: lost on the host.
     std::uint64_t transfers_dropped = 0;
     std::uint64_t bytes_dropped = 0;
@@ -69,6 +86,10 @@ using CaptureObserver = std::function<bool(const CaptureProgress&)>;
 // came, the board refused the configuration. The file is then removed, unless bytes of the stream are in it.
 // Once the stream has begun, whatever ends it, the file is closed and readable and the outcome says what
 // happened.
+//
+// A board that is lost: its file is closed, the source's reconnect() is tried, and with a board that is back
+// the handshake begins again, with the configuration that the board last told. The pause counts towards the
+// duration and the samples that were asked for.
 Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& request,
                                    const CaptureObserver& observe);
 

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "host/capture/segment_files.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -16,33 +18,84 @@ std::uint64_t size_of(const std::string& path) {
     return unknown ? 0 : size;
 }
 
+FileEnd worse(FileEnd a, FileEnd b) { return std::max(a, b); }
+
+void add(CaptureAccounts& sum, const CaptureAccounts& part) {
+    sum.blocks.bytes_total += part.blocks.bytes_total;
+    sum.blocks.bytes_in_blocks += part.blocks.bytes_in_blocks;
+    sum.blocks.bytes_damaged += part.blocks.bytes_damaged;
+    sum.blocks.bytes_in_tail += part.blocks.bytes_in_tail;
+    sum.blocks.blocks += part.blocks.blocks;
+    sum.blocks.damaged_ranges += part.blocks.damaged_ranges;
+    sum.blocks.damage.insert(sum.blocks.damage.end(), part.blocks.damage.begin(), part.blocks.damage.end());
+    sum.blocks.end = worse(sum.blocks.end, part.blocks.end);
+    sum.transfers += part.transfers;
+    sum.stream_bytes += part.stream_bytes;
+    sum.failed_transfers += part.failed_transfers;
+    sum.truncated_transfers += part.truncated_transfers;
+    sum.foreign_packets += part.foreign_packets;
+}
+
+// Reads files one behind the other into one decoder.
+class Loading {
+public:
+    Loading(LoadedCapture& loaded, const StageObserver& on_stage) : loaded_(loaded), on_stage_(on_stage) {}
+
+    Status read(const std::string& path) {
+        GYROLOG_TRY(CaptureReader reader, CaptureReader::open(path));
+        while (true) {
+            on_stage_("read");
+            GYROLOG_TRY(const std::optional<CapturedTransfer> captured, reader.next());
+            if (!captured) { break; }
+            on_stage_("decode");
+            meet_connection(reader.segment());
+            take(captured->transfer);
+        }
+        add(loaded_.file, reader.accounts());
+        if (!loaded_.metadata) { loaded_.metadata = reader.metadata(); }
+        loaded_.last_checkpoint = reader.checkpoint();
+        return {};
+    }
+
+private:
+    // What does not say that it goes on with the stream before does not.
+    void meet_connection(const std::optional<CaptureSegment>& segment) {
+        if (!segment) { return; }
+        const bool goes_on = !present_ || (present_->capture == segment->capture &&
+                                           present_->connection == segment->connection);
+        if (!goes_on) { loaded_.decoder->begin_connection(); }
+        present_ = segment;
+    }
+
+    void take(const Transfer& transfer) {
+        if (!any_data_ && transfer.carries_stream() && !transfer.data.empty()) {
+            loaded_.first_data = transfer.time;
+            any_data_ = true;
+        }
+        static_cast<void>(loaded_.decoder->take(transfer));
+    }
+
+    LoadedCapture& loaded_;
+    const StageObserver& on_stage_;
+    bool any_data_ = false;
+    std::optional<CaptureSegment> present_;
+};
+
 }  // namespace
 
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
                                    const StageObserver& on_stage) {
-    GYROLOG_TRY(CaptureReader reader, CaptureReader::open(path));
     LoadedCapture loaded;
+    loaded.files = segment_files(path);
+    std::uint64_t stream_bytes = 0;
+    for (const std::string& file : loaded.files) { stream_bytes += size_of(file); }
     loaded.decoder = std::make_unique<StreamDecoder>(StreamDecoderOptions{
-        .keep_samples = keep_samples, .observer = nullptr, .stream_bytes = size_of(path)});
-    bool any_data = false;
-    while (true) {
-        on_stage("read");
-        GYROLOG_TRY(const std::optional<CapturedTransfer> captured, reader.next());
-        if (!captured) { break; }
-        const Transfer& transfer = captured->transfer;
-        if (!any_data && transfer.carries_stream() && !transfer.data.empty()) {
-            loaded.first_data = transfer.time;
-            any_data = true;
-        }
-        on_stage("decode");
-        static_cast<void>(loaded.decoder->take(transfer));
-    }
-    loaded.file = reader.accounts();
+        .keep_samples = keep_samples, .observer = nullptr, .stream_bytes = stream_bytes});
+    Loading loading(loaded, on_stage);
+    for (const std::string& file : loaded.files) { GYROLOG_CHECK(loading.read(file)); }
     if (loaded.file.blocks.bytes_total == 0) {
         return Error{ErrorCode::malformed, "read capture '" + path + "': the file is empty"};
     }
-    loaded.metadata = reader.metadata();
-    loaded.last_checkpoint = reader.checkpoint();
     return loaded;
 }
 

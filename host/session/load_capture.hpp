@@ -1,9 +1,10 @@
-// A stored capture, read and decoded once: what info, check and every analysis start from.
+// A stored capture, all of its files, read and decoded once: what info, check and every analysis start from.
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/recording/stage_observer.hpp"
 #include "host/base/result.hpp"
@@ -13,10 +14,11 @@
 namespace gyrolog {
 
 struct LoadedCapture {
-    CaptureAccounts file;
+    std::vector<std::string> files;           // one, or all those of a capture of several (segment_files.hpp)
+    CaptureAccounts file;                     // of all of them together
     std::optional<CaptureMetadata> metadata;  // absent in a foreign capture
-    std::optional<CaptureCheckpoint> last_checkpoint;
-    HostTime first_data;  // arrival of the first stream bytes
+    std::optional<CaptureCheckpoint> last_checkpoint;  // of the last file
+    HostTime first_data;                               // arrival of the first stream bytes
     std::unique_ptr<StreamDecoder> decoder;
 };
 

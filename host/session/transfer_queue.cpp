@@ -65,6 +65,11 @@ void TransferQueue::close() {
     ready_.notify_one();
 }
 
+void TransferQueue::reopen() {
+    const std::lock_guard lock(mutex_);
+    closed_ = false;
+}
+
 TransferQueue::Batch TransferQueue::pop(std::chrono::milliseconds wait) {
     std::unique_lock lock(mutex_);
     draining_.clear();

@@ -25,6 +25,8 @@ public:
 
     // No more will be pushed; pop() returns what is left and then nothing.
     void close();
+    // Takes transfers again. After finished().
+    void reopen();
 
     // Waits until something is there, the queue is closed, or `wait` is over, and takes all there is.
     // The batch is valid until the next pop().

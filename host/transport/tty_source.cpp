@@ -89,6 +89,32 @@ Status make_raw(int terminal, const std::string& path) {
     return {};
 }
 
+Result<int> open_terminal(const std::string& path) {
+    const int terminal = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (terminal < 0) { return open_error(path, errno); }
+    if (Status raw = make_raw(terminal, path); !raw.ok()) {
+        ::close(terminal);
+        return std::move(raw).error();
+    }
+    // A second reader would take away bytes. Where the request is unknown nothing is lost but this
+    // protection.
+    static_cast<void>(ioctl(terminal, TIOCEXCL));
+    return terminal;
+}
+
+// Where the port of this identity is now: under its old name, or another one with the same serial number.
+// Empty when there is none.
+std::string port_of(const SourceIdentity& identity) {
+    const std::string old_path = identity.uri.substr(std::string("tty:").size());
+    if (identity.serial.empty() || identity_of(old_path).serial == identity.serial) { return old_path; }
+    std::error_code none;
+    for (const auto& port : std::filesystem::directory_iterator("/sys/class/tty", none)) {
+        const std::string path = "/dev/" + port.path().filename().string();
+        if (identity_of(path).serial == identity.serial) { return path; }
+    }
+    return {};
+}
+
 }  // namespace
 
 // A write whose caller waits for `done`. Everything else is the thread's.
@@ -105,17 +131,26 @@ struct TtySource::PendingWrite {
 };
 
 Result<std::unique_ptr<TtySource>> TtySource::open(const std::string& path) {
-    const int terminal = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (terminal < 0) { return open_error(path, errno); }
+    GYROLOG_TRY(const int terminal, open_terminal(path));
     const int wake = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
     // From here on the source closes both.
     std::unique_ptr<TtySource> source(new TtySource(terminal, wake, identity_of(path)));
     if (wake < 0) { return open_error(path, errno); }
-    GYROLOG_CHECK(make_raw(terminal, path));
-    // A second reader would take away bytes. Where the request is unknown nothing is lost but this
-    // protection.
-    static_cast<void>(ioctl(terminal, TIOCEXCL));
     return source;
+}
+
+Status TtySource::reconnect() {
+    stop();
+    // A port that is held open keeps its name from the board that comes back.
+    if (terminal_ >= 0) { ::close(std::exchange(terminal_, -1)); }
+    const std::string path = port_of(identity_);
+    if (path.empty()) {
+        return Error{ErrorCode::not_found,
+                     "open '" + identity_.uri + "': no port has the board's serial number"};
+    }
+    GYROLOG_TRY(terminal_, open_terminal(path));
+    identity_ = identity_of(path);
+    return {};
 }
 
 TtySource::TtySource(int terminal, int wake, SourceIdentity identity)
@@ -128,7 +163,7 @@ TtySource::TtySource(int terminal, int wake, SourceIdentity identity)
 TtySource::~TtySource() {
     TtySource::stop();
     // Closing lowers DTR (HUPCL).
-    ::close(terminal_);
+    if (terminal_ >= 0) { ::close(terminal_); }
     if (wake_ >= 0) { ::close(wake_); }
 }
 
@@ -142,6 +177,7 @@ void TtySource::wake() const {
 }
 
 Status TtySource::start(TransferSink& sink) {
+    if (terminal_ < 0) { return Error{ErrorCode::device_lost, identity_.uri + ": the port is closed"}; }
     sink_ = &sink;
     stop_asked_ = false;
     calls_.reopen();

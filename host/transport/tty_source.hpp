@@ -35,6 +35,8 @@ public:
     Status set_line_state(bool data_terminal_ready) override;
     Status write(ByteView bytes) override;
     void stop() override;
+    // A port on USB may come back under another name: it is known by its serial number.
+    Status reconnect() override;
 
 private:
     struct PendingWrite;

@@ -57,28 +57,40 @@ Result<std::unique_ptr<UsbSource>> UsbSource::open(std::shared_ptr<UsbContext> u
 }
 
 UsbSource::UsbSource(std::shared_ptr<UsbContext> usb, std::unique_ptr<UsbDevice> device, BulkInPlan plan)
-    : usb_(std::move(usb)),
-      device_(std::move(device)),
-      plan_(plan),
-      identity_(identity_of(device_->board())),
-      stream_(*usb_, device_->handle(), device_->board().layout.endpoint_in, plan_, *this) {}
+    : usb_(std::move(usb)), plan_(plan) {
+    use(std::move(device));
+}
+
+void UsbSource::use(std::unique_ptr<UsbDevice> device) {
+    device_ = std::move(device);
+    identity_ = identity_of(device_->board());
+    TransferObserver& self = *this;
+    stream_ = std::make_unique<BulkInStream>(*usb_, device_->handle(), device_->board().layout.endpoint_in,
+                                             plan_, self);
+    device_lost_ = false;
+    line_raised_ = false;
+}
+
+Error UsbSource::gone() const { return {ErrorCode::device_lost, identity_.uri + ": the board is gone"}; }
 
 UsbSource::~UsbSource() {
     UsbSource::stop();
-    if (line_raised_ && !device_lost_) { static_cast<void>(UsbSource::set_line_state(false)); }
+    if (device_ && line_raised_ && !device_lost_) { static_cast<void>(UsbSource::set_line_state(false)); }
 }
 
 double UsbSource::tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const {
+    if (!stream_) { return 0.0; }
     const double filled_bytes = std::min(bytes_per_completion, static_cast<double>(plan_.transfer_bytes));
-    return stream_.queued_transfers() * filled_bytes / bytes_per_s;
+    return stream_->queued_transfers() * filled_bytes / bytes_per_s;
 }
 
 Status UsbSource::start(TransferSink& sink) {
+    if (!stream_) { return gone(); }
     usb_->call([&] { sink_ = &sink; });
     // A board that refuses the request has no line state; it is quiet until it gets a START command.
     Status begun = set_line_state(false);
     if (begun.ok() || begun.error().code == ErrorCode::unsupported) {
-        begun = stream_.start([this](BulkInStream::End end, const std::optional<Error>& error) {
+        begun = stream_->start([this](BulkInStream::End end, const std::optional<Error>& error) {
             device_lost_ = end == BulkInStream::End::device_lost;
             // Nothing may be told after the end.
             std::exchange(sink_, nullptr)->on_end(source_end_of(end), error);
@@ -88,19 +100,40 @@ Status UsbSource::start(TransferSink& sink) {
         usb_->call([this] { sink_ = nullptr; });
         return begun;
     }
-    stream_.wait_for_end(drain_ms);
+    stream_->wait_for_end(drain_ms);
     return {};
 }
 
 Status UsbSource::set_line_state(bool data_terminal_ready) {
+    if (!device_) { return gone(); }
     GYROLOG_CHECK(device_->set_line_state(data_terminal_ready, *this));
     line_raised_ = data_terminal_ready;
     return {};
 }
 
-Status UsbSource::write(ByteView bytes) { return device_->write(bytes, write_timeout_ms, *this); }
+Status UsbSource::write(ByteView bytes) {
+    if (!device_) { return gone(); }
+    return device_->write(bytes, write_timeout_ms, *this);
+}
 
-void UsbSource::stop() { stream_.stop(); }
+void UsbSource::stop() {
+    if (stream_) { stream_->stop(); }
+}
+
+// The old handle goes before the new one comes: its interfaces are then free for whoever is next.
+Status UsbSource::reconnect() {
+    stop();
+    stream_.reset();
+    device_.reset();
+    GYROLOG_TRY(const UsbSurvey survey, survey_usb(*usb_));
+    GYROLOG_TRY(const UsbBoard board, choose_board(survey, identity_.serial));
+    if (plan_.transfer_bytes % board.layout.packet_in_bytes != 0) {
+        return Error{ErrorCode::unsupported, "open board '" + board.uri() + "': its packets have changed"};
+    }
+    GYROLOG_TRY(std::unique_ptr<UsbDevice> device, UsbDevice::open(*usb_, board));
+    use(std::move(device));
+    return {};
+}
 
 void UsbSource::on_usb_transfer(const Transfer& transfer) {
     // A full sink has counted what it refused. The bus does not wait, so there is no second try.

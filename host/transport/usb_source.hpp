@@ -39,17 +39,21 @@ public:
     Status set_line_state(bool data_terminal_ready) override;
     Status write(ByteView bytes) override;
     void stop() override;
+    Status reconnect() override;
 
 private:
     UsbSource(std::shared_ptr<UsbContext> usb, std::unique_ptr<UsbDevice> device, BulkInPlan plan);
     void on_usb_transfer(const Transfer& transfer) override;
+    void use(std::unique_ptr<UsbDevice> device);
+    Error gone() const;
 
     std::shared_ptr<UsbContext> usb_;
-    std::unique_ptr<UsbDevice> device_;
     BulkInPlan plan_;
     SourceIdentity identity_;
-    BulkInStream stream_;
-    TransferSink* sink_ = nullptr;  // the event thread's; null when nobody is to be told
+    // Both are null between the loss of a board and its return.
+    std::unique_ptr<UsbDevice> device_;
+    std::unique_ptr<BulkInStream> stream_;  // goes first
+    TransferSink* sink_ = nullptr;          // the event thread's; null when nobody is to be told
     std::atomic<bool> device_lost_{false};
     std::atomic<bool> line_raised_{false};
 };

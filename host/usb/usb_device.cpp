@@ -125,9 +125,7 @@ Status UsbDevice::claim(std::uint8_t interface) {
         "claim interface " + std::to_string(interface) + " of board '" + board_.uri() + "'";
     if (libusb_kernel_driver_active(handle_, interface) == 1) {
         const int code = libusb_detach_kernel_driver(handle_, interface);
-        if (code == LIBUSB_SUCCESS) {
-            detached_.push_back(interface);
-        } else if (code != LIBUSB_ERROR_NOT_FOUND) {
+        if (code != LIBUSB_SUCCESS && code != LIBUSB_ERROR_NOT_FOUND) {
             return usb_error(doing + " from the kernel's driver", code);
         }
     }
@@ -144,9 +142,8 @@ UsbDevice::~UsbDevice() {
     for (const std::uint8_t interface : claimed_) {
         static_cast<void>(libusb_release_interface(handle_, interface));
     }
-    for (const std::uint8_t interface : detached_) {
-        static_cast<void>(libusb_attach_kernel_driver(handle_, interface));
-    }
+    // Not only when it was us who took the port away: a program that was killed gave nothing back.
+    static_cast<void>(libusb_attach_kernel_driver(handle_, board_.layout.control_interface));
     libusb_close(handle_);
 }
 

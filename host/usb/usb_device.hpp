@@ -42,7 +42,6 @@ private:
     libusb_device_handle* handle_;
     UsbBoard board_;
     std::vector<std::uint8_t> claimed_;
-    std::vector<std::uint8_t> detached_;  // interfaces whose kernel driver gets them back
 };
 
 }  // namespace gyrolog

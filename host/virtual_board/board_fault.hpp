@@ -14,12 +14,12 @@ struct BoardFault {
         duplicate_packet,  // 64 bytes arrive twice
         corrupt_byte,      // one byte arrives with a bit flipped
         reset,             // the microcontroller restarts, with a new boot id
-        unplug,            // the device is gone for good
+        unplug,            // the device is gone, for `duration_s` or for good
     };
 
     Kind kind = Kind::unplug;
     double at_s = 0.0;        // device time since the first start of the stream
-    double duration_s = 0.0;  // of link_stall
+    double duration_s = 0.0;  // of link_stall and unplug; 0 is for good
 };
 
 }  // namespace gyrolog

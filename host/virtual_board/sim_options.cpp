@@ -1,5 +1,6 @@
 #include "host/virtual_board/sim_options.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -55,9 +56,13 @@ std::optional<BoardFault> parse_fault(std::string_view text) {
         if (known.name != text.substr(0, at)) { continue; }
         BoardFault fault{.kind = known.kind};
         std::string_view from = text.substr(at + 1);
-        if (known.kind == BoardFault::Kind::link_stall) {
-            const std::size_t dots = from.find("..");
-            if (dots == std::string_view::npos) { return std::nullopt; }
+        const std::size_t dots = from.find("..");
+        const bool may_last =
+            known.kind == BoardFault::Kind::link_stall || known.kind == BoardFault::Kind::unplug;
+        if (known.kind == BoardFault::Kind::link_stall && dots == std::string_view::npos) {
+            return std::nullopt;
+        }
+        if (may_last && dots != std::string_view::npos) {
             const auto to_s = number(from.substr(dots + 2), 0.0, fault_latest_s);
             from = from.substr(0, dots);
             const auto from_s = number(from, 0.0, fault_latest_s);
@@ -78,10 +83,10 @@ Status parse_faults(std::string_view text, std::vector<BoardFault>& faults) {
         const std::size_t plus = rest.find('+');
         const auto fault = parse_fault(rest.substr(0, plus));
         if (!fault) {
-            return refused(
-                "fault", text,
-                "wants KIND@SECONDS, several joined by '+', link_stall@FROM..TO; kinds are fifo_overflow "
-                "bus_error link_stall drop_packet duplicate_packet corrupt_byte reset unplug");
+            return refused("fault", text,
+                           "wants KIND@SECONDS, several joined by '+', link_stall@FROM..TO, unplug@FROM..TO; "
+                           "kinds are fifo_overflow "
+                           "bus_error link_stall drop_packet duplicate_packet corrupt_byte reset unplug");
         }
         faults.push_back(*fault);
         if (plus == std::string_view::npos) { return {}; }
@@ -163,10 +168,32 @@ Status set_option(SimOptions& to, std::string_view key, std::string_view value) 
     if (key == "fault") { return parse_faults(value, to.faults); }
     if (key == "unplug") { return set_fault(to, BoardFault::Kind::unplug, key, value); }
     if (key == "reset") { return set_fault(to, BoardFault::Kind::reset, key, value); }
+    if (key == "replug") {
+        return set_number(to.replug_s, key, value, 0.0, fault_latest_s, "wants seconds since the start");
+    }
+    if (key == "self_powered") {
+        if (value != "0" && value != "1") { return refused(key, value, "wants 0 or 1"); }
+        to.self_powered = value == "1";
+        return {};
+    }
     return refused(
         key, value,
         "there is no such option; there are model rate full_scale dlpf seed boards board realtime clock_ppm "
-        "first_tick first_sequence boot_id ring fault unplug reset");
+        "first_tick first_sequence boot_id ring fault unplug replug reset self_powered");
+}
+
+// Of the last cable that is pulled for good.
+Status set_replug(SimOptions& to) {
+    if (!to.replug_s) { return {}; }
+    const auto pulled = std::find_if(to.faults.rbegin(), to.faults.rend(), [](const BoardFault& fault) {
+        return fault.kind == BoardFault::Kind::unplug && fault.duration_s == 0.0;
+    });
+    if (pulled == to.faults.rend() || *to.replug_s <= pulled->at_s) {
+        return Error{ErrorCode::invalid_argument,
+                     "simulated board: option replug: wants an unplug= before it"};
+    }
+    pulled->duration_s = *to.replug_s - pulled->at_s;
+    return {};
 }
 
 }  // namespace
@@ -181,6 +208,7 @@ Result<SimOptions> parse_sim_options(std::span<const std::pair<std::string, std:
         if (!parsed.text.empty()) { parsed.text += ','; }
         parsed.text.append(key).append("=").append(value);
     }
+    GYROLOG_CHECK(set_replug(parsed));
     if (board_given && parsed.board > parsed.boards) { parsed.boards = parsed.board; }
     return parsed;
 }

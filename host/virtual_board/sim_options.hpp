@@ -26,10 +26,13 @@ namespace gyrolog {
 //   clock_ppm=X      the sensor's clock against nominal, within 10000; without it 0 for a given model,
 //                    otherwise drawn from the seed
 //   first_tick=N, first_sequence=N, boot_id=N, ring=BYTES
-//   fault=KIND@SECONDS[+KIND@SECONDS...]   of device time since the start; link_stall@FROM..TO
+//   fault=KIND@SECONDS[+KIND@SECONDS...]   of device time since the start; link_stall@FROM..TO,
+//   unplug@FROM..TO
 //                    kinds: fifo_overflow bus_error link_stall drop_packet duplicate_packet corrupt_byte
 //                    reset unplug
 //   unplug=SECONDS, reset=SECONDS          the same as fault=unplug@SECONDS, fault=reset@SECONDS
+//   replug=SECONDS   when the cable that unplug= pulled is back; without it the board is gone for good
+//   self_powered=1   the board keeps its memory while it is unplugged; otherwise it boots anew
 struct SimOptions {
     std::string model_path;  // empty: typical_mpu9250()
     std::optional<double> rate_hz;
@@ -45,6 +48,8 @@ struct SimOptions {
     std::uint32_t boot_id = 1;
     std::size_t ring_bytes = 4096;
     std::vector<BoardFault> faults;
+    std::optional<double> replug_s;  // as typed; already in `faults`
+    bool self_powered = false;
     std::string text;  // as typed, without boards= and board=
 };
 

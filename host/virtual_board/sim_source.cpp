@@ -95,6 +95,7 @@ Result<std::unique_ptr<SimSource>> SimSource::create(const SimOptions& options, 
     board_options.boot_id = options.boot_id;
     board_options.ring_bytes = options.ring_bytes;
     board_options.faults = options.faults;
+    board_options.self_powered = options.self_powered;
     GYROLOG_TRY(std::unique_ptr<VirtualBoard> board, VirtualBoard::create(std::move(board_options)));
     return std::unique_ptr<SimSource>(new SimSource(options, limit, std::move(board)));
 }
@@ -133,9 +134,12 @@ Status SimSource::start(TransferSink& sink) {
         return Error{ErrorCode::invalid_argument, identity_.uri + ": already started"};
     }
     sink_ = &sink;
-    origin_ = host_now();
-    origin_board_ns_ = board_->now_ns();
-    last_event_ = origin_;
+    if (!started_before_) {
+        origin_ = host_now();
+        origin_board_ns_ = board_->now_ns();
+    }
+    started_before_ = true;
+    last_event_ = host_time();
     thread_ = std::thread([this] { run(); });
     return {};
 }
@@ -159,6 +163,23 @@ void SimSource::stop() {
         called_.notify_one();
     }
     if (thread_.joinable()) { thread_.join(); }
+}
+
+// Without real time the pause is over at once, and only the board's time knows of it.
+Status SimSource::reconnect() {
+    const auto back_ns = board_->replug_ns();
+    if (!board_->unplugged() || !back_ns) {
+        return Error{ErrorCode::unsupported, identity_.uri + ": unplugged for good"};
+    }
+    const std::int64_t now_ns =
+        realtime_ ? host_now().monotonic_ns - origin_.monotonic_ns + origin_board_ns_ : *back_ns;
+    if (now_ns < *back_ns) { return Error{ErrorCode::not_found, identity_.uri + ": unplugged"}; }
+    board_->replug(now_ns);
+    calls_.clear();
+    end_.reset();
+    ended_ = false;
+    stop_wanted_ = false;
+    return {};
 }
 
 // ------------------------------------------------------------------------------------------ the source's
@@ -209,7 +230,7 @@ void SimSource::run_as_fast_as_taken() {
 void SimSource::run_in_real_time() {
     while (!end_) {
         if (!answer_calls()) { return; }
-        const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC) - origin_.monotonic_ns + origin_board_ns_;
+        const std::int64_t now_ns = host_now().monotonic_ns - origin_.monotonic_ns + origin_board_ns_;
         board_->advance_to(now_ns);
         if (board_->unplugged()) {
             deliver_packets();
@@ -299,7 +320,11 @@ bool SimSource::deliver_in(ByteView data, int status) {
     if (!hand_over(transfer)) { return false; }
     transfer.event = Transfer::Event::completion;
     transfer.status = status;
-    transfer.time = last_event_ = host_time();
+    // In simulated time a transfer is complete when its last byte comes, not when somebody looks.
+    const bool all = !realtime_ && !data.empty() && board_->in_endpoint().pending_bytes() == 0;
+    const HostTime now = all ? host_time_of(board_->last_write_ns()) : host_time();
+    if (now.monotonic_ns > last_event_.monotonic_ns) { last_event_ = now; }
+    transfer.time = last_event_;
     transfer.data = data;
     return hand_over(transfer);
 }
@@ -330,9 +355,10 @@ bool SimSource::hand_over(Transfer& transfer) {
     return true;
 }
 
-HostTime SimSource::host_time() const {
-    if (realtime_) { return host_now(); }
-    const std::int64_t since_start_ns = board_->now_ns() - origin_board_ns_;
+HostTime SimSource::host_time() const { return realtime_ ? host_now() : host_time_of(board_->now_ns()); }
+
+HostTime SimSource::host_time_of(std::int64_t board_ns) const {
+    const std::int64_t since_start_ns = board_ns - origin_board_ns_;
     return {origin_.monotonic_ns + since_start_ns, origin_.realtime_ns + since_start_ns};
 }
 

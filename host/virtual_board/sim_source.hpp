@@ -47,6 +47,7 @@ public:
     Status set_line_state(bool data_terminal_ready) override;
     Status write(ByteView bytes) override;
     void stop() override;
+    Status reconnect() override;
 
 private:
     // A call of the host on its way to the source's thread.
@@ -72,6 +73,7 @@ private:
                       ByteView data);
     bool hand_over(Transfer& transfer);
     HostTime host_time() const;
+    HostTime host_time_of(std::int64_t board_ns) const;
     bool stopping();
 
     SourceIdentity identity_;
@@ -81,6 +83,7 @@ private:
 
     // The source's thread's own.
     TransferSink* sink_ = nullptr;
+    bool started_before_ = false;
     HostTime origin_;  // host time of board time origin_board_ns_
     std::int64_t origin_board_ns_ = 0;
     HostTime last_event_;

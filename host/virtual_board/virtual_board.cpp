@@ -183,6 +183,7 @@ std::uint64_t VirtualBoard::sampling_instants() const {
 void VirtualBoard::note_start() {
     if (!board_.streaming || first_start_ns_) { return; }
     first_start_ns_ = now_ns_;
+    limit_from_ns_ = now_ns_;
     if (duration_limit_s_) {
         const auto samples =
             static_cast<std::uint64_t>(std::llround(*duration_limit_s_ * sensor_.nominal_rate_hz()));
@@ -197,7 +198,7 @@ bool VirtualBoard::sample_limit_reached() const {
 bool VirtualBoard::finish() {
     if (line_state_) { on_line_state(false); }
     run_main_loop();
-    return board_.ring.used == 0;
+    return unplugged_ || board_.ring.used == 0;
 }
 
 std::int64_t VirtualBoard::next_event_ns() const {
@@ -261,17 +262,50 @@ void VirtualBoard::fault(const BoardFault& fault) {
             corrupt_due_ = true;
             break;
         case BoardFault::Kind::reset:
-            ++boot_id_;
-            // The sensor and its configuration were good at power-on, so this cannot fail.
-            if (power_on().ok() && line_state_) { on_line_state(true); }
+            begin_anew();
+            if (line_state_) { on_line_state(true); }
             break;
         case BoardFault::Kind::unplug:
             unplugged_ = true;
+            on_line_state(false);
+            replug_ns_.reset();
+            if (fault.duration_s > 0.0) { replug_ns_ = now_ns_ + to_ns(fault.duration_s); }
             break;
     }
 }
 
+// Of what is left of the run, the time that has passed.
+void VirtualBoard::spend_limit() {
+    if (!sample_limit_ || !first_start_ns_) { return; }
+    const double passed = static_cast<double>(now_ns_ - limit_from_ns_) * 1e-9 * sensor_.nominal_rate_hz();
+    *sample_limit_ -= std::min(*sample_limit_ - 1, static_cast<std::uint64_t>(std::llround(passed)));
+    limit_from_ns_ = now_ns_;
+}
+
+void VirtualBoard::begin_anew() {
+    spend_limit();
+    ++boot_id_;
+    // The sensor and its configuration were good at power-on, so this cannot fail.
+    static_cast<void>(power_on());
+}
+
+void VirtualBoard::replug(std::int64_t time_ns) {
+    unplugged_ = false;
+    replug_ns_.reset();
+    in_endpoint_.clear();
+    if (options_.self_powered) {
+        advance_to(time_ns);
+        in_endpoint_.clear();
+        spend_limit();
+        return;
+    }
+    now_ns_ = std::max(now_ns_, time_ns);
+    begin_anew();
+}
+
 std::size_t VirtualBoard::link_write(ByteView bytes) {
+    if (unplugged_) { return 0; }
+    last_write_ns_ = now_ns_;
     if (now_ns_ < link_stalled_until_ns_) { return 0; }
     if (drop_bytes_due_ > 0) {
         const std::size_t dropped = std::min(drop_bytes_due_, bytes.size());

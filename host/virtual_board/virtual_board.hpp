@@ -40,6 +40,7 @@ struct VirtualBoardOptions {
     std::uint32_t boot_id = 1;
     std::size_t ring_bytes = 4096;
     std::vector<BoardFault> faults;
+    bool self_powered = false;  // keeps its memory while it is unplugged
 };
 
 class VirtualBoard {
@@ -60,9 +61,16 @@ public:
     void on_receive(ByteView bytes);
     InEndpoint& in_endpoint() { return in_endpoint_; }
     bool unplugged() const { return unplugged_; }
+    // When the cable is back; nothing when it was pulled for good.
+    std::optional<std::int64_t> replug_ns() const { return replug_ns_; }
+    // The cable is back, no earlier than replug_ns().
+    void replug(std::int64_t time_ns);
+    // When the firmware last put a byte on the wire.
+    std::int64_t last_write_ns() const { return last_write_ns_; }
 
     // --- The end of a run of known length.
-    // After this many sampling instants since the stream's last start the sensor stops firing.
+    // After this many sampling instants since the stream's last start the sensor stops firing. A board that
+    // begins anew, by a reset or a cable that was pulled, goes on to the same end, by time.
     void set_sample_limit(std::optional<std::uint64_t> samples) { sample_limit_ = samples; }
     // The same by time at the nominal rate in force when the stream starts: one hour at 100 Hz is 360 000
     // samples, whatever the sensor's clock is off by.
@@ -91,6 +99,8 @@ private:
     Status configure_at_power_on();
     void run_main_loop();
     void note_start();
+    void spend_limit();
+    void begin_anew();
     void take_instant();
     void meet_faults();
     std::int64_t next_event_ns() const;
@@ -114,6 +124,9 @@ private:
     std::optional<double> duration_limit_s_;
     bool line_state_ = false;
     bool unplugged_ = false;
+    std::optional<std::int64_t> replug_ns_;
+    std::int64_t last_write_ns_ = 0;
+    std::int64_t limit_from_ns_ = 0;  // what is left of the limit counts from here
 
     std::vector<BoardFault> due_;  // by time, the last one first
     std::int64_t main_loop_stalled_until_ns_ = 0;

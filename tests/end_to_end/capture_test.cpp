@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -118,6 +119,81 @@ TEST_F(Capture, AnUnpluggedBoardLeavesAClosedAnalysableFile) {
     EXPECT_EQ(answer["end"], "clean");
     EXPECT_NEAR(answer["samples"]["good"].get<double>(), 30000.0, 100.0);
     EXPECT_EQ(run_gyrolog({"analyze", folder.path("a.pcapng"), "--json", "-"}).exit_code, 0);
+}
+
+TEST_F(Capture, ABoardThatComesBackIsOneRecordingWithAHoleOfTheTrueLength) {
+    for (const auto& [option, cause, at_least, at_most] :
+         {std::tuple{"", "reset", 15'000, 15'300},
+          std::tuple{",self_powered=1", "unplugged", 15'000, 15'041}}) {
+        const std::string file = std::string(cause) + ".pcapng";
+        const ProgramResult result =
+            capture(std::string("sim:rate=1000,unplug=20,replug=35") + option, file, {"--duration", "60s"});
+        EXPECT_EQ(result.exit_code, 5) << result.err;
+        EXPECT_NE(result.err.find("waiting for the board"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("the board is back"), std::string::npos) << result.err;
+        const json answer = check(file, 5);
+        EXPECT_EQ(answer["end"], "clean");
+        EXPECT_EQ(answer["files"].size(), 2U);
+        ASSERT_EQ(answer["dropouts"].size(), 1U);
+        EXPECT_EQ(answer["dropouts"][0]["cause"], cause);
+        EXPECT_NEAR(answer["dropouts"][0]["at_s"].get<double>(), 20.0, 0.05);
+        // The 15 s, up to 40 ms of samples that waited for their frame to fill when the cable was pulled, and
+        // the time that a board takes to boot.
+        const int hole = answer["dropouts"][0]["samples"];
+        EXPECT_GE(hole, at_least);
+        EXPECT_LE(hole, at_most);
+        EXPECT_EQ(answer["samples"]["missing"], hole);
+        EXPECT_NEAR(answer["samples"]["good"].get<int>() + hole, 60'000, 300);
+        const ProgramResult analysed = run_gyrolog({"analyze", folder.path(file), "--json", "-"});
+        ASSERT_EQ(analysed.exit_code, 0) << analysed.err;
+    }
+}
+
+TEST_F(Capture, ALostBoardIsNotWaitedForWhenToldSo) {
+    const ProgramResult result = capture("sim:rate=1000,unplug=20,replug=35", "a.pcapng",
+                                         {"--duration", "60s", "--on-unplug", "exit"});
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_EQ(check("a.pcapng")["files"].size(), 1U);
+}
+
+TEST_F(Capture, TheWaitForALostBoardEndsAtTheFirstInterrupt) {
+    const ProgramResult result =
+        run_gyrolog_and_signal({"capture", "--device", "sim:rate=1000,realtime=1,unplug=0.5,replug=100000",
+                                "-o", folder.path("a.pcapng")},
+                               std::chrono::milliseconds(1500), SIGINT);
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_NE(result.err.find("waiting for the board"), std::string::npos) << result.err;
+    const json answer = check("a.pcapng");
+    EXPECT_EQ(answer["end"], "clean");
+    EXPECT_EQ(answer["closed"], true);
+    EXPECT_GT(answer["samples"]["good"], 400);
+}
+
+TEST_F(Capture, FilesThatFollowEachOtherAreOneRecording) {
+    ASSERT_EQ(capture("sim:rate=1000,seed=3", "one.pcapng", {"--duration", "60s"}).exit_code, 0);
+    ASSERT_EQ(capture("sim:rate=1000,seed=3", "time.pcapng", {"--duration", "60s", "--rotate-every", "13s"})
+                  .exit_code,
+              0);
+    ASSERT_EQ(capture("sim:rate=1000,seed=3", "size.pcapng", {"--duration", "60s", "--rotate-size", "200k"})
+                  .exit_code,
+              0);
+    const json one = check("one.pcapng");
+    const json analysis = json::parse(run_gyrolog({"analyze", folder.path("one.pcapng"), "--json", "-"}).out);
+    for (const char* file : {"time.pcapng", "size.pcapng"}) {
+        const json parts = check(file);
+        EXPECT_GT(parts["files"].size(), 3U);
+        for (const char* account : {"bytes", "frames", "samples", "dropouts"}) {
+            EXPECT_EQ(parts[account], one[account]) << file;
+        }
+        const ProgramResult result = run_gyrolog({"analyze", folder.path(file), "--json", "-"});
+        EXPECT_EQ(json::parse(result.out)["axes"], analysis["axes"]) << file;
+    }
+    // A file that is missing in the middle is a hole, and nothing else.
+    fs::remove(folder.path("time.3.pcapng"));
+    const json holed = check("time.pcapng", 5);
+    EXPECT_EQ(holed["samples"]["good"].get<int>() + holed["samples"]["missing"].get<int>(), 60'000);
+    ASSERT_EQ(holed["dropouts"].size(), 1U);
+    EXPECT_EQ(holed["dropouts"][0]["cause"], "link");
 }
 
 TEST_F(Capture, AReplayGivesTheSameStream) {

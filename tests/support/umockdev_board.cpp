@@ -422,6 +422,11 @@ void UmockdevBoard::hide_driver() {
     usbfs_->driver_bound = false;
 }
 
+void UmockdevBoard::lose_driver() {
+    const std::lock_guard lock(usbfs_->mutex);
+    usbfs_->driver_bound = false;
+}
+
 void UmockdevBoard::forbid() {
     namespace fs = std::filesystem;
     gchar* path = umockdev_testbed_get_root_dir(usbfs_->testbed);

@@ -89,6 +89,8 @@ public:
     void forbid();
     // As on a kernel that cannot tell which driver is bound (umockdev's own replay is one).
     void hide_driver();
+    // As a program leaves it that was killed: no driver, and nobody else either.
+    void lose_driver();
 
     bool kernel_driver_bound() const;
     bool interface_claimed(std::uint8_t interface) const;

@@ -115,6 +115,103 @@ TEST(DecodedRecording, SetsAResetApartByTheHostsClock) {
     ASSERT_EQ(recording->warnings.size(), 1U);
 }
 
+// A board that has kept its memory: its ticks say to the sample how long it was away.
+TEST(DecodedRecording, JoinsConnectionsByTheBoardsTicks) {
+    Listening link;
+    link.begin();
+    link.hear_samples(99);
+    link.decoder.begin_connection();
+    link.board.sequence += 2;  // a partial frame and its EVENT, which nobody took
+    link.board.restart(1600 / 1003.0 + 7200.25);
+    link.board.delay_s = 0.4;  // the host's clock would be off by as much
+    link.begin();
+    link.hear_samples(99);
+    const LinkReport report = link.decoder.report();
+    EXPECT_FALSE(report.complete());
+    ASSERT_EQ(report.dropouts.size(), 1U);
+    EXPECT_EQ(report.dropouts[0].cause, DropoutCause::unplugged);
+    EXPECT_EQ(report.dropouts[0].samples, std::llround(7200.25 * 1003.0));
+    EXPECT_EQ(report.samples.missing, report.dropouts[0].samples);
+    EXPECT_EQ(report.samples_in_joins, report.dropouts[0].samples);
+    EXPECT_EQ(report.boots, 1U);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    ASSERT_EQ(recording->segments.size(), 2U);
+    EXPECT_EQ(recording->segments[1].first_index, 1600 + std::llround(7200.25 * 1003.0));
+    ASSERT_EQ(recording->dropouts.size(), 1U);
+    EXPECT_EQ(recording->dropouts[0].cause, "unplugged");
+    EXPECT_EQ(recording->dropouts[0].samples, recording->missing_samples());
+    EXPECT_NEAR(recording->dropouts[0].at_s, 1600 / 1003.0, 1e-5);
+}
+
+// A board that has booted: only the pause is measured by the host's clock, and not the hours before it, in
+// which the board's clock has parted from the host's.
+TEST(DecodedRecording, JoinsBootsByTheHostsClockOfTheTimeAboutThePause) {
+    Listening link;
+    link.board.host_ratio = 1.0 + 100e-6;
+    link.begin();
+    const std::size_t frames = 3600 * 1003 / 16;
+    link.hear_samples(frames);
+    const double end_s = link.board.time_s();
+    const double end_host_s = static_cast<double>(link.board.now().monotonic_ns) * 1e-9;
+    link.decoder.begin_connection();
+    link.board.hello.boot_id = 2;
+    link.board.sequence = 0;
+    link.board.restart(0.0);
+    link.board.ticks_offset = 77;
+    // The host's clock goes on by the pause of 30 s.
+    const double pause_s = 30.0;
+    const double shift_s = end_host_s + pause_s - static_cast<double>(link.board.now().monotonic_ns) * 1e-9;
+    link.board.delay_s += shift_s;
+    link.begin();
+    link.hear_samples(99);
+    const LinkReport report = link.decoder.report();
+    ASSERT_EQ(report.dropouts.size(), 1U);
+    EXPECT_EQ(report.dropouts[0].cause, DropoutCause::reset);
+    EXPECT_EQ(report.frames.missing, 0U);
+    EXPECT_EQ(report.boots, 2U);
+    EXPECT_GT(end_s, 3599.0);
+    EXPECT_NEAR(static_cast<double>(report.dropouts[0].samples), pause_s * 1003.0, 1.0)
+        << "100 ppm of an hour would be 361 samples";
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_NEAR(static_cast<double>(recording->missing_samples()), pause_s * 1003.0, 1.0);
+}
+
+TEST(DecodedRecording, HalfAFrameOfAnEndedConnectionIsSkipped) {
+    Listening link;
+    link.begin();
+    const Bytes torn = link.board.samples_frame();
+    link.decoder.feed(ByteView(torn).first(torn.size() / 2), link.board.now());
+    EXPECT_GT(link.decoder.report().bytes.buffered, 0U);
+    link.decoder.begin_connection();
+    EXPECT_EQ(link.decoder.report().bytes.buffered, 0U);
+    link.board.restart(60.0);
+    link.begin();
+    link.hear_samples(3);
+    const LinkReport report = link.decoder.report();
+    EXPECT_TRUE(report.bytes.balanced());
+    EXPECT_EQ(report.bytes.skipped, torn.size() / 2);
+    EXPECT_EQ(report.frames.good, 9U);
+    EXPECT_EQ(report.frames.corrupted, 0U);
+}
+
+// What a booted board answers before its HELLO has small numbers, and is no duplicate.
+TEST(DecodedRecording, AnswerOfABootedBoardBeforeItsHelloIsTaken) {
+    Listening link;
+    link.begin();
+    link.hear_samples(99);
+    link.decoder.begin_connection();
+    link.board.sequence = 0;
+    link.board.hello.boot_id = 2;
+    link.board.restart(0.0);
+    link.hear(link.board.config_frame());
+    link.begin();
+    const LinkReport report = link.decoder.report();
+    EXPECT_EQ(report.frames.duplicated, 0U);
+    EXPECT_EQ(report.boots, 2U);
+}
+
 TEST(DecodedRecording, KeepsTheLongestConfigurationAndNamesTheRest) {
     Listening link;
     link.begin();

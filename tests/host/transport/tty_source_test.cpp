@@ -180,5 +180,37 @@ TEST(TtySource, AMissingPortAndAPlainFileAreToldApart) {
     EXPECT_EQ(TtySource::open("/dev/null").error().code, ErrorCode::invalid_argument);
 }
 
+TEST_F(TtySourceTest, APortThatHungUpIsOpenedAgainOnceItIsThere) {
+    // A name that outlives the port, as /dev/serial/by-id has it.
+    const std::string name = testing::TempDir() + "gyrolog_port_" + std::to_string(getpid());
+    ASSERT_EQ(symlink(path_.c_str(), name.c_str()), 0);
+    source_.reset();
+    auto opened = TtySource::open(name);
+    ASSERT_TRUE(opened.ok()) << opened.error().message;
+    source_ = std::move(opened).value();
+    ASSERT_TRUE(source_->start(sink_).ok());
+    hang_up();
+    EXPECT_EQ(sink_.wait_for_end(), SourceEnd::device_lost);
+    source_->stop();
+    unlink(name.c_str());
+    EXPECT_EQ(source_->reconnect().error().code, ErrorCode::not_found);
+    CollectingSink early;
+    EXPECT_FALSE(source_->start(early).ok());
+
+    board_ = posix_openpt(O_RDWR | O_NOCTTY);
+    ASSERT_EQ(grantpt(board_), 0);
+    ASSERT_EQ(unlockpt(board_), 0);
+    ASSERT_EQ(symlink(ptsname(board_), name.c_str()), 0);
+    const Status back = source_->reconnect();
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    CollectingSink sink;
+    ASSERT_TRUE(source_->start(sink).ok());
+    const Bytes sent = every_byte_many_times(1000);
+    send(sent);
+    EXPECT_TRUE(sink.wait_for_bytes(sent.size()));
+    EXPECT_EQ(sink.stream(), sent);
+    unlink(name.c_str());
+}
+
 }  // namespace
 }  // namespace gyrolog

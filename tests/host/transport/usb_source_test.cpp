@@ -467,6 +467,51 @@ TEST_F(UsbSourceTest, ASourceCanBeStartedAgain) {
     }
 }
 
+TEST_F(UsbSourceTest, ABoardThatWasPulledIsTakenUpAgainByItsSerialNumber) {
+    UmockdevBoard& board = plug_in();
+    open();
+    start();
+    raise_line();
+    EXPECT_TRUE(sink_.wait_for_bytes(400));
+    board.unplug();
+    EXPECT_EQ(sink_.wait_for_end(), SourceEnd::device_lost);
+    source_->stop();
+    EXPECT_EQ(source_->reconnect().error().code, ErrorCode::not_found);
+    EXPECT_FALSE(source_->set_line_state(true).ok());
+    CollectingSink early;
+    EXPECT_FALSE(source_->start(early).ok());
+
+    // Another board is none; the same one comes back under another address.
+    MockUsbIdentity identity;
+    identity.serial = "S2";
+    identity.device_address = 3;
+    plug_in(identity);
+    EXPECT_EQ(source_->reconnect().error().code, ErrorCode::not_found);
+    identity.serial = "S1";
+    identity.device_address = 4;
+    CountingFunction again;
+    const UmockdevBoard& back = plug_in(identity, again);
+    EXPECT_TRUE(back.kernel_driver_bound());
+    const Status taken = source_->reconnect();
+    ASSERT_TRUE(taken.ok()) << taken.error().message;
+    EXPECT_EQ(source_->identity().device_address, 4);
+    CollectingSink sink;
+    ASSERT_TRUE(source_->start(sink).ok());
+    ASSERT_TRUE(source_->set_line_state(true).ok());
+    EXPECT_TRUE(sink.wait_for_bytes(400));
+    source_.reset();
+    EXPECT_FALSE(again.dtr);
+    EXPECT_TRUE(back.kernel_driver_bound()) << "/dev/ttyACM0 is there again";
+}
+
+TEST_F(UsbSourceTest, APortThatAKilledProgramTookAlongIsGivenBack) {
+    UmockdevBoard& board = plug_in();
+    board.lose_driver();
+    open();
+    source_.reset();
+    EXPECT_TRUE(board.kernel_driver_bound());
+}
+
 TEST_F(UsbSourceTest, TheToleratedStallIsWhatTheQueueHolds) {
     plug_in();
     open();

@@ -39,6 +39,19 @@ TEST(SimOptions, EveryOptionIsRead) {
     EXPECT_EQ(options->text.find("board"), std::string::npos);
 }
 
+TEST(SimOptions, ACableThatIsPulledMayComeBack) {
+    const auto options = parse_sim_options(
+        Pairs{{"replug", "95"}, {"fault", "unplug@10..20.5"}, {"unplug", "90"}, {"self_powered", "1"}});
+    ASSERT_TRUE(options.ok()) << options.error().message;
+    ASSERT_EQ(options->faults.size(), 2U);
+    EXPECT_EQ(options->faults[0].duration_s, 10.5);
+    EXPECT_EQ(options->faults[1].at_s, 90.0);
+    EXPECT_EQ(options->faults[1].duration_s, 5.0);
+    EXPECT_TRUE(options->self_powered);
+    EXPECT_FALSE(parse_sim_options(Pairs{{"unplug", "90"}, {"replug", "80"}}).ok());
+    EXPECT_FALSE(parse_sim_options(Pairs{{"replug", "80"}}).ok());
+}
+
 TEST(SimOptions, AnUnknownOptionOrABadValueIsRefusedByName) {
     for (const auto& [key, value] : Pairs{{"speed", "1"},
                                           {"rate", "fast"},
@@ -57,6 +70,8 @@ TEST(SimOptions, AnUnknownOptionOrABadValueIsRefusedByName) {
                                           {"fault", "reset@1+"},
                                           {"fault", "link_stall@1"},
                                           {"fault", "link_stall@3..1"},
+                                          {"fault", "unplug@3..1"},
+                                          {"self_powered", "yes"},
                                           {"unplug", "soon"}}) {
         const auto options = parse_sim_options(Pairs{{key, value}});
         ASSERT_FALSE(options.ok()) << key << "=" << value;

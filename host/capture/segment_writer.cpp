@@ -1,0 +1,135 @@
+#include "host/capture/segment_writer.hpp"
+
+#include <array>
+#include <cstdio>
+#include <random>
+#include <utility>
+
+#include "host/capture/segment_files.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint64_t name_number_max = 1'000'000;
+
+// Two captures must not be taken for one: a clock may be set back, a random number alone may be a poor one.
+std::string new_capture_name() {
+    std::random_device random;
+    const std::uint64_t high = random();
+    const std::uint64_t name =
+        ((high << 32U) | random()) ^ static_cast<std::uint64_t>(clock_ns(CLOCK_REALTIME));
+    std::array<char, 17> text{};
+    static_cast<void>(
+        std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(name)));
+    return text.data();
+}
+
+}  // namespace
+
+Result<SegmentWriter> SegmentWriter::create(SegmentPlan plan, const SourceIdentity& identity, Disk& disk) {
+    SegmentWriter writer(std::move(plan), identity, disk);
+    writer.capture_ = new_capture_name();
+    GYROLOG_CHECK(writer.check_room());
+    GYROLOG_CHECK(writer.open_next());
+    return writer;
+}
+
+Status SegmentWriter::check_room() const {
+    if (plan_.min_free_bytes == 0) { return {}; }
+    GYROLOG_TRY(const std::uint64_t free_bytes, disk_->free_bytes(plan_.path));
+    if (free_bytes > plan_.min_free_bytes) { return {}; }
+    constexpr std::uint64_t megabyte = 1'000'000;
+    return Error{ErrorCode::disk_full,
+                 "write '" + (paths_.empty() ? plan_.path : paths_.back()) + "': the disk has " +
+                     std::to_string(free_bytes / megabyte) + " MB left, and " +
+                     std::to_string(plan_.min_free_bytes / megabyte) +
+                     " MB are to stay free (--min-free); make room, or choose another disk"};
+}
+
+Result<std::unique_ptr<AppendFile>> SegmentWriter::create_file() {
+    while (true) {
+        ++name_number_;
+        const bool first = number_ == 0;
+        const std::string path = segment_path(plan_.path, name_number_);
+        auto file = disk_->create(path, first && plan_.overwrite ? IfExists::overwrite : IfExists::refuse);
+        if (file.ok()) {
+            paths_.push_back(path);
+            return file;
+        }
+        Error error = std::move(file).error();
+        const bool taken = error.code == ErrorCode::invalid_argument;
+        if (taken && !first && name_number_ < name_number_max) { continue; }
+        if (taken) { error.message += "; choose another name or --force"; }
+        return error;
+    }
+}
+
+Status SegmentWriter::open_next() {
+    GYROLOG_TRY(std::unique_ptr<AppendFile> file, create_file());
+    ++number_;
+    GYROLOG_TRY(CaptureWriter writer, CaptureWriter::create(std::move(file), identity_, host_now(),
+                                                            CaptureSegment{capture_, number_, connection_}));
+    file_.emplace(std::move(writer));
+    first_transfer_ns_.reset();
+    return {};
+}
+
+bool SegmentWriter::is_due(const Transfer& transfer) {
+    if (!first_transfer_ns_) { first_transfer_ns_ = transfer.time.monotonic_ns; }
+    if (file_->transfers() == 0) { return false; }
+    const double age_s = static_cast<double>(transfer.time.monotonic_ns - *first_transfer_ns_) * 1e-9;
+    return (plan_.rotate_bytes && file_->bytes_written() >= *plan_.rotate_bytes) ||
+           (plan_.rotate_s && age_s >= *plan_.rotate_s);
+}
+
+Status SegmentWriter::rotate() {
+    GYROLOG_CHECK(file_->checkpoint(counters_));
+    GYROLOG_CHECK(close());
+    return open_next();
+}
+
+Status SegmentWriter::append(const Transfer& transfer) {
+    if (!file_) { return Error{ErrorCode::storage_failed, "write '" + plan_.path + "': it is closed"}; }
+    if (is_due(transfer)) {
+        GYROLOG_CHECK(rotate());
+        first_transfer_ns_ = transfer.time.monotonic_ns;
+    }
+    return file_->append(transfer);
+}
+
+Status SegmentWriter::checkpoint(const CaptureCounters& counters) {
+    counters_ = counters;
+    if (!file_) { return {}; }
+    GYROLOG_CHECK(file_->checkpoint(counters));
+    return check_room();
+}
+
+Status SegmentWriter::sync() { return file_ ? file_->sync() : Status(); }
+
+Status SegmentWriter::close() {
+    if (!file_) { return {}; }
+    Status closed = file_->close();
+    closed_bytes_ += file_->bytes_written();
+    file_.reset();
+    return closed;
+}
+
+Status SegmentWriter::begin_connection(const SourceIdentity& identity) {
+    identity_ = identity;
+    ++connection_;
+    GYROLOG_CHECK(check_room());
+    return open_next();
+}
+
+void SegmentWriter::drop() {
+    if (!file_) { return; }
+    static_cast<void>(file_->close());
+    file_.reset();
+    static_cast<void>(std::remove(paths_.back().c_str()));
+    paths_.pop_back();
+    --number_;
+    --name_number_;
+    --connection_;
+}
+
+}  // namespace gyrolog

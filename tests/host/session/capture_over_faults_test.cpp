@@ -1,0 +1,330 @@
+// What a night brings: a cable that is pulled, a disk that is full, slow or broken.
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "analysis/simulate/sensor_model.hpp"
+#include "host/session/capture_session.hpp"
+#include "host/session/load_capture.hpp"
+#include "host/virtual_board/sim_source.hpp"
+#include "tests/host/session/board_source.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using std::chrono::milliseconds;
+
+bool go_on(const CaptureProgress& /*progress*/) { return true; }
+
+// The computer's disk, but for what it is told to do wrong.
+class FaultyDisk final : public Disk {
+public:
+    // Of every file made from now on, in the order of the calls.
+    std::atomic<std::uint64_t> bytes_per_write{~std::uint64_t{0}};  // more is taken in part
+    std::atomic<std::int64_t> write_takes_ms{0};
+    std::atomic<std::int64_t> sync_takes_ms{0};  // once: the next sync
+    std::atomic<std::uint64_t> room_bytes{~std::uint64_t{0}};
+    std::atomic<bool> breaks{false};  // EIO at the next write
+    std::atomic<bool> sync_breaks{false};
+    std::atomic<std::uint64_t> told_free_bytes{~std::uint64_t{0}};
+    std::atomic<int> syncs{0};
+
+    Result<std::unique_ptr<AppendFile>> create(const std::string& path, IfExists if_exists) override {
+        GYROLOG_TRY(std::unique_ptr<AppendFile> file, create_append_file(path, if_exists));
+        return std::unique_ptr<AppendFile>(new File(*this, std::move(file)));
+    }
+    Result<std::uint64_t> free_bytes(const std::string& /*path*/) override { return told_free_bytes.load(); }
+
+private:
+    class File final : public AppendFile {
+    public:
+        File(FaultyDisk& disk, std::unique_ptr<AppendFile> file) : disk_(disk), file_(std::move(file)) {}
+
+        Result<std::size_t> write(ByteView bytes) override {
+            std::this_thread::sleep_for(milliseconds(disk_.write_takes_ms));
+            if (disk_.breaks) { return Error{ErrorCode::storage_failed, "write: input/output error"}; }
+            const std::uint64_t room = disk_.room_bytes;
+            if (room == 0) { return Error{ErrorCode::disk_full, "write: no space left on device"}; }
+            const auto size = static_cast<std::size_t>(
+                std::min({std::uint64_t{bytes.size()}, room, disk_.bytes_per_write.load()}));
+            if (room != ~std::uint64_t{0}) { disk_.room_bytes -= size; }
+            return file_->write(bytes.first(size));
+        }
+        Status truncate(std::uint64_t size_bytes) override { return file_->truncate(size_bytes); }
+        Status sync() override {
+            ++disk_.syncs;
+            std::this_thread::sleep_for(milliseconds(disk_.sync_takes_ms.exchange(0)));
+            if (disk_.sync_breaks) { return Error{ErrorCode::storage_failed, "sync: input/output error"}; }
+            return file_->sync();
+        }
+        Status close() override { return file_->close(); }
+
+    private:
+        FaultyDisk& disk_;
+        std::unique_ptr<AppendFile> file_;
+    };
+};
+
+class CaptureOverFaults : public testing::Test {
+protected:
+    CaptureOverFaults() {
+        request_.path = folder_.path("night.pcapng");
+        request_.hello_timeout_s = 5.0;
+        request_.duration_s = 3.0;
+        request_.disk = &disk_;
+        request_.on_unplug = OnUnplug::wait;
+        request_.reconnect_interval_s = 0.02;
+    }
+
+    LoadedCapture loaded() const {
+        auto capture = load_capture(request_.path, false);
+        EXPECT_TRUE(capture.ok()) << (capture.ok() ? "" : capture.error().message);
+        return capture.ok() ? std::move(capture).value() : LoadedCapture{};
+    }
+    // The files are whole, and hold every byte that the source delivered.
+    void expect_all_stored(const BoardSource& source, const CaptureOutcome& outcome) const {
+        const LoadedCapture stored = loaded();
+        EXPECT_EQ(stored.file.blocks.end, FileEnd::clean);
+        EXPECT_EQ(stored.file.stream_bytes, source.delivered().size());
+        EXPECT_EQ(stored.decoder->report().samples.good, outcome.link.samples.good);
+        EXPECT_EQ(outcome.transfers_dropped, 0U);
+    }
+    // The file is whole, though the disk refused to take all.
+    void expect_readable_prefix(const BoardSource& source, const CaptureOutcome& outcome) const {
+        EXPECT_EQ(outcome.end, CaptureEnd::storage_failed);
+        ASSERT_TRUE(outcome.error.has_value());
+        const LoadedCapture stored = loaded();
+        EXPECT_EQ(stored.file.blocks.end, FileEnd::clean);
+        EXPECT_LT(stored.file.stream_bytes, source.delivered().size());
+        EXPECT_GT(stored.decoder->report().samples.good, 100U);
+        EXPECT_EQ(stored.decoder->report().samples.missing, 0U);
+    }
+
+    TemporaryFolder folder_;
+    FaultyDisk disk_;
+    CaptureRequest request_;
+};
+
+// ------------------------------------------------------------------------------------- a board that is lost
+
+std::unique_ptr<SimSource> simulated(std::vector<BoardFault> faults, bool self_powered, bool realtime) {
+    SimOptions options;
+    options.rate_hz = 1000.0;
+    options.faults = std::move(faults);
+    options.self_powered = self_powered;
+    options.realtime = realtime;
+    auto source = SimSource::create(options, typical_mpu9250(), {});
+    EXPECT_TRUE(source.ok());
+    return std::move(source).value();
+}
+
+TEST_F(CaptureOverFaults, BoardThatIsPulledTwiceIsTakenUpTwice) {
+    for (const bool self_powered : {true, false}) {
+        const auto source =
+            simulated({{BoardFault::Kind::unplug, 5.0, 10.0}, {BoardFault::Kind::unplug, 25.0, 7.0}},
+                      self_powered, false);
+        request_.duration_s = 40.0;
+        request_.overwrite = true;
+        request_.configure.rate_mHz = 500'000;
+        const auto outcome = run_capture(*source, request_, go_on);
+        ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+        EXPECT_EQ(outcome->end, CaptureEnd::complete);
+        EXPECT_EQ(outcome->progress.connections, 3U);
+        EXPECT_TRUE(outcome->data_lost());
+        ASSERT_EQ(outcome->paths.size(), 3U);
+        EXPECT_EQ(outcome->link.boots, self_powered ? 1U : 3U);
+        ASSERT_EQ(outcome->link.dropouts.size(), 2U);
+        // 80 ms of samples may have waited in a frame, and a board boots in some 200 ms.
+        EXPECT_NEAR(static_cast<double>(outcome->link.dropouts[0].samples), 10.0 * 500.0, 0.3 * 500.0);
+        EXPECT_NEAR(static_cast<double>(outcome->link.dropouts[1].samples), 7.0 * 500.0, 0.3 * 500.0);
+        EXPECT_EQ(outcome->progress.config->rate_mHz, 500'000U) << "set up again after it lost its memory";
+
+        auto stored = load_capture(request_.path, true);
+        ASSERT_TRUE(stored.ok());
+        EXPECT_EQ(stored->files, outcome->paths);
+        EXPECT_EQ(stored->decoder->report().samples.good, outcome->link.samples.good);
+        EXPECT_EQ(stored->decoder->report().samples.missing, outcome->link.samples.missing);
+        const auto recording = stored->decoder->take_recording("night");
+        ASSERT_TRUE(recording.ok()) << recording.error().message;
+        EXPECT_EQ(recording->segments.size(), 3U);
+        EXPECT_EQ(recording->rows(), outcome->link.samples.good) << "one configuration: nothing is left out";
+        for (const std::string& path : outcome->paths) { std::filesystem::remove(path); }
+    }
+}
+
+TEST_F(CaptureOverFaults, WaitForALostBoardEndsWhenTheCallerWants) {
+    const auto source = simulated({{BoardFault::Kind::unplug, 0.2, 1e6}}, false, true);
+    request_.duration_s.reset();
+    unsigned asked = 0;
+    const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& progress) {
+        asked += progress.parked ? 1U : 0U;
+        return asked < 3;
+    });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::device_lost);
+    EXPECT_EQ(asked, 3U);
+    const LoadedCapture stored = loaded();
+    ASSERT_TRUE(stored.last_checkpoint.has_value());
+    EXPECT_TRUE(stored.last_checkpoint->last) << "the file was closed before the wait began";
+}
+
+TEST_F(CaptureOverFaults, WaitForALostBoardEndsWithTheDuration) {
+    const auto source = simulated({{BoardFault::Kind::unplug, 0.2, 1e6}}, false, true);
+    request_.duration_s = 0.7;
+    const auto outcome = run_capture(*source, request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::device_lost);
+    EXPECT_LT(outcome->progress.elapsed_s, 5.0);
+}
+
+TEST_F(CaptureOverFaults, LostBoardIsNotWaitedForInASpin) {
+    const auto source = simulated({{BoardFault::Kind::unplug, 0.1, 1e6}}, false, true);
+    request_.duration_s = 0.8;
+    request_.reconnect_interval_s = 0.25;
+    timespec before{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &before);
+    ASSERT_TRUE(run_capture(*source, request_, go_on).ok());
+    timespec after{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &after);
+    const double cpu_s = static_cast<double>(after.tv_sec - before.tv_sec) +
+                         static_cast<double>(after.tv_nsec - before.tv_nsec) * 1e-9;
+    EXPECT_LT(cpu_s, 0.4) << "of 0.8 s";
+}
+
+// ------------------------------------------------------------------------------------------------- the disk
+
+TEST_F(CaptureOverFaults, ShortWritesAreCarriedOn) {
+    const auto source = BoardSource::create({});
+    disk_.bytes_per_write = 1000;
+    const auto outcome = run_capture(*source, request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_FALSE(outcome->data_lost());
+    expect_all_stored(*source, *outcome);
+}
+
+TEST_F(CaptureOverFaults, SyncThatBlocksForLongIsRiddenOut) {
+    // Twenty times faster than the clock: the queue meets in 0.8 s what a board at 20 kHz sends.
+    const auto source = BoardSource::create({});
+    disk_.sync_takes_ms = 800;
+    request_.duration_s = 30.0;
+    const auto outcome = run_capture(*source, request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_FALSE(outcome->data_lost());
+    EXPECT_GT(outcome->queue_high_water_bytes, 100'000U) << "it did not block: this test tests nothing";
+    EXPECT_EQ(source->bytes_refused(), 0U) << "the source never waits for the disk";
+    expect_all_stored(*source, *outcome);
+}
+
+TEST_F(CaptureOverFaults, SlowDiskCostsCountedTransfersAndNothingElse) {
+    const auto source = BoardSource::create({});
+    disk_.write_takes_ms = 100;
+    request_.queue_bytes = 20'000;
+    request_.duration_s = 8.0;
+    const auto outcome = run_capture(*source, request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_GT(outcome->bytes_dropped, 0U) << "the disk kept up: this test tests nothing";
+    EXPECT_EQ(outcome->bytes_dropped, source->bytes_refused());
+    EXPECT_TRUE(outcome->data_lost());
+    const LoadedCapture stored = loaded();
+    EXPECT_EQ(stored.file.stream_bytes, source->delivered().size());
+    EXPECT_EQ(stored.decoder->report().samples.missing, outcome->link.samples.missing);
+    EXPECT_EQ(outcome->link.samples.good + outcome->link.samples.missing,
+              source->board().sampling_instants());
+}
+
+TEST_F(CaptureOverFaults, FullOrBrokenDiskEndsTheCaptureWithAReadableFile) {
+    for (const int fault : {0, 1, 2}) {
+        const auto source = BoardSource::create({});
+        request_.duration_s = 600.0;
+        request_.overwrite = true;
+        disk_.room_bytes = fault == 0 ? 100'000 : ~std::uint64_t{0};
+        const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& progress) {
+            const bool enough = progress.samples > 2'000;
+            if (fault == 1 && enough) { disk_.breaks = true; }
+            if (fault == 2 && enough) { disk_.sync_breaks = true; }
+            return true;
+        });
+        ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+        expect_readable_prefix(*source, *outcome);
+        EXPECT_EQ(outcome->error->code, fault == 0 ? ErrorCode::disk_full : ErrorCode::storage_failed);
+        EXPECT_LT(outcome->progress.elapsed_s, 20.0);
+        disk_.breaks = disk_.sync_breaks = false;
+    }
+}
+
+TEST_F(CaptureOverFaults, RoomThatIsToStayFreeEndsTheCaptureWithAClosedFile) {
+    const auto source = BoardSource::create({});
+    request_.duration_s = 600.0;
+    request_.min_free_bytes = 1'000'000'000;
+    disk_.told_free_bytes = 2'000'000'000;
+    const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& progress) {
+        if (progress.samples > 5000) { disk_.told_free_bytes = 999'000'000; }
+        return true;
+    });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::storage_failed);
+    ASSERT_TRUE(outcome->error.has_value());
+    EXPECT_EQ(outcome->error->code, ErrorCode::disk_full);
+    EXPECT_NE(outcome->error->message.find("--min-free"), std::string::npos) << outcome->error->message;
+    const LoadedCapture stored = loaded();
+    EXPECT_EQ(stored.file.blocks.end, FileEnd::clean);
+    ASSERT_TRUE(stored.last_checkpoint.has_value());
+    EXPECT_TRUE(stored.last_checkpoint->last);
+    EXPECT_GT(stored.decoder->report().samples.good, 5000U);
+
+    request_.path = folder_.path("second.pcapng");
+    const auto again = run_capture(*BoardSource::create({}), request_, go_on);
+    ASSERT_FALSE(again.ok());
+    EXPECT_EQ(again.error().code, ErrorCode::disk_full);
+    EXPECT_FALSE(std::filesystem::exists(request_.path)) << "a full disk is not made fuller";
+}
+
+TEST_F(CaptureOverFaults, DiskThatRefusesTheNextFileLeavesTheOnesBefore) {
+    const auto source = BoardSource::create({});
+    request_.duration_s = 600.0;
+    request_.rotate_bytes = 100'000;
+    const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& progress) {
+        if (progress.path.find(".3.") != std::string::npos) { disk_.room_bytes = 50'000; }
+        return true;
+    });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    expect_readable_prefix(*source, *outcome);
+    EXPECT_GE(outcome->paths.size(), 3U);
+}
+
+TEST_F(CaptureOverFaults, FilesThatAreThereAreSteppedOverNotOverwritten) {
+    const std::string precious = folder_.path("night.2.pcapng");
+    ASSERT_TRUE(run_capture(
+                    *BoardSource::create({}),
+                    [&] {
+                        CaptureRequest other = request_;
+                        other.path = precious;
+                        return other;
+                    }(),
+                    go_on)
+                    .ok());
+    const std::string before = read_whole_file(precious);
+    const auto source = BoardSource::create({});
+    request_.duration_s = 8.0;
+    request_.rotate_bytes = 60'000;
+    request_.overwrite = true;
+    const auto outcome = run_capture(*source, request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_GE(outcome->paths.size(), 3U);
+    EXPECT_EQ(outcome->paths[1], folder_.path("night.3.pcapng"));
+    EXPECT_EQ(read_whole_file(precious), before);
+    expect_all_stored(*source, *outcome);
+}
+
+}  // namespace
+}  // namespace gyrolog
