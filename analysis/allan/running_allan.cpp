@@ -6,7 +6,6 @@
 
 #include "analysis/allan/deviation_rule.hpp"
 #include "analysis/allan/intervals.hpp"
-#include "analysis/allan/power_law_levels.hpp"
 
 namespace gyrolog {
 
@@ -69,16 +68,18 @@ std::vector<AllanPoint> RunningAllan::points(double rate_hz) const {
     return points;
 }
 
-AllanCurve RunningAllan::curve(double rate_hz, double scale, double confidence) const {
-    AllanCurve curve;
+RunningAllan::Described RunningAllan::describe(double rate_hz, double scale, double confidence) const {
+    Described described;
+    AllanCurve& curve = described.curve;
     curve.confidence = confidence;
     curve.points = points(rate_hz);
     for (AllanPoint& point : curve.points) { point.deviation *= scale; }
     const std::array whole{Segment{0, static_cast<std::size_t>(samples_), 0}};
-    const PowerLawLevels laws = fit_power_laws(curve.points, whole, curve.convention);
+    described.laws = fit_power_laws(curve.points, whole, curve.convention);
     const DeviationRule& rule = rule_of(curve.kind);
-    set_intervals(curve, whole, [&](const AllanPoint& point) { return laws.shares(rule, point.m); });
-    return curve;
+    set_intervals(curve, whole,
+                  [&](const AllanPoint& point) { return described.laws.shares(rule, point.m); });
+    return described;
 }
 
 }  // namespace gyrolog

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "analysis/allan/allan_curve.hpp"
+#include "analysis/allan/power_law_levels.hpp"
 
 namespace gyrolog {
 
@@ -32,7 +33,11 @@ public:
 
     // The same in the samples' unit, `scale` a count, with intervals: those of intervals.hpp for an unbroken
     // record of as many samples, under the power laws fitted to these very points.
-    AllanCurve curve(double rate_hz, double scale, double confidence = 0.683) const;
+    struct Described {
+        AllanCurve curve;
+        PowerLawLevels laws;
+    };
+    Described describe(double rate_hz, double scale, double confidence = 0.683) const;
 
     std::uint64_t samples() const { return samples_; }
 

@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "analysis/allan/difference_covariance.hpp"
+
 namespace gyrolog {
 
 std::optional<double> walk_relative_sd(const NoiseCoefficients& noise, double rate_hz, double length_s) {
@@ -45,6 +47,37 @@ std::optional<double> length_to_know_walk_s(const NoiseCoefficients& noise, doub
         (known(middle_s) ? above_s : below_s) = middle_s;
     }
     return above_s;
+}
+
+std::optional<double> walk_seen_from(const NoiseCoefficients& noise, double rate_hz, double length_s) {
+    constexpr double seen_sd = 0.22;
+    const double N = noise.N_rad_per_sqrt_s;
+    if (!(N > 0.0) || !(rate_hz * length_s >= 10.0)) { return std::nullopt; }
+    NoiseCoefficients walked = noise;
+    // Between a walk that is lost below the white noise and one that is all there is.
+    double below = 1e-6 * N / length_s;
+    double above = N * rate_hz;
+    while (above > 1.001 * below) {
+        walked.K_rad_per_s_sqrt_s = std::sqrt(below * above);
+        const auto sd = walk_relative_sd(walked, rate_hz, length_s);
+        (sd && *sd <= seen_sd ? above : below) = walked.K_rad_per_s_sqrt_s;
+    }
+    return above;
+}
+
+NoiseCoefficients coefficients_of(const PowerLawLevels& laws, double rate_hz) {
+    // Where averages of samples are as those of continuous noise (METHODS.md, N, K, Q, R).
+    constexpr std::int64_t long_m = 1024;
+    const DeviationRule& rule = rule_of(DeviationKind::overlapping);
+    const auto variance = [&](PowerLaw law, std::int64_t m) {
+        return laws.level[index_of(law)] * DifferenceCovariance(law, rule, m).expected_variance();
+    };
+    const double long_tau_s = static_cast<double>(long_m) / rate_hz;
+    NoiseCoefficients noise;
+    noise.N_rad_per_sqrt_s = std::sqrt(variance(PowerLaw::white_rate, 1) / rate_hz);
+    noise.B_rad_per_s = std::sqrt(variance(PowerLaw::flicker_rate, long_m) * pi / (2.0 * std::log(2.0)));
+    noise.K_rad_per_s_sqrt_s = std::sqrt(variance(PowerLaw::rate_walk, long_m) * 3.0 / long_tau_s);
+    return noise;
 }
 
 }  // namespace gyrolog

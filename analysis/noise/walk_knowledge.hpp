@@ -6,12 +6,13 @@
 //
 //   I_ij = T * integral of S_i S_j / S^2 df,  f from 1 / 2T to half the rate;   sd(K) / K = sd(K^2) / (2 K^2)
 //
-// With B = 0 and N known it is sqrt(2 N / (K T)). The likelihood fit comes within some 15 % of it
+// With N known and no B it is sqrt(2 N / (K T)). The likelihood fit comes within some 15 % of it
 // (METHODS.md), so that what is said here of a length is what `analyze` states at that length.
 #pragma once
 
 #include <optional>
 
+#include "analysis/allan/power_law_levels.hpp"
 #include "analysis/noise/noise_model.hpp"
 
 namespace gyrolog {
@@ -23,5 +24,13 @@ std::optional<double> walk_relative_sd(const NoiseCoefficients& noise, double ra
 // suffice.
 std::optional<double> length_to_know_walk_s(const NoiseCoefficients& noise, double rate_hz,
                                             double relative_sd);
+
+// The walk that a record of this length would have shown, but for one in twenty: K told to 22 % (simulated:
+// walk_knowledge_test.cpp), beside N and B as they are. What goes unseen by the power laws is most likely
+// below it.
+std::optional<double> walk_seen_from(const NoiseCoefficients& noise, double rate_hz, double length_s);
+
+// N, B and K of power laws fitted to an Allan curve.
+NoiseCoefficients coefficients_of(const PowerLawLevels& laws, double rate_hz);
 
 }  // namespace gyrolog
