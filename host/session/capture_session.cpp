@@ -25,6 +25,7 @@ constexpr milliseconds progress_interval(100);
 constexpr milliseconds reply_timeout(1000);
 constexpr milliseconds flush_time(150);  // for the partial frame that a board sends when it is stopped
 constexpr std::int64_t sync_interval_ns = 1'000'000'000;
+constexpr std::size_t queue_bytes_of_patient_source = std::size_t{2} << 20U;
 constexpr std::uint64_t checkpoint_bytes = std::uint64_t{1} << 20U;
 
 double seconds_since(Clock::time_point start) {
@@ -491,7 +492,9 @@ Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& req
     auto created = CaptureWriter::create(request.path, source.identity(), request.overwrite);
     if (!created.ok()) { return storage_error_of(std::move(created).error()); }
     CaptureWriter writer = std::move(created).value();
-    TransferQueue queue(request.queue_bytes);
+    // A source that can wait fills whatever room there is, and loses nothing where there is little.
+    TransferQueue queue(source.can_wait() ? std::min(request.queue_bytes, queue_bytes_of_patient_source)
+                                          : request.queue_bytes);
     QueueingSink sink(queue, source.can_wait());
     WriterThread thread(queue, sink, writer, request);
     BoardControl control(source, thread, sink);
