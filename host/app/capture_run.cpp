@@ -72,11 +72,11 @@ ExitCode exit_code_of(const CaptureOutcome& outcome) {
 // Says once when the board is lost and waited for, and once when it is back.
 class ParkingNotice {
 public:
-    ParkingNotice(Console& console, LiveView& view) : console_(console), view_(view) {}
+    explicit ParkingNotice(Console& console, LiveView* view = nullptr) : console_(console), view_(view) {}
 
     void tell(const CaptureProgress& progress) {
         if (progress.parked && progress.parked_why != why_) {
-            view_.finish();
+            if (view_ != nullptr) { view_->finish(); }
             console_.err << fmt::format(
                 "  {}{}\n", progress.parked_why,
                 why_.empty() ? "; waiting for the board to come back (Ctrl-C ends)" : "");
@@ -93,7 +93,7 @@ public:
 
 private:
     Console& console_;
-    LiveView& view_;
+    LiveView* view_;
     std::string why_;
     double away_s_ = 0.0;
 };
@@ -109,6 +109,36 @@ ExitCode exit_code_of_opening(const Error& error) {
         default:
             return gyrolog::exit_code_of(error);
     }
+}
+
+// On a terminal: with the live view and its keys.
+Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, CaptureRequest request) {
+    if (!console.progress) {
+        ParkingNotice parking(console);
+        return run_capture(source, request, [&](const CaptureProgress& progress) {
+            parking.tell(progress);
+            return !console.stop_wanted();
+        });
+    }
+    CaptureControl control;
+    LiveAllan allan;
+    request.control = &control;
+    request.observer = &allan;
+    LiveKeys keys(control);
+    TerminalKeys terminal;
+    LiveView view(console, allan, keys);
+    ParkingNotice parking(console, &view);
+    auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
+        keys.take(terminal.read());
+        parking.tell(progress);
+        if (!progress.parked) { view.show(progress); }
+        const bool end = console.stop_wanted() || keys.end_wanted();
+        if (end) { keys.finish(); }
+        return !end;
+    });
+    view.finish();
+    if (keys.note()) { console.err << "  the capture ended before the mark was finished: it is not kept\n"; }
+    return outcome;
 }
 
 }  // namespace
@@ -141,16 +171,8 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
     }
     ByteSource& source = *opened.source;
     console.err << "capturing from " << source.identity().uri << " to " << request.path
-                << (real_time && console.progress ? "; Ctrl-C stops, closes the file and analyses it\n"
-                                                  : "\n");
-    LiveView view(console);
-    ParkingNotice parking(console, view);
-    const auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
-        parking.tell(progress);
-        if (!progress.parked) { view.show(progress); }
-        return !console.stop_wanted();
-    });
-    view.finish();
+                << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n" : "\n");
+    const auto outcome = watch_capture(console, source, request);
     if (!outcome.ok()) {
         report_error(console, command, outcome.error());
         result.code = exit_code_of_opening(outcome.error());

@@ -45,6 +45,8 @@ public:
     // feet.
     Status checkpoint(const CaptureCounters& counters) { return checkpoint(counters, host_now()); }
     Status checkpoint(const CaptureCounters& counters, HostTime now);
+    // Its place in the file is here and now.
+    Status mark(CaptureMark mark);
     // Everything appended so far survives a loss of power.
     Status sync();
     // Syncs. A writer that is destroyed without close() leaves what a kill would leave.
@@ -60,6 +62,7 @@ private:
     void append_head(const SourceIdentity& identity, const std::optional<CaptureSegment>& segment);
     void append_checkpoint(const CaptureCounters& counters, HostTime now, bool last);
     void append_record(const Transfer& transfer);
+    void append_statistics(HostTime now, std::string_view comment);
     std::int64_t file_time_ns(HostTime time) const;
     Status flush();
     Status fail(Error error, std::size_t buffered_bytes_written);

@@ -97,6 +97,11 @@ Status SegmentWriter::append(const Transfer& transfer) {
     return file_->append(transfer);
 }
 
+Status SegmentWriter::mark(CaptureMark mark) {
+    if (!file_) { return Error{ErrorCode::storage_failed, "write '" + plan_.path + "': it is closed"}; }
+    return file_->mark(std::move(mark));
+}
+
 Status SegmentWriter::checkpoint(const CaptureCounters& counters) {
     counters_ = counters;
     if (!file_) { return {}; }

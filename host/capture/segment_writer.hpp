@@ -30,6 +30,8 @@ public:
     static Result<SegmentWriter> create(SegmentPlan plan, const SourceIdentity& identity, Disk& disk);
 
     Status append(const Transfer& transfer);
+    // In the present file.
+    Status mark(CaptureMark mark);
     // Error disk_full, with everything written and the writer unharmed: no more than is to be kept free is
     // left.
     Status checkpoint(const CaptureCounters& counters);

@@ -25,6 +25,7 @@ constexpr milliseconds progress_interval(100);
 constexpr milliseconds reply_timeout(1000);
 constexpr milliseconds flush_time(150);  // for the partial frame that a board sends when it is stopped
 constexpr std::int64_t sync_interval_ns = 1'000'000'000;
+constexpr std::size_t queue_bytes_of_patient_source = std::size_t{2} << 20U;
 constexpr std::uint64_t checkpoint_bytes = std::uint64_t{1} << 20U;
 
 double seconds_since(Clock::time_point start) {
@@ -148,11 +149,25 @@ private:
     void run() {
         while (!queue_.finished()) {
             queue_.pop(progress_interval).for_each([&](const Transfer& transfer) { take(transfer); });
+            write_marks();
             if (clock_ns(CLOCK_MONOTONIC) - last_sync_ns_ >= sync_interval_ns) { checkpoint(false); }
             publish();
         }
+        write_marks();
         checkpoint(true);
         publish();
+    }
+
+    void write_marks() {
+        if (request_.control == nullptr) { return; }
+        for (CaptureMark& mark : request_.control->take_marks()) {
+            if (storage_error_) { return; }
+            if (Status written = writer_.mark(std::move(mark)); !written.ok()) {
+                fail(std::move(written).error());
+            } else {
+                ++marks_;
+            }
+        }
     }
 
     void take(const Transfer& transfer) {
@@ -166,7 +181,10 @@ private:
             started_ = true;
             hello_came_ = false;
             config_came_ = false;
-            if (!any_start_) { instants_ = 0; }
+            if (!any_start_) {
+                instants_ = 0;
+                if (request_.observer != nullptr) { request_.observer->on_start(); }
+            }
             any_start_ = true;
             next_index_.reset();
             latest_.reset();
@@ -210,6 +228,7 @@ private:
         progress_.frames_corrupted = link.frames.corrupted;
         progress_.file_bytes = writer_.bytes_written();
         progress_.path = writer_.paths().back();
+        progress_.marks = marks_;
         progress_.rate_hz = decoder_.rate_hz();
         progress_.hello = decoder_.hello();
         progress_.config = decoder_.config();
@@ -241,6 +260,9 @@ private:
         const bool goes_on = next_index_ && !first && samples.first_index >= *next_index_;
         instants_ += samples.count + (goes_on ? samples.first_index - *next_index_ : 0);
         next_index_ = samples.first_index + samples.count;
+        if (request_.observer != nullptr && decoder_.config()) {
+            request_.observer->on_samples(received.frame, samples, *decoder_.config());
+        }
     }
     void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override {
         if (new_replies_.size() < replies_kept) { new_replies_.push_back(reply); }
@@ -256,6 +278,7 @@ private:
     // The writer thread's own.
     StreamDecoder decoder_;
     std::uint64_t bytes_since_checkpoint_ = 0;
+    std::uint64_t marks_ = 0;
     std::int64_t last_sync_ns_ = clock_ns(CLOCK_MONOTONIC);
     bool started_ = false;  // by DTR, in the present connection
     bool any_start_ = false;
@@ -323,6 +346,7 @@ public:
 
     Status start() {
         start_asked_ = true;
+        streaming_ = true;
         if (has_line_) { return source_.set_line_state(true); }
         if (!takes_commands_) { return {}; }
         GYROLOG_CHECK(command(glp_frame_start, {}, Answer::awaited));
@@ -339,6 +363,16 @@ public:
         }
         if (!source_.can_wait()) { std::this_thread::sleep_for(flush_time); }
     }
+
+    // As the user asks in the middle of a capture. A source that takes neither line nor commands goes on.
+    Status set_streaming(bool wanted) {
+        if (wanted == streaming_ || !(has_line_ || takes_commands_)) { return {}; }
+        streaming_ = wanted;
+        if (wanted) { return start(); }
+        stop();
+        return {};
+    }
+    bool streaming() const { return streaming_; }
 
 private:
     enum class Answer { awaited, not_awaited };
@@ -394,6 +428,7 @@ private:
     bool has_line_ = true;
     bool takes_commands_ = true;
     bool start_asked_ = false;
+    bool streaming_ = true;
     std::uint32_t sequence_ = 0;
 };
 
@@ -481,7 +516,9 @@ public:
           request_(request),
           observe_(observe),
           writer_(writer),
-          queue_(request.queue_bytes),
+          // A source that can wait fills whatever room there is, and loses nothing where there is little.
+          queue_(source.can_wait() ? std::min(request.queue_bytes, queue_bytes_of_patient_source)
+                                   : request.queue_bytes),
           sink_(queue_, source.can_wait()),
           thread_(queue_, sink_, writer, request),
           control_(source, thread_, sink_) {}
@@ -531,6 +568,7 @@ private:
         CaptureProgress progress = thread_.progress();
         progress.elapsed_s = seconds_since(start_);
         progress.connections = connections_;
+        progress.streaming = control_.streaming();
         return progress;
     }
 
@@ -555,6 +593,10 @@ private:
                 return end(done ? CaptureEnd::complete : CaptureEnd::device_lost);
             }
             if (!go_on) { return end(CaptureEnd::interrupted); }
+            if (Status obeyed = obey(); !obeyed.ok()) {
+                outcome_.error = std::move(obeyed).error();
+                return end(CaptureEnd::device_lost);
+            }
             if (sink_.silence_s() > request_.idle_timeout_s) {
                 outcome_.error = Error{
                     ErrorCode::device_lost,
@@ -564,6 +606,13 @@ private:
         }
     }
     void end(CaptureEnd how) { outcome_.end = how; }
+
+    Status obey() {
+        if (request_.control == nullptr) { return {}; }
+        GYROLOG_CHECK(control_.set_streaming(request_.control->streaming_wanted()));
+        if (!control_.streaming()) { sink_.restart_silence(); }
+        return {};
+    }
 
     // True when the board streams again. Otherwise the outcome stays that of a lost device, or is a disk that
     // refused the next file.

@@ -15,11 +15,20 @@
 #include "host/capture/append_file.hpp"
 #include "host/decode/protocol.hpp"
 #include "host/decode/stream_decoder.hpp"
+#include "host/session/capture_control.hpp"
 #include "host/transport/byte_source.hpp"
 
 namespace gyrolog {
 
 enum class OnUnplug { end, wait };
+// Sees the samples as they come, on the writer's thread, which it must not keep waiting.
+class SampleObserver {
+public:
+    virtual ~SampleObserver() = default;
+    // What came before was meant for an earlier listener.
+    virtual void on_start() = 0;
+    virtual void on_samples(const glp_frame& frame, const glp_samples& samples, const glp_config& config) = 0;
+};
 
 struct CaptureRequest {
     std::string path;
@@ -30,6 +39,8 @@ struct CaptureRequest {
     double hello_timeout_s = 3.0;
     double idle_timeout_s = 10.0;  // silence that counts as a lost device
     std::size_t queue_bytes = std::size_t{16} << 20U;
+    CaptureControl* control = nullptr;   // may be null; so may the observer
+    SampleObserver* observer = nullptr;  // both must outlive the capture
 
     OnUnplug on_unplug = OnUnplug::end;
     double reconnect_interval_s = 0.25;         // between two looks for a board that was lost
@@ -54,6 +65,8 @@ struct CaptureProgress {
     std::uint64_t dropouts = 0;
     std::uint64_t frames_corrupted = 0;
     std::uint64_t file_bytes = 0;
+    std::uint64_t marks = 0;
+    bool streaming = true;  // false while the user has stopped the board
     std::optional<glp_hello> hello;
     std::optional<glp_config> config;
 };

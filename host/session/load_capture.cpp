@@ -54,6 +54,7 @@ public:
         add(loaded_.file, reader.accounts());
         if (!loaded_.metadata) { loaded_.metadata = reader.metadata(); }
         loaded_.last_checkpoint = reader.checkpoint();
+        loaded_.marks.insert(loaded_.marks.end(), reader.marks().begin(), reader.marks().end());
         return {};
     }
 

@@ -18,6 +18,7 @@ struct LoadedCapture {
     CaptureAccounts file;                     // of all of them together
     std::optional<CaptureMetadata> metadata;  // absent in a foreign capture
     std::optional<CaptureCheckpoint> last_checkpoint;  // of the last file
+    std::vector<CaptureMark> marks;                    // in the order of the files
     HostTime first_data;                               // arrival of the first stream bytes
     std::unique_ptr<StreamDecoder> decoder;
 };
