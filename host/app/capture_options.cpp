@@ -27,9 +27,12 @@ Result<std::uint16_t> parse_dlpf(const std::string& text) {
 }  // namespace
 
 void CaptureOptions::declare(CLI::App& app) {
-    app.add_option("--device", device,
-                   "usb: (the only board), usb:SERIAL, tty:PATH, sim:KEY=VALUE,... or replay:FILE")
+    app.add_option("--device", devices,
+                   "usb: (the only board), usb:SERIAL, tty:PATH, sim:KEY=VALUE,... or replay:FILE; several "
+                   "times, or usb:* for all boards: each has its own file")
         ->type_name("URI")
+        ->expected(1)
+        ->take_all()
         ->capture_default_str();
     app.add_option("--duration", duration, "Stop after this time: 90s, 15m, 6h, 1d")->type_name("T");
     app.add_option("--samples", samples, "Stop after this many samples")

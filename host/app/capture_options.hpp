@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -11,7 +12,7 @@
 namespace gyrolog {
 
 struct CaptureOptions {
-    std::string device = "usb:";
+    std::vector<std::string> devices{"usb:"};
     std::string duration;
     std::optional<std::uint64_t> samples;
     std::optional<double> rate_hz;

@@ -92,6 +92,21 @@ std::string mark_text(const LoadedCapture& capture, const CaptureMark& mark) {
                        mark.text.empty() ? "(no text)" : mark.text);
 }
 
+// How far the host's real-time clock was set, by somebody or by its time server, while the capture ran:
+// nothing in the capture depends on it.
+double host_clock_set_by_s(const LoadedCapture& capture) {
+    if (!capture.metadata || !capture.last_checkpoint) { return 0.0; }
+    const HostTime& began = capture.metadata->started;
+    const HostTime& ended = capture.last_checkpoint->time;
+    const double realtime_s =
+        (static_cast<double>(ended.realtime_ns) - static_cast<double>(began.realtime_ns)) * 1e-9;
+    const double monotonic_s =
+        (static_cast<double>(ended.monotonic_ns) - static_cast<double>(began.monotonic_ns)) * 1e-9;
+    const double set_by_s = realtime_s - monotonic_s;
+    constexpr double slewing = 500e-6;  // what NTP may do without a step
+    return std::abs(set_by_s) > 0.001 + slewing * std::abs(monotonic_s) ? set_by_s : 0.0;
+}
+
 // One row of a table: what, how much, and a remark.
 std::string row(std::string_view what, std::uint64_t count, std::string_view remark = "") {
     return fmt::format("  {:<22}{:>16}{}{}\n", what, format_count(count), remark.empty() ? "" : "  ", remark);
@@ -227,6 +242,10 @@ Json info_json(const std::string& path, const LoadedCapture& capture) {
     if (const auto& config = capture.decoder->config()) {
         sensor["rate_hz"] = config->rate_mHz * 1e-3;
         if (const auto rate_hz = capture.decoder->rate_hz()) { sensor["measured_rate_hz"] = *rate_hz; }
+        if (const auto estimate = capture.decoder->rate_estimate()) {
+            sensor["rate_sd_hz"] = estimate->sd_hz;
+            sensor["stamp_jitter_s"] = estimate->jitter_s;
+        }
         sensor["full_scale_dps"] = config->gyro_full_scale_dps;
         sensor["accel_full_scale_g"] = config->accel_full_scale_g;
         if (config->dlpf_hz == 0) {
@@ -249,6 +268,7 @@ Json info_json(const std::string& path, const LoadedCapture& capture) {
             {"samples", link.samples.good},
             {"samples_missing", link.samples.missing},
             {"board_clock", clock},
+            {"host_clock_set_by_s", host_clock_set_by_s(capture)},
             {"marks", marks_json(capture)},
             {"end", name_of(capture.file.blocks.end)},
             {"file_bytes", capture.file.blocks.bytes_total},
@@ -280,9 +300,17 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
         line("length", fmt::format("{}, {} samples at {:.4f} Hz", format_duration(duration_s(capture, link)),
                                    format_count(link.samples.good), *rate_hz));
     }
+    if (const auto estimate = capture.decoder->rate_estimate()) {
+        line("rate", fmt::format("{:.6f} ± {:.2g} Hz by the board's clock; the stamps jitter by {:.2g} us",
+                                 estimate->rate_hz, estimate->sd_hz, estimate->jitter_s * 1e6));
+    }
     if (const auto clock = board_clock(capture)) {
         line("clock", fmt::format("the board's runs {:+.2f} ± {:.2g} ppm against this computer's", clock->ppm,
                                   clock->sd_ppm));
+    }
+    if (const double set_by_s = host_clock_set_by_s(capture); set_by_s != 0.0) {
+        line("", fmt::format("this computer's clock was set by {:+.3f} s meanwhile; no time stamp moved",
+                             set_by_s));
     }
     line("missing", fmt::format("{} samples in {} dropouts", format_count(link.samples.missing),
                                 link.dropouts.size() + link.dropouts_unlisted));

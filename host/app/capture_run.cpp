@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "host/app/capture_notices.hpp"
 #include "host/app/command.hpp"
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
@@ -69,36 +70,8 @@ ExitCode exit_code_of(const CaptureOutcome& outcome) {
     return outcome.data_lost() ? ExitCode::data_lost : ExitCode::ok;
 }
 
-// Says once when the board is lost and waited for, and once when it is back.
-class ParkingNotice {
-public:
-    explicit ParkingNotice(Console& console, LiveView* view = nullptr) : console_(console), view_(view) {}
+}  // namespace
 
-    void tell(const CaptureProgress& progress) {
-        if (progress.parked && progress.parked_why != why_) {
-            if (view_ != nullptr) { view_->finish(); }
-            console_.err << fmt::format(
-                "  {}{}\n", progress.parked_why,
-                why_.empty() ? "; waiting for the board to come back (Ctrl-C ends)" : "");
-            why_ = progress.parked_why;
-        }
-        if (progress.parked) {
-            away_s_ = progress.parked_s;
-        } else if (!why_.empty()) {
-            const std::string after = away_s_ >= 0.1 ? " after " + format_duration(away_s_) : "";
-            console_.err << fmt::format("  the board is back{}: going on in {}\n", after, progress.path);
-            why_.clear();
-        }
-    }
-
-private:
-    Console& console_;
-    LiveView* view_;
-    std::string why_;
-    double away_s_ = 0.0;
-};
-
-// A board that cannot be opened, for whatever reason, is "no device" to a script.
 ExitCode exit_code_of_opening(const Error& error) {
     switch (error.code) {
         case ErrorCode::not_found:
@@ -111,11 +84,15 @@ ExitCode exit_code_of_opening(const Error& error) {
     }
 }
 
+namespace {
+
 // On a terminal: with the live view and its keys.
 Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, CaptureRequest request) {
     if (!console.progress) {
         ParkingNotice parking(console);
+        StallNotice stall(console);
         return run_capture(source, request, [&](const CaptureProgress& progress) {
+            stall.tell(progress);
             parking.tell(progress);
             return !console.stop_wanted();
         });
@@ -128,8 +105,10 @@ Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, Captu
     TerminalKeys terminal;
     LiveView view(console, allan, keys);
     ParkingNotice parking(console, &view);
+    StallNotice stall(console);
     auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
         keys.take(terminal.read());
+        stall.tell(progress);
         parking.tell(progress);
         if (!progress.parked) { view.show(progress); }
         const bool end = console.stop_wanted() || keys.end_wanted();
@@ -152,7 +131,7 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
         return result;
     }
     request->path = path;
-    auto opened = open_source(options.device, {request->duration_s, request->samples}, real_time);
+    auto opened = open_source(options.devices.front(), {request->duration_s, request->samples}, real_time);
     if (!opened.ok()) {
         report_error(console, command, opened.error());
         result.code = exit_code_of_opening(opened.error());
@@ -164,7 +143,6 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
 
 CaptureResult capture_source_to_file(Console& console, const char* command, OpenedSource opened,
                                      CaptureRequest request, bool real_time) {
-    CaptureResult result;
     if (opened.keeps_limit) {
         request.duration_s.reset();
         request.samples.reset();
@@ -173,6 +151,12 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
     console.err << "capturing from " << source.identity().uri << " to " << request.path
                 << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n" : "\n");
     const auto outcome = watch_capture(console, source, request);
+    return tell_outcome(console, command, outcome, request.path);
+}
+
+CaptureResult tell_outcome(Console& console, const char* command, const Result<CaptureOutcome>& outcome,
+                           const std::string& path) {
+    CaptureResult result;
     if (!outcome.ok()) {
         report_error(console, command, outcome.error());
         result.code = exit_code_of_opening(outcome.error());
@@ -180,9 +164,7 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
     }
     result.file_written = true;
     result.link = outcome->link;
-    if (outcome->end == CaptureEnd::storage_failed) {
-        keep_what_is_stored(request.path, *outcome, result.link);
-    }
+    if (outcome->end == CaptureEnd::storage_failed) { keep_what_is_stored(path, *outcome, result.link); }
     result.code = exit_code_of(*outcome);
     if (outcome->error) {
         console.err << program_and(command) << ": " << outcome->error->message
@@ -190,7 +172,7 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
                             ? "; the board is lost, what came before is saved\n"
                             : "; what was written before is saved\n");
     }
-    sum_up(console, *outcome, result.link, request.path);
+    sum_up(console, *outcome, result.link, path);
     return result;
 }
 

@@ -25,4 +25,11 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
 CaptureResult capture_source_to_file(Console& console, const char* command, OpenedSource opened,
                                      CaptureRequest request, bool real_time);
 
+// What came of a capture to this path, said on `err`.
+CaptureResult tell_outcome(Console& console, const char* command, const Result<CaptureOutcome>& outcome,
+                           const std::string& path);
+
+// A board that cannot be opened, for whatever reason, is "no device" to a script.
+ExitCode exit_code_of_opening(const Error& error);
+
 }  // namespace gyrolog

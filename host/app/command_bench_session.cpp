@@ -33,6 +33,12 @@ std::string without_extension(const std::string& path) {
 }
 
 ExitCode bench_session(Console& console, Options options) {
+    if (options.capture.devices.size() > 1) {
+        return report_error(
+            console, "",
+            {ErrorCode::invalid_argument,
+             "several boards at once: run `gyrolog capture`, then `gyrolog analyze` for each file"});
+    }
     if (options.path.empty()) { options.path = name_by_time() + ".pcapng"; }
     const CaptureResult captured = capture_to_file(console, "", options.capture, options.path, true);
     if (!captured.file_written) {

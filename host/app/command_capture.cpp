@@ -2,9 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/app/boards_capture.hpp"
 #include "host/app/capture_report.hpp"
 #include "host/app/capture_run.hpp"
 #include "host/app/command.hpp"
+#include "host/app/device_choice.hpp"
 #include "host/app/result_output.hpp"
 
 namespace gyrolog {
@@ -17,7 +19,22 @@ struct Options {
 };
 
 ExitCode capture(Console& console, const Options& options) {
-    const CaptureResult result = capture_to_file(console, "capture", options.capture, options.path, false);
+    const auto devices = choose_devices(options.capture.devices);
+    if (!devices.ok()) {
+        report_error(console, "capture", devices.error());
+        return exit_code_of_opening(devices.error());
+    }
+    if (devices->size() > 1) {
+        if (!options.json.empty()) {
+            return report_error(console, "capture",
+                                {ErrorCode::invalid_argument,
+                                 "--json tells of one file: run `gyrolog check FILE --json` for each board"});
+        }
+        return capture_boards(console, "capture", options.capture, *devices, options.path);
+    }
+    CaptureOptions one = options.capture;
+    one.devices = *devices;
+    const CaptureResult result = capture_to_file(console, "capture", one, options.path, false);
     if (!result.file_written || options.json.empty()) { return result.code; }
     const auto stored = load_capture(options.path, false);
     if (!stored.ok()) { return report_error(console, "capture", stored.error()); }

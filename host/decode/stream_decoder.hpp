@@ -50,6 +50,8 @@ public:
     const std::optional<glp_device_status>& device_status() const { return status_; }
     // The sensor's rate in the present run: by the stamps, or nominal before there are enough of them.
     std::optional<double> rate_hz() const;
+    // With its uncertainty; no value before there are enough stamps.
+    std::optional<RateEstimate> rate_estimate() const { return timeline_.rate(run_, run_); }
     // The report's dropouts with their time from the first sample.
     std::vector<Dropout> timed_dropouts(const LinkReport& report) const;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
@@ -492,6 +493,15 @@ glp_configure configuration_of(const glp_config& config) {
     return wanted;
 }
 
+// A full SAMPLES frame on the wire: header, payload and checksum, stuffed, and its delimiters.
+double wire_bytes(const glp_config& config) {
+    constexpr double header_and_checksum = 12.0;
+    constexpr double payload_before_samples = 28.0;
+    const double body = header_and_checksum + payload_before_samples +
+                        static_cast<double>(config.samples_per_frame * glp_sample_bytes(config.layout));
+    return body + 1.0 + std::floor(body / 254.0) + 1.0;
+}
+
 // Whether another try may succeed once the board is back, or wide awake.
 bool may_come_back(ErrorCode code) {
     switch (code) {
@@ -526,6 +536,7 @@ public:
     Result<CaptureOutcome> run() {
         const Status began = begin(source_, sink_, thread_, control_, request_.configure, request_);
         if (began.ok()) {
+            settle_queue();
             stream_until_end();
             while (outcome_.end == CaptureEnd::device_lost && request_.on_unplug == OnUnplug::wait &&
                    park()) {
@@ -564,8 +575,19 @@ private:
         thread_.join();
     }
 
+    // The board has said what it will send.
+    void settle_queue() {
+        const std::optional<glp_config> config = thread_.progress().config;
+        if (!config || config->samples_per_frame == 0) { return; }
+        const double bytes_per_frame = wire_bytes(*config);
+        const double bytes_per_s = bytes_per_frame * config->rate_mHz * 1e-3 / config->samples_per_frame;
+        source_.expect(bytes_per_s, bytes_per_frame);
+        tolerated_stall_s_ = source_.tolerated_stall_s(bytes_per_s, bytes_per_frame);
+    }
+
     CaptureProgress progress() const {
         CaptureProgress progress = thread_.progress();
+        progress.tolerated_stall_s = tolerated_stall_s_;
         progress.elapsed_s = seconds_since(start_);
         progress.connections = connections_;
         progress.streaming = control_.streaming();
@@ -665,7 +687,10 @@ private:
         sink_.reopen();
         thread_.resume();
         Status began = begin(source_, sink_, thread_, control_, again, request_);
-        if (began.ok()) { return {}; }
+        if (began.ok()) {
+            settle_queue();
+            return {};
+        }
         wind_up();
         LinkReport link = thread_.link();
         link.bytes.total -= bytes_before;
@@ -701,6 +726,7 @@ private:
     BoardControl control_;
     const Clock::time_point start_ = Clock::now();
     unsigned connections_ = 1;
+    double tolerated_stall_s_ = 0.0;
     CaptureOutcome outcome_;
 };
 

@@ -55,6 +55,8 @@ struct CaptureProgress {
     double parked_s = 0.0;   // for how long
     std::string parked_why;  // what became of the board, or of the last try to go on with it
     unsigned connections = 1;
+    // How long this program may stand still without losing anything; infinity where the source waits.
+    double tolerated_stall_s = 0.0;
     std::string path;        // of the present file
     double elapsed_s = 0.0;  // of host time since the stream began
     double device_s = 0.0;   // of device time

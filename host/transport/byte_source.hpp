@@ -12,6 +12,9 @@
 
 namespace gyrolog {
 
+// A reader that is stopped for 2 s loses nothing; the rest is for its way back to work.
+constexpr double stall_to_ride_out_s = 2.5;
+
 // What is known of a device before its first frame. For a source that is not USB the identifiers are those of
 // the board it stands for, or zero.
 struct SourceIdentity {
@@ -57,8 +60,11 @@ public:
     virtual const SourceIdentity& identity() const = 0;
     virtual bool can_wait() const = 0;
     // The stall of the reader that the source rides out without losing a byte, at the given byte rate and
-    // bytes per frame; infinity for a source that can wait.
-    virtual double tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const = 0;
+    // bytes per frame, each of which ends with a short packet; infinity for a source that can wait.
+    virtual double tolerated_stall_s(double bytes_per_s, double bytes_per_frame) const = 0;
+    // What the board says that it will send. A source that can queue more of it does, to ride out
+    // stall_to_ride_out_s. After start(), at any time; nothing is lost by it.
+    virtual void expect(double /*bytes_per_s*/, double /*bytes_per_frame*/) {}
 
     virtual Status start(TransferSink& sink) = 0;
     // Data terminal ready: the start signal (SPEC.md). Error `unsupported` on a line that has none (a pty):

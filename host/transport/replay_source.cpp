@@ -23,7 +23,7 @@ ReplaySource::ReplaySource(CaptureReader reader, const std::string& path) : read
 
 ReplaySource::~ReplaySource() { stop(); }
 
-double ReplaySource::tolerated_stall_s(double /*bytes_per_s*/, double /*bytes_per_completion*/) const {
+double ReplaySource::tolerated_stall_s(double /*bytes_per_s*/, double /*bytes_per_frame*/) const {
     return std::numeric_limits<double>::infinity();
 }
 

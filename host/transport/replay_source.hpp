@@ -24,7 +24,7 @@ public:
     // The captured device's, with the file as its URI.
     const SourceIdentity& identity() const override { return identity_; }
     bool can_wait() const override { return true; }
-    double tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const override;
+    double tolerated_stall_s(double bytes_per_s, double bytes_per_frame) const override;
 
     // Plays once. Transfers keep the times of the capture. Damage in the file is passed over, as its
     // transfers are lost; the reader's accounts tell of it.

@@ -167,7 +167,7 @@ TtySource::~TtySource() {
     if (wake_ >= 0) { ::close(wake_); }
 }
 
-double TtySource::tolerated_stall_s(double bytes_per_s, double /*bytes_per_completion*/) const {
+double TtySource::tolerated_stall_s(double bytes_per_s, double /*bytes_per_frame*/) const {
     return kernel_buffer_bytes / bytes_per_s;
 }
 

@@ -1,6 +1,5 @@
 #include "host/transport/usb_source.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace gyrolog {
@@ -78,10 +77,13 @@ UsbSource::~UsbSource() {
     if (device_ && line_raised_ && !device_lost_) { static_cast<void>(UsbSource::set_line_state(false)); }
 }
 
-double UsbSource::tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const {
-    if (!stream_) { return 0.0; }
-    const double filled_bytes = std::min(bytes_per_completion, static_cast<double>(plan_.transfer_bytes));
-    return stream_->queued_transfers() * filled_bytes / bytes_per_s;
+double UsbSource::tolerated_stall_s(double bytes_per_s, double bytes_per_frame) const {
+    return stream_ ? stream_->capacity_bytes(bytes_per_frame) / bytes_per_s : 0.0;
+}
+
+void UsbSource::expect(double bytes_per_s, double bytes_per_frame) {
+    if (!stream_ || tolerated_stall_s(bytes_per_s, bytes_per_frame) >= stall_to_ride_out_s) { return; }
+    stream_->deepen(BulkInPlan::for_stream(bytes_per_s, bytes_per_frame, stall_to_ride_out_s));
 }
 
 Status UsbSource::start(TransferSink& sink) {

@@ -33,7 +33,8 @@ public:
 
     const SourceIdentity& identity() const override { return identity_; }
     bool can_wait() const override { return false; }
-    double tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const override;
+    double tolerated_stall_s(double bytes_per_s, double bytes_per_frame) const override;
+    void expect(double bytes_per_s, double bytes_per_frame) override;
 
     Status start(TransferSink& sink) override;
     Status set_line_state(bool data_terminal_ready) override;

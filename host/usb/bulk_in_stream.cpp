@@ -15,7 +15,13 @@ namespace {
 constexpr std::uint32_t short_transfer_bytes = 512;
 constexpr std::uint32_t short_transfers_min = 32;
 constexpr std::uint32_t short_transfers_max = 2048;
-constexpr double stall_to_ride_out_s = 2.0;
+constexpr double stall_of_unknown_stream_s = 2.0;
+constexpr std::uint32_t long_frame_transfer_bytes = 1024;  // holds the longest frame
+constexpr std::uint32_t full_transfer_bytes = 16384;
+constexpr double bytes_queued_max = 4194304.0;
+// USB 2.0 section 5.8.4: 19 packets of 64 bytes a millisecond. A board that needs nearly all of them sends
+// none that is short.
+constexpr double saturated_bytes_per_s = 0.9 * 1'216'000.0;
 
 // A full-speed bus can carry 19 packets a millisecond; a board that flushes on a timer sends one at the most.
 constexpr unsigned empty_limit = 1000;
@@ -26,60 +32,92 @@ constexpr unsigned errors_in_row_min = 8;
 }  // namespace
 
 BulkInPlan BulkInPlan::for_short_packets(double completions_per_s) {
-    const double wanted = std::ceil(stall_to_ride_out_s * completions_per_s);
+    const double wanted = std::ceil(stall_of_unknown_stream_s * completions_per_s);
     const double bounded = std::clamp(wanted, double{short_transfers_min}, double{short_transfers_max});
     return {static_cast<std::uint32_t>(bounded), short_transfer_bytes};
 }
 
+BulkInPlan BulkInPlan::for_stream(double bytes_per_s, double bytes_per_frame, double stall_s) {
+    const bool full = bytes_per_s >= saturated_bytes_per_s;
+    const std::uint32_t size = full                                     ? full_transfer_bytes
+                               : bytes_per_frame > short_transfer_bytes ? long_frame_transfer_bytes
+                                                                        : short_transfer_bytes;
+    const double size_bytes = size;
+    const double filled_bytes = full ? size_bytes : std::clamp(bytes_per_frame, 1.0, size_bytes);
+    const double wanted = std::ceil(stall_s * bytes_per_s / filled_bytes);
+    return {static_cast<std::uint32_t>(
+                std::clamp(wanted, double{short_transfers_min}, bytes_queued_max / size_bytes)),
+            size};
+}
+
 BulkInStream::BulkInStream(UsbContext& usb, libusb_device_handle* device, std::uint8_t endpoint,
                            BulkInPlan plan, TransferObserver& observer)
-    : usb_(usb),
-      device_(device),
-      endpoint_(endpoint),
-      plan_(plan),
-      observer_(observer),
-      queued_transfers_(plan.transfers) {}
+    : usb_(usb), device_(device), endpoint_(endpoint), plan_(plan), observer_(observer) {}
 
 BulkInStream::~BulkInStream() {
     stop();
     for (const Slot& slot : slots_) { libusb_free_transfer(slot.transfer); }
 }
 
-// All memory is taken here, so that no callback allocates.
-Status BulkInStream::allocate() {
-    buffer_.resize(std::size_t{plan_.transfers} * plan_.transfer_bytes);
-    slots_.reserve(plan_.transfers);
+// All memory is taken here, so that no callback allocates. What is there stays where it is.
+Status BulkInStream::allocate(BulkInPlan plan) {
+    std::vector<std::uint8_t>& buffer =
+        buffers_.emplace_back(std::size_t{plan.transfers} * plan.transfer_bytes);
     const auto callback = [](libusb_transfer* transfer) {
         auto* slot = static_cast<Slot*>(transfer->user_data);
         slot->stream->on_complete(*slot);
     };
-    while (slots_.size() < plan_.transfers) {
+    for (std::uint32_t i = 0; i < plan.transfers; ++i) {
         libusb_transfer* transfer = libusb_alloc_transfer(0);
         if (transfer == nullptr) { return usb_error("prepare the bulk stream", LIBUSB_ERROR_NO_MEM); }
-        std::uint8_t* data = buffer_.data() + slots_.size() * plan_.transfer_bytes;
-        slots_.push_back({this, transfer});
-        libusb_fill_bulk_transfer(transfer, device_, endpoint_, data, static_cast<int>(plan_.transfer_bytes),
+        std::uint8_t* data = buffer.data() + std::size_t{i} * plan.transfer_bytes;
+        slots_.push_back({.stream = this, .transfer = transfer, .bytes = plan.transfer_bytes});
+        libusb_fill_bulk_transfer(transfer, device_, endpoint_, data, static_cast<int>(plan.transfer_bytes),
                                   callback, &slots_.back(), 0);
     }
     return {};
 }
 
 Status BulkInStream::start(EndHandler on_end) {
-    GYROLOG_CHECK(allocate());
+    if (slots_.empty()) { GYROLOG_CHECK(allocate(plan_)); }
+    bool queued = false;
     int code = LIBUSB_SUCCESS;
     usb_.call([&] {
         errors_in_row_ = stalls_in_row_ = empty_in_row_ = 0;
         error_.reset();
         code = submit_all();
-        queued_transfers_ = in_flight_;
-        if (in_flight_ == 0) { return; }
+        queued = in_flight_ > 0;
+        if (!queued) { return; }
         on_end_ = std::move(on_end);
         state_ = State::running;
         const std::lock_guard lock(mutex_);
         ended_ = false;
     });
-    if (queued_transfers_ == 0) { return usb_error("queue the first bulk transfer", code); }
+    if (!queued) { return usb_error("queue the first bulk transfer", code); }
     return {};
+}
+
+void BulkInStream::deepen(BulkInPlan plan) {
+    usb_.call([&] {
+        if (state_ != State::running) { return; }
+        const std::size_t before = slots_.size();
+        if (!allocate(plan).ok() || submit_all() != LIBUSB_SUCCESS) { return; }
+        for (std::size_t i = 0; i < before; ++i) { slots_[i].retired = true; }
+    });
+}
+
+double BulkInStream::capacity_bytes(double bytes_per_frame) const {
+    const auto filled = [&](std::uint32_t transfer_bytes) {
+        return bytes_per_frame / std::max(1.0, std::ceil(bytes_per_frame / transfer_bytes));
+    };
+    double capacity = 0.0;
+    usb_.call([&] {
+        if (state_ == State::idle) { capacity = plan_.transfers * filled(plan_.transfer_bytes); }
+        for (const Slot& slot : slots_) {
+            if (slot.in_flight && !slot.retired) { capacity += filled(slot.bytes); }
+        }
+    });
+    return capacity;
 }
 
 void BulkInStream::stop() {
@@ -102,7 +140,7 @@ int BulkInStream::submit(Slot& slot) {
     Transfer told;
     told.event = Transfer::Event::submission;
     told.endpoint = endpoint_;
-    told.requested_bytes = plan_.transfer_bytes;
+    told.requested_bytes = slot.bytes;
     told.time = host_now();
     const int code = libusb_submit_transfer(slot.transfer);
     if (code != LIBUSB_SUCCESS) { return code; }
@@ -117,6 +155,7 @@ int BulkInStream::submit(Slot& slot) {
 // Stops at the first refusal: the kernel is out of memory, or the device is gone. Returns its code.
 int BulkInStream::submit_all() {
     for (Slot& slot : slots_) {
+        if (slot.in_flight || slot.retired) { continue; }
         if (const int code = submit(slot); code != LIBUSB_SUCCESS) { return code; }
     }
     return LIBUSB_SUCCESS;
@@ -140,7 +179,7 @@ void BulkInStream::on_complete(Slot& slot) {
     told.endpoint = endpoint_;
     told.id = slot.id;
     told.status = kernel_status_of_transfer(status);
-    told.requested_bytes = plan_.transfer_bytes;
+    told.requested_bytes = slot.bytes;
     told.time = host_now();
     told.data = ByteView(slot.transfer->buffer, received_bytes);
     observer_.on_usb_transfer(told);
@@ -149,7 +188,7 @@ void BulkInStream::on_complete(Slot& slot) {
     if (state_ == State::clearing_halt && status == LIBUSB_TRANSFER_NO_DEVICE) {
         begin_end(End::device_lost, usb_error("read from the board", LIBUSB_ERROR_NO_DEVICE));
     }
-    if (state_ == State::running) {
+    if (state_ == State::running && !slot.retired) {
         const int code = submit(slot);
         if (code == LIBUSB_ERROR_NO_DEVICE) {
             begin_end(End::device_lost, usb_error("read from the board", code));

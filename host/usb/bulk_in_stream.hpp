@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -32,9 +33,9 @@ struct BulkInPlan {
 
     // Rides out 2 s at `completions_per_s`; a frame longer than 512 bytes takes two completions.
     static BulkInPlan for_short_packets(double completions_per_s);
-    // Rides out 0.86 s even at the 1 216 000 B/s that a full-speed bus can carry, more at what a sensor
-    // produces.
-    static BulkInPlan for_full_packets() { return {64, 16384}; }
+    // Rides out `stall_s` of such a stream, in at most 4 MiB: in transfers that hold a frame each, or in
+    // large ones when the bus has no time left for short packets.
+    static BulkInPlan for_stream(double bytes_per_s, double bytes_per_frame, double stall_s);
     // Before anything is known of the stream: a frame each millisecond. That is 1 MB, which at 16 samples a
     // frame is also enough for 8 kHz.
     static BulkInPlan for_unknown_stream() { return for_short_packets(1000.0); }
@@ -85,19 +86,26 @@ public:
     // Waits until the stream has ended by itself, at most so long; true when it has.
     bool wait_for_end(std::int64_t timeout_ms);
 
-    // Transfers that start() could queue; before it, the planned number.
-    std::uint32_t queued_transfers() const { return queued_transfers_; }
+    // Queues these transfers behind the present ones, each of which leaves the queue with the data it was
+    // waiting for: the stream goes on without a gap. Where the kernel has not the memory for all of them,
+    // those it took are queued in addition. Does nothing when not running.
+    void deepen(BulkInPlan plan);
+    // What the queue holds of a stream whose frames of so many bytes each end with a short packet. Before
+    // start(): of what is planned.
+    double capacity_bytes(double bytes_per_frame) const;
 
 private:
     struct Slot {
         BulkInStream* stream = nullptr;
         libusb_transfer* transfer = nullptr;
+        std::uint32_t bytes = 0;
         std::uint64_t id = 0;
         bool in_flight = false;
+        bool retired = false;  // not queued again
     };
     enum class State { idle, running, clearing_halt, ending };
 
-    Status allocate();
+    Status allocate(BulkInPlan plan);
     int submit(Slot& slot);
     int submit_all();
     void cancel_all();
@@ -115,8 +123,8 @@ private:
     TransferObserver& observer_;
 
     // The event thread's.
-    std::vector<std::uint8_t> buffer_;
-    std::vector<Slot> slots_;
+    std::deque<std::vector<std::uint8_t>> buffers_;
+    std::deque<Slot> slots_;
     State state_ = State::idle;
     std::uint32_t in_flight_ = 0;
     unsigned errors_in_row_ = 0;
@@ -126,7 +134,6 @@ private:
     End end_ = End::stopped;
     std::optional<Error> error_;
     EndHandler on_end_;
-    std::uint32_t queued_transfers_;
 
     std::mutex mutex_;
     std::condition_variable ended_changed_;

@@ -16,6 +16,7 @@ namespace gyrolog {
 namespace {
 
 constexpr std::size_t transfer_bytes = 16384;
+constexpr std::size_t queued_bytes_max = std::size_t{4} << 20U;  // as on USB
 constexpr std::int64_t step_ns = 20'000'000;  // simulated time between two looks at what has come
 constexpr std::int64_t delivery_period_ns = 1'000'000'000;  // a transfer is not kept open for longer
 constexpr std::int64_t tick_ns = 1'000'000;      // real time between two turns of the real-time board
@@ -101,7 +102,10 @@ Result<std::unique_ptr<SimSource>> SimSource::create(const SimOptions& options, 
 }
 
 SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::unique_ptr<VirtualBoard> board)
-    : realtime_(options.realtime), board_(std::move(board)), buffer_(transfer_bytes) {
+    : realtime_(options.realtime),
+      board_(std::move(board)),
+      buffer_(transfer_bytes),
+      queued_bytes_(transfer_bytes) {
     identity_.uri = uri_of(options);
     identity_.vendor_id = GLP_USB_VENDOR_ID;
     identity_.product_id = GLP_USB_PRODUCT_ID;
@@ -121,9 +125,15 @@ SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::uniq
 
 SimSource::~SimSource() { stop(); }
 
-double SimSource::tolerated_stall_s(double bytes_per_s, double /*bytes_per_completion*/) const {
+double SimSource::tolerated_stall_s(double bytes_per_s, double /*bytes_per_frame*/) const {
     if (!realtime_) { return std::numeric_limits<double>::infinity(); }
-    return static_cast<double>(transfer_bytes + board_->firmware().ring.capacity) / bytes_per_s;
+    return static_cast<double>(queued_bytes_ + board_->firmware().ring.capacity) / bytes_per_s;
+}
+
+void SimSource::expect(double bytes_per_s, double bytes_per_frame) {
+    if (!realtime_ || tolerated_stall_s(bytes_per_s, bytes_per_frame) >= stall_to_ride_out_s) { return; }
+    queued_bytes_ = std::min(queued_bytes_max, static_cast<std::size_t>(stall_to_ride_out_s * bytes_per_s));
+    static_cast<void>(enqueue({std::nullopt, {}, queued_bytes_}));
 }
 
 // ------------------------------------------------------------------------------------------- the caller's
@@ -144,9 +154,11 @@ Status SimSource::start(TransferSink& sink) {
     return {};
 }
 
-Status SimSource::set_line_state(bool data_terminal_ready) { return enqueue({data_terminal_ready, {}}); }
+Status SimSource::set_line_state(bool data_terminal_ready) { return enqueue({data_terminal_ready, {}, 0}); }
 
-Status SimSource::write(ByteView bytes) { return enqueue({std::nullopt, Bytes(bytes.begin(), bytes.end())}); }
+Status SimSource::write(ByteView bytes) {
+    return enqueue({std::nullopt, Bytes(bytes.begin(), bytes.end()), 0});
+}
 
 Status SimSource::enqueue(Call call) {
     const std::lock_guard lock(mutex_);
@@ -261,6 +273,10 @@ bool SimSource::answer_calls() {
 }
 
 void SimSource::make(const Call& call) {
+    if (call.queued_bytes > 0) {
+        board_->in_endpoint().set_capacity(call.queued_bytes + std::size_t{2} * GLP_USB_PACKET_BYTES);
+        return;
+    }
     if (call.line_state) {
         // SET_CONTROL_LINE_STATE, to the control interface (PSTN 1.2, 6.3.12)
         const unsigned lines = *call.line_state ? GLP_CDC_LINE_DTR | GLP_CDC_LINE_RTS : 0U;

@@ -6,6 +6,7 @@
 // bus.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -42,7 +43,8 @@ public:
 
     const SourceIdentity& identity() const override { return identity_; }
     bool can_wait() const override { return true; }
-    double tolerated_stall_s(double bytes_per_s, double bytes_per_completion) const override;
+    double tolerated_stall_s(double bytes_per_s, double bytes_per_frame) const override;
+    void expect(double bytes_per_s, double bytes_per_frame) override;
     Status start(TransferSink& sink) override;
     Status set_line_state(bool data_terminal_ready) override;
     Status write(ByteView bytes) override;
@@ -54,6 +56,7 @@ private:
     struct Call {
         std::optional<bool> line_state;  // or else the bytes
         Bytes bytes;
+        std::size_t queued_bytes = 0;  // or else what the host queues from now on
     };
 
     SimSource(const SimOptions& options, const SimLimit& limit, std::unique_ptr<VirtualBoard> board);
@@ -80,6 +83,7 @@ private:
     bool realtime_;
     std::unique_ptr<VirtualBoard> board_;
     Bytes buffer_;
+    std::atomic<std::size_t> queued_bytes_;  // of the stream, by the host: real time
 
     // The source's thread's own.
     TransferSink* sink_ = nullptr;

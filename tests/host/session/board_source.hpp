@@ -53,7 +53,7 @@ public:
 
     const SourceIdentity& identity() const override { return identity_; }
     bool can_wait() const override { return manner_.can_wait; }
-    double tolerated_stall_s(double /*bytes_per_s*/, double /*bytes_per_completion*/) const override {
+    double tolerated_stall_s(double /*bytes_per_s*/, double /*bytes_per_frame*/) const override {
         return std::numeric_limits<double>::infinity();
     }
 

@@ -199,13 +199,37 @@ TEST_F(BulkInStreamTest, ADeviceThatIsGoneBeforeTheStartIsAnError) {
     EXPECT_EQ(ends_, 0);
 }
 
+TEST_F(BulkInStreamTest, QueueThatIsDeepenedInTheMiddleLosesNoByte) {
+    for (const BulkInPlan deeper : {BulkInPlan{300, 512}, BulkInPlan{40, 16384}}) {
+        Listener fresh;
+        FakeUsb::bus().reset(frames_of_40_bytes);
+        open();
+        stream_ = std::make_unique<BulkInStream>(*context_, nullptr, endpoint, BulkInPlan{8, 512}, fresh);
+        EXPECT_EQ(stream_->capacity_bytes(40.0), 8 * 40.0);
+        ASSERT_TRUE(start().ok());
+        wait_for_completions(500);
+        stream_->deepen(deeper);
+        EXPECT_EQ(stream_->capacity_bytes(40.0), deeper.transfers * 40.0);
+        wait_for_completions(3000);
+        EXPECT_EQ(FakeUsb::bus().most_in_flight(), 8U + deeper.transfers);
+        stream_->stop();
+        expect_end(End::stopped);
+        const Bytes bytes = fresh.stream();
+        EXPECT_EQ(bytes.size(), 40 * FakeUsb::bus().completions());
+        for (std::size_t i = 0; i < bytes.size(); ++i) { ASSERT_EQ(bytes[i], i % 256) << "at byte " << i; }
+        EXPECT_EQ(fresh.pending(), 0U);
+        stream_.reset();
+    }
+}
+
 TEST_F(BulkInStreamTest, GoesOnWithFewerTransfersWhenMemoryIsShort) {
     FakeUsb::bus().reset(frames_of_40_bytes, [](std::uint64_t attempt) {
         return attempt < 3 || attempt > 8 ? LIBUSB_SUCCESS : LIBUSB_ERROR_NO_MEM;
     });
     open();
     ASSERT_TRUE(start().ok());
-    EXPECT_EQ(stream_->queued_transfers(), 3U);
+    EXPECT_GT(stream_->capacity_bytes(40.0), 0.0);
+    EXPECT_LE(stream_->capacity_bytes(40.0), 3 * 40.0);
     stream_->stop();
 }
 
@@ -328,7 +352,16 @@ TEST(BulkInPlan, CoversTwoSecondsOfFramesWithinItsBounds) {
     EXPECT_EQ(BulkInPlan::for_short_packets(1.0).transfers, 32U);
     EXPECT_EQ(BulkInPlan::for_short_packets(8000.0).transfers, 2048U);
     EXPECT_EQ(BulkInPlan::for_short_packets(1000.0).transfer_bytes % 64U, 0U);
-    EXPECT_EQ(BulkInPlan::for_full_packets().transfer_bytes % 64U, 0U);
+    // 40 samples of 12 bytes: 25 frames a second, each in one transfer.
+    EXPECT_EQ(BulkInPlan::for_stream(13'125.0, 525.0, 2.5).transfers, 63U);
+    EXPECT_EQ(BulkInPlan::for_stream(13'125.0, 525.0, 2.5).transfer_bytes, 1024U);
+    EXPECT_EQ(BulkInPlan::for_stream(60'000.0, 60.0, 2.5).transfers, 2500U);
+    EXPECT_EQ(BulkInPlan::for_stream(60'000.0, 60.0, 2.5).transfer_bytes, 512U);
+    // The bus to its brim: full packets, and 2.5 s of them.
+    EXPECT_EQ(BulkInPlan::for_stream(1'216'000.0, 1000.0, 2.5).transfers, 186U);
+    EXPECT_EQ(BulkInPlan::for_stream(1'216'000.0, 1000.0, 2.5).transfer_bytes, 16384U);
+    // usbfs has 16 MiB for the whole system.
+    EXPECT_EQ(BulkInPlan::for_stream(480'000.0, 60.0, 2.5).transfers, 8192U);
 }
 
 }  // namespace
