@@ -40,7 +40,7 @@ public:
 
     bool on_transfer(const Transfer& transfer) override {
         if (transfer.carries_stream() && !transfer.data.empty()) {
-            last_data_ns_.store(clock_ns(CLOCK_MONOTONIC), std::memory_order_relaxed);
+            data_transfers_.fetch_add(1, std::memory_order_relaxed);
         }
         if (queue_.push(transfer)) { return true; }
         if (!source_waits_) {
@@ -74,19 +74,14 @@ public:
         const std::lock_guard lock(mutex_);
         return error_;
     }
-    double silence_s() const {
-        return static_cast<double>(clock_ns(CLOCK_MONOTONIC) -
-                                   last_data_ns_.load(std::memory_order_relaxed)) *
-               1e-9;
-    }
-    void restart_silence() { last_data_ns_.store(clock_ns(CLOCK_MONOTONIC)); }
+    std::uint64_t data_transfers() const { return data_transfers_.load(std::memory_order_relaxed); }
     std::uint64_t transfers_dropped() const { return transfers_dropped_; }
     std::uint64_t bytes_dropped() const { return bytes_dropped_; }
 
 private:
     TransferQueue& queue_;
     const bool source_waits_;
-    std::atomic<std::int64_t> last_data_ns_{clock_ns(CLOCK_MONOTONIC)};
+    std::atomic<std::uint64_t> data_transfers_{0};
     std::atomic<std::uint64_t> transfers_dropped_{0};
     std::atomic<std::uint64_t> bytes_dropped_{0};
     mutable std::mutex mutex_;
@@ -502,6 +497,31 @@ double wire_bytes(const glp_config& config) {
     return body + 1.0 + std::floor(body / 254.0) + 1.0;
 }
 
+// How long a board has said nothing while somebody listened. A program that stood still itself has not
+// listened.
+class Silence {
+public:
+    void begin() {
+        silent_ = Clock::duration::zero();
+        last_look_ = Clock::now();
+    }
+    double seconds(std::uint64_t data_transfers) {
+        constexpr std::chrono::seconds longest_listening(1);
+        const auto now = Clock::now();
+        silent_ = data_transfers != heard_
+                      ? Clock::duration::zero()
+                      : silent_ + std::min<Clock::duration>(now - last_look_, longest_listening);
+        heard_ = data_transfers;
+        last_look_ = now;
+        return std::chrono::duration<double>(silent_).count();
+    }
+
+private:
+    std::uint64_t heard_ = 0;
+    Clock::duration silent_{};
+    Clock::time_point last_look_ = Clock::now();
+};
+
 // Whether another try may succeed once the board is back, or wide awake.
 bool may_come_back(ErrorCode code) {
     switch (code) {
@@ -596,7 +616,7 @@ private:
 
     // Runs until there is enough, the caller or the source ends it, or the disk refuses.
     void stream_until_end() {
-        sink_.restart_silence();
+        silence_.begin();
         outcome_.error.reset();
         while (true) {
             bool enough = false;
@@ -619,7 +639,7 @@ private:
                 outcome_.error = std::move(obeyed).error();
                 return end(CaptureEnd::device_lost);
             }
-            if (sink_.silence_s() > request_.idle_timeout_s) {
+            if (silence_.seconds(sink_.data_transfers()) > request_.idle_timeout_s) {
                 outcome_.error = Error{
                     ErrorCode::device_lost,
                     fmt::format("{}: silent for {:g} s", source_.identity().uri, request_.idle_timeout_s)};
@@ -632,7 +652,7 @@ private:
     Status obey() {
         if (request_.control == nullptr) { return {}; }
         GYROLOG_CHECK(control_.set_streaming(request_.control->streaming_wanted()));
-        if (!control_.streaming()) { sink_.restart_silence(); }
+        if (!control_.streaming()) { silence_.begin(); }
         return {};
     }
 
@@ -727,6 +747,7 @@ private:
     const Clock::time_point start_ = Clock::now();
     unsigned connections_ = 1;
     double tolerated_stall_s_ = 0.0;
+    Silence silence_;
     CaptureOutcome outcome_;
 };
 

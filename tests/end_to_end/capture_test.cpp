@@ -196,6 +196,28 @@ TEST_F(Capture, FilesThatFollowEachOtherAreOneRecording) {
     EXPECT_EQ(holed["dropouts"][0]["cause"], "link");
 }
 
+TEST_F(Capture, EveryBoardHasItsOwnFile) {
+    const ProgramResult all = capture("sim:rate=1000,boards=3", "a.pcapng", {"--duration", "10s"});
+    EXPECT_EQ(all.exit_code, 0) << all.err;
+    for (const char* file : {"a-SIM0001.pcapng", "a-SIM0002.pcapng", "a-SIM0003.pcapng"}) {
+        EXPECT_EQ(check(file)["samples"]["good"], 10'000);
+    }
+    EXPECT_NE(read_whole_file(folder.path("a-SIM0001.pcapng")),
+              read_whole_file(folder.path("a-SIM0002.pcapng")));
+    const ProgramResult two =
+        capture("sim:seed=1", "b.pcapng", {"--device", "sim:seed=2,unplug=5", "--duration", "10s"});
+    EXPECT_EQ(two.exit_code, 4) << "one of them was lost: " << two.err;
+    EXPECT_EQ(check("b-SIM0001-1.pcapng")["samples"]["good"], 1000) << "and the other one was not";
+    EXPECT_GT(check("b-SIM0001-2.pcapng")["samples"]["good"], 400);
+}
+
+TEST_F(Capture, ADiskWithoutRoomIsLeftAlone) {
+    const ProgramResult result = capture("sim:", "a.pcapng", {"--duration", "5s", "--min-free", "900000T"});
+    EXPECT_EQ(result.exit_code, 6) << result.err;
+    EXPECT_NE(result.err.find("--min-free"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(folder.path("a.pcapng")));
+}
+
 TEST_F(Capture, AReplayGivesTheSameStream) {
     ASSERT_EQ(capture("sim:seed=9", "a.pcapng", {"--duration", "2m"}).exit_code, 0);
     const ProgramResult replayed = capture("replay:" + folder.path("a.pcapng"), "b.pcapng");

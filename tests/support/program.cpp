@@ -23,7 +23,8 @@ constexpr std::chrono::seconds time_limit(100);
 struct SignalPlan {
     std::chrono::milliseconds after;
     int number;
-    std::string once_there;  // counts from when this file exists; empty: from the start
+    std::string once_there;             // counts from when this file exists; empty: from the start
+    std::chrono::milliseconds held{0};  // SIGCONT follows after so long; 0: none
 };
 
 std::string program_path() {
@@ -65,7 +66,12 @@ void collect(pid_t child, int out, int err, std::optional<SignalPlan> plan, Prog
         }
         if (plan && plan->once_there.empty() && Clock::now() - counted_from >= plan->after) {
             kill(child, plan->number);
+            const std::chrono::milliseconds held = plan->held;
             plan.reset();
+            if (held.count() > 0) {
+                plan = SignalPlan{held, SIGCONT, "", {}};
+                counted_from = Clock::now();
+            }
         }
         if (Clock::now() - start > time_limit) {
             kill(child, SIGKILL);
@@ -109,7 +115,12 @@ ProgramResult run_gyrolog(const std::vector<std::string>& arguments) { return ru
 ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,
                                      std::chrono::milliseconds after, int signal,
                                      const std::string& once_there) {
-    return run(arguments, SignalPlan{after, signal, once_there});
+    return run(arguments, SignalPlan{after, signal, once_there, {}});
+}
+
+ProgramResult run_gyrolog_and_hold(const std::vector<std::string>& arguments, std::chrono::milliseconds after,
+                                   std::chrono::milliseconds held) {
+    return run(arguments, SignalPlan{after, SIGSTOP, "", held});
 }
 
 std::string read_whole_file(const std::filesystem::path& path) {

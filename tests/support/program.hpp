@@ -23,6 +23,10 @@ ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,
                                      std::chrono::milliseconds after, int signal,
                                      const std::string& once_there = "");
 
+// The same, but the program is stopped after a while and goes on when it was held for so long.
+ProgramResult run_gyrolog_and_hold(const std::vector<std::string>& arguments, std::chrono::milliseconds after,
+                                   std::chrono::milliseconds held);
+
 std::string read_whole_file(const std::filesystem::path& path);
 
 // A folder of its own for a test, gone with it.
