@@ -33,13 +33,32 @@ constexpr std::uint8_t request_type_class_interface_out = 0x21;
 
 std::string words_of(int error_number) { return std::generic_category().message(error_number); }
 
+// A board whose port is gone because a program that had taken the board away from the kernel's driver was killed:
+// its control interface is there and has no driver. Empty when there is none.
+std::string hint_of_a_taken_port() {
+    namespace fs = std::filesystem;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator("/sys/bus/usb/devices", none)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.ends_with(":1.0") || fs::exists(entry.path() / "driver", none)) { continue; }
+        const std::string device = "/sys/bus/usb/devices/" + name.substr(0, name.find(':'));
+        if (read_sysfs_number(device, "idVendor", 16) == GLP_USB_VENDOR_ID &&
+            read_sysfs_number(device, "idProduct", 16) == GLP_USB_PRODUCT_ID) {
+            return "; a board is there whose port a killed program has taken along: plug it in again, or run "
+                   "`echo " +
+                   name + " | sudo tee /sys/bus/usb/drivers/cdc_acm/bind`";
+        }
+    }
+    return {};
+}
+
 Error open_error(const std::string& path, int error_number) {
     const std::string doing = "open serial port '" + path + "': ";
     switch (error_number) {
         case ENOENT:
         case ENODEV:
         case ENXIO:
-            return {ErrorCode::not_found, doing + "not there"};
+            return {ErrorCode::not_found, doing + "not there" + hint_of_a_taken_port()};
         case EACCES:
         case EPERM:
             return {ErrorCode::permission_denied, doing +

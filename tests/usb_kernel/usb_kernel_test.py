@@ -27,7 +27,7 @@ WORK = Path(os.environ["GYROLOG_GUEST_DIR"]).resolve()
 SHARE = WORK / "share"
 PROGRAMS = [BUILD / name for name in ("gyrolog", "vhci_board", "gadget_board")]
 
-OK, NO_DEVICE, DEVICE_LOST = 0, 3, 4
+OK, NO_DEVICE, DEVICE_LOST, DATA_LOST = 0, 3, 4, 5
 
 
 class Scenario(unittest.TestCase):
@@ -196,6 +196,29 @@ class UnplugAcmGadget(UnplugVhciBoard):
         self.assertGreater(check["samples"]["good"], 2000)
 
 
+class ReplugVhciBoard(Scenario):
+    name = "32_replug_vhci"
+
+    def test_the_board_is_waited_for_and_taken_up_again(self):
+        self.assert_exit("capture", DATA_LOST)
+        self.assertIn("waiting for the board", self.text("capture.err"))
+        self.assertIn("the board is back", self.text("capture.err"))
+
+    def test_the_join_is_one_recording_with_a_pause_of_the_true_length(self):
+        self.assert_exit("capture.check", DATA_LOST)
+        check = self.json("capture.check.out")
+        self.assertEqual(check["end"], "clean")
+        self.assertEqual(len(check["files"]), 2)
+        self.assertEqual([dropout["cause"] for dropout in check["dropouts"]], ["reset"])
+        # Three seconds without a cable, and what the kernel and the program take to find the board again.
+        self.assertGreater(check["dropouts"][0]["samples"], 3000)
+        self.assertLess(check["dropouts"][0]["samples"], 8000)
+        self.assert_bytes_balance(check)
+
+    def test_it_can_be_analysed(self):
+        self.assert_exit("capture.analyze", OK)
+
+
 class FailingTransfers(Scenario):
     name = "40_faults"
 
@@ -259,6 +282,14 @@ class ReaderStopped(Scenario):
     def test_two_seconds_without_the_reader_cost_no_sample(self):
         self.assert_exit("capture", OK)
         self.assert_every_sample_of("capture", "VHCI70")
+
+
+class ReaderStoppedFast(Scenario):
+    name = "71_reader_stopped_fast"
+
+    def test_two_seconds_without_the_reader_cost_no_sample_at_8_kHz(self):
+        self.assert_exit("capture", OK)
+        self.assert_every_sample_of("capture", "VHCI71")
 
 
 class SeveralBoards(Scenario):

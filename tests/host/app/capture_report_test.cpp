@@ -54,6 +54,24 @@ std::uint64_t number_of(const std::string& text, const std::string& row) {
     return digits.empty() ? 0 : std::stoull(digits);
 }
 
+TEST_F(CaptureReport, TellsRateUncertaintyJitterAndAClockThatWasSet) {
+    LoadedCapture capture = captured("");
+    Json info = info_json(path_, capture);
+    EXPECT_NEAR(info["sensor"]["measured_rate_hz"].get<double>(), 1000.0, 0.1);
+    EXPECT_GT(info["sensor"]["rate_sd_hz"].get<double>(), 0.0);
+    EXPECT_LT(info["sensor"]["rate_sd_hz"].get<double>(), 0.01);
+    EXPECT_GT(info["sensor"]["stamp_jitter_s"].get<double>(), 0.0);
+    EXPECT_LT(info["sensor"]["stamp_jitter_s"].get<double>(), 10e-6);
+    EXPECT_EQ(info["host_clock_set_by_s"], 0.0);
+    EXPECT_NE(info_text(path_, capture).find("jitter"), std::string::npos);
+
+    ASSERT_TRUE(capture.last_checkpoint.has_value());
+    capture.last_checkpoint->time.realtime_ns -= 3'600'000'000'000;
+    info = info_json(path_, capture);
+    EXPECT_NEAR(info["host_clock_set_by_s"].get<double>(), -3600.0, 0.01);
+    EXPECT_NE(info_text(path_, capture).find("-3600.00"), std::string::npos) << info_text(path_, capture);
+}
+
 TEST_F(CaptureReport, OfAWholeCaptureSaysThatNothingIsMissing) {
     const LoadedCapture capture = captured("");
     EXPECT_TRUE(nothing_missing(capture));

@@ -1,16 +1,16 @@
 // What a night brings: a cable that is pulled, a disk that is full, slow or broken.
+#include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <filesystem>
-#include <map>
-#include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analysis/simulate/sensor_model.hpp"
+#include "host/capture/capture_reader.hpp"
 #include "host/session/capture_session.hpp"
 #include "host/session/load_capture.hpp"
 #include "host/virtual_board/sim_source.hpp"
@@ -324,6 +324,89 @@ TEST_F(CaptureOverFaults, FilesThatAreThereAreSteppedOverNotOverwritten) {
     EXPECT_EQ(outcome->paths[1], folder_.path("night.3.pcapng"));
     EXPECT_EQ(read_whole_file(precious), before);
     expect_all_stored(*source, *outcome);
+}
+
+// ------------------------------------------------------------------------------------------ the host's clock
+
+// A board in simulated time, on a computer whose real-time clock is set while the stream runs: by an hour back, by
+// two hours forward, and by the second that a leap second is told twice.
+class SetClockSource final : public ByteSource, private TransferSink {
+public:
+    explicit SetClockSource(std::unique_ptr<SimSource> board) : board_(std::move(board)) {}
+
+    const SourceIdentity& identity() const override { return board_->identity(); }
+    bool can_wait() const override { return true; }
+    double tolerated_stall_s(double rate, double frame) const override {
+        return board_->tolerated_stall_s(rate, frame);
+    }
+    Status start(TransferSink& sink) override {
+        sink_ = &sink;
+        return board_->start(*this);
+    }
+    Status set_line_state(bool raised) override { return board_->set_line_state(raised); }
+    Status write(ByteView bytes) override { return board_->write(bytes); }
+    void stop() override { board_->stop(); }
+
+    const std::vector<std::int64_t>& monotonic_ns() const { return monotonic_ns_; }
+
+private:
+    bool on_transfer(const Transfer& transfer) override {
+        constexpr std::int64_t hour_ns = 3'600'000'000'000;
+        constexpr std::array<std::int64_t, 4> set_by_ns{0, -hour_ns, hour_ns, hour_ns - 1'000'000'000};
+        Transfer told = transfer;
+        told.time.realtime_ns += set_by_ns[(transfers_ / 20) % set_by_ns.size()];
+        if (!sink_->on_transfer(told)) { return false; }
+        ++transfers_;
+        monotonic_ns_.push_back(told.time.monotonic_ns);
+        return true;
+    }
+    void on_end(SourceEnd end, const std::optional<Error>& error) override { sink_->on_end(end, error); }
+
+    std::unique_ptr<SimSource> board_;
+    TransferSink* sink_ = nullptr;
+    std::uint64_t transfers_ = 0;
+    std::vector<std::int64_t> monotonic_ns_;
+};
+
+TEST_F(CaptureOverFaults, ClockThatIsSetMeanwhileMovesNoTimeStampAndNoRate) {
+    SimOptions options;
+    options.rate_hz = 1000.0;
+    auto board = SimSource::create(options, typical_mpu9250(), {.samples = {}, .duration_s = 120.0});
+    ASSERT_TRUE(board.ok());
+    SetClockSource source(std::move(board).value());
+    request_.duration_s.reset();
+    const auto outcome = run_capture(source, request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_FALSE(outcome->data_lost());
+
+    auto reader = CaptureReader::open(request_.path);
+    ASSERT_TRUE(reader.ok());
+    std::vector<std::int64_t> stored_ns;
+    while (true) {
+        const auto captured = reader->next();
+        ASSERT_TRUE(captured.ok());
+        if (!*captured) { break; }
+        stored_ns.push_back((*captured)->transfer.time.monotonic_ns);
+    }
+    EXPECT_GT(stored_ns.size(), 80U) << "the clock was never set: this test tests nothing";
+    EXPECT_EQ(stored_ns, source.monotonic_ns());
+
+    auto stored = load_capture(request_.path, true);
+    ASSERT_TRUE(stored.ok());
+    EXPECT_TRUE(stored->decoder->report().complete());
+    const auto fit = stored->decoder->timeline().host_clock();
+    ASSERT_TRUE(fit.has_value());
+    // The board's crystal is off by some 20 ppm; an hour within two minutes would be a factor of 30.
+    EXPECT_NEAR(fit->ratio, 1.0, 100e-6 + 4.0 * fit->ratio_sd);
+    const auto rate = stored->decoder->rate_estimate();
+    ASSERT_TRUE(rate.has_value());
+    EXPECT_NEAR(rate->rate_hz, 1000.0, 0.1);
+    EXPECT_LT(rate->sd_hz, 1e-3);
+    EXPECT_LT(rate->jitter_s, 10e-6);
+    const auto recording = stored->decoder->take_recording("night");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_EQ(recording->segments.size(), 1U);
+    EXPECT_TRUE(recording->dropouts.empty());
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 . /test/boards.sh
 
 plug_acm_gadget GADGET31
-run_in_background capture gyrolog capture --device usb:GADGET31 --duration 60s --rate 1000 -o capture.pcapng
+run_in_background capture gyrolog capture --on-unplug exit --device usb:GADGET31 --duration 60s --rate 1000 -o capture.pcapng
 wait_for 20 capture_is_running capture.pcapng
 sleep 3
 unplug_acm_gadget
