@@ -33,8 +33,8 @@ constexpr std::uint8_t request_type_class_interface_out = 0x21;
 
 std::string words_of(int error_number) { return std::generic_category().message(error_number); }
 
-// A board whose port is gone because a program that had taken the board away from the kernel's driver was killed:
-// its control interface is there and has no driver. Empty when there is none.
+// A board whose port is gone because a program that had taken the board away from the kernel's driver was
+// killed: its control interface is there and has no driver. Empty when there is none.
 std::string hint_of_a_taken_port() {
     namespace fs = std::filesystem;
     std::error_code none;

@@ -328,8 +328,8 @@ TEST_F(CaptureOverFaults, FilesThatAreThereAreSteppedOverNotOverwritten) {
 
 // ------------------------------------------------------------------------------------------ the host's clock
 
-// A board in simulated time, on a computer whose real-time clock is set while the stream runs: by an hour back, by
-// two hours forward, and by the second that a leap second is told twice.
+// A board in simulated time, on a computer whose real-time clock is set while the stream runs: by an hour
+// back, by two hours forward, and by the second that a leap second is told twice.
 class SetClockSource final : public ByteSource, private TransferSink {
 public:
     explicit SetClockSource(std::unique_ptr<SimSource> board) : board_(std::move(board)) {}
