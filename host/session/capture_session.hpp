@@ -18,7 +18,8 @@
 
 namespace gyrolog {
 
-// Sees the samples as they come, on the writer's thread, which it must not keep waiting.
+// Sees the samples as they come, once their configuration is known, on the writer's thread, which it must not
+// keep waiting.
 class SampleObserver {
 public:
     virtual ~SampleObserver() = default;
