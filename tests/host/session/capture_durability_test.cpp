@@ -1,7 +1,11 @@
 // What reaches the disk, and when: this program's fdatasync notes its calls before it makes them.
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -20,6 +24,7 @@ struct SyncCall {
     std::uint64_t file_bytes = 0;
 };
 
+std::atomic<int> slow_ms = 0;  // a disk that takes its time
 std::mutex calls_mutex;
 std::vector<SyncCall> calls;
 
@@ -32,6 +37,7 @@ extern "C" int fdatasync(int descriptor) {
         const std::lock_guard lock(calls_mutex);
         calls.push_back({gyrolog::clock_ns(CLOCK_MONOTONIC), static_cast<std::uint64_t>(file.st_size)});
     }
+    std::this_thread::sleep_for(std::chrono::milliseconds(slow_ms));
     return static_cast<int>(syscall(SYS_fdatasync, descriptor));
 }
 
@@ -63,6 +69,30 @@ TEST(CaptureDurability, FileIsSyncedEverySecondAndAtItsEnd) {
         last_bytes = call.file_bytes;
     }
     EXPECT_EQ(last_bytes, std::filesystem::file_size(request.path)) << "all of it";
+}
+
+// What came is in the file while the disk still syncs what came before: a kill then costs no more than ever.
+TEST(CaptureDurability, DiskThatSyncsForSecondsKeepsNothingFromBeingWritten) {
+    const TemporaryFolder folder;
+    CaptureRequest request;
+    request.path = folder.path("run.pcapng");
+    const auto source = BoardSource::create({.turn_board_s = 0.010, .turn_host_s = 0.010});
+    slow_ms = 2000;
+    std::uintmax_t bytes = 0;
+    std::int64_t grown_ns = clock_ns(CLOCK_MONOTONIC);
+    std::int64_t longest_ns = 0;
+    const auto outcome = run_capture(*source, request, [&](const CaptureProgress& progress) {
+        const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+        longest_ns = std::max(longest_ns, now_ns - grown_ns);
+        const std::uintmax_t now_bytes = std::filesystem::file_size(request.path);
+        if (now_bytes > bytes) { grown_ns = now_ns; }
+        bytes = now_bytes;
+        if (progress.elapsed_s > 2.5) { slow_ms = 0; }
+        return progress.elapsed_s < 2.6;
+    });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_LT(longest_ns, 900'000'000) << "it grows four times a second";
+    EXPECT_FALSE(outcome->data_lost());
 }
 
 }  // namespace
