@@ -2,8 +2,8 @@
 // with raw bytes in between. The host's accounts hold, what it makes a recording of is one, and memory is
 // bounded by what came.
 //
-// The input is a list of: type, flags, length, payload. Type FF is raw bytes instead of a frame; flag 80
-// leaves a frame number out in front.
+// The input is a list of: type, flags, length, payload. Type FF is raw bytes instead of a frame, FE the
+// host's raising of DTR; flag 80 leaves a frame number out in front.
 
 #include <array>
 #include <cmath>
@@ -11,6 +11,10 @@
 
 #include "host/decode/stream_decoder.hpp"
 #include "require.hpp"
+
+extern "C" {
+#include <gyrolog_protocol/usb_identity.h>
+}
 
 namespace {
 
@@ -47,6 +51,15 @@ private:
     ByteView left_;
 };
 
+bool raise_line(StreamDecoder& decoder, HostTime now) {
+    Transfer request;
+    request.event = Transfer::Event::submission;
+    request.kind = TransferKind::control;
+    request.setup = {0x21, GLP_CDC_SET_CONTROL_LINE_STATE, GLP_CDC_LINE_DTR};
+    request.time = now;
+    return decoder.take(request);
+}
+
 void require_recording(StreamDecoder& decoder) {
     auto recording = decoder.take_recording("fuzz");
     if (!recording.ok()) {
@@ -81,6 +94,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::size_t length = input.byte();
         const ByteView payload = input.take(length);
         now.monotonic_ns += 16'000'000;
+        if (type == 0xFE) {
+            if (raise_line(decoder, now)) { counter = Counter(); }
+            continue;
+        }
         if (type == 0xFF) {
             decoder.feed(payload, now);
             fed += payload.size();
@@ -100,6 +117,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     GYROLOG_REQUIRE(report.bytes.total == fed);
     GYROLOG_REQUIRE(report.samples.good == counter.samples);
     GYROLOG_REQUIRE(counter.replies <= report.frames.good);
+    std::uint64_t corrupted = 0;
+    for (const std::uint64_t count : report.frames.corrupted_by_reason) { corrupted += count; }
+    GYROLOG_REQUIRE(report.frames.corrupted == corrupted);
+    GYROLOG_REQUIRE(corrupted <= fed);
     for (const Dropout& dropout : decoder.timed_dropouts(report)) {
         GYROLOG_REQUIRE(std::isfinite(dropout.at_s));
         GYROLOG_REQUIRE(dropout.samples > 0);
