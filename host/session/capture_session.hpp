@@ -18,13 +18,13 @@
 
 namespace gyrolog {
 
-// Sees the samples as they come, once their configuration is known, on the writer's thread, which it must not
-// keep waiting.
+// Sees the samples as they come, on the writer's thread, which it must not keep waiting.
 class SampleObserver {
 public:
     virtual ~SampleObserver() = default;
     // What came before was meant for an earlier listener.
     virtual void on_start() = 0;
+    // Once their configuration is known.
     virtual void on_samples(const glp_frame& frame, const glp_samples& samples, const glp_config& config) = 0;
 };
 
