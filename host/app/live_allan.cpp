@@ -40,7 +40,7 @@ LiveAxis judge(const RunningAllan& running, const glp_config& config) {
 
 void LiveAllan::on_start() {
     const std::lock_guard lock(mutex_);
-    config_.reset();
+    if (!std::exchange(started_, true)) { config_.reset(); }
 }
 
 void LiveAllan::begin(const glp_config& config) {

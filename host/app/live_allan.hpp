@@ -28,7 +28,8 @@ struct LiveAxis {
 
 class LiveAllan final : public SampleObserver {
 public:
-    // On the writer's thread. A configuration that changes the samples' meaning begins anew.
+    // On the writer's thread. The first start begins anew, and so does a configuration that changes the
+    // samples' meaning; a later start, of a board that comes back, leaves a hole.
     void on_start() override;
     void on_samples(const glp_frame& frame, const glp_samples& samples, const glp_config& config) override;
 
@@ -42,6 +43,7 @@ private:
     mutable std::mutex mutex_;
     std::array<RunningAllan, 3> running_;
     std::optional<glp_config> config_;
+    bool started_ = false;
 };
 
 // In words: "K 0.0012 dps*sqrt(Hz) ±35 %, about 2.1 h more until ±20 %"; K from the curve,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cerrno>
 
 #include <poll.h>
 #include <termios.h>
@@ -23,11 +25,10 @@ std::size_t escape_length(std::string_view text) {
 // A job in the background is stopped by the kernel when it touches its terminal.
 bool in_foreground() { return isatty(STDIN_FILENO) == 1 && tcgetpgrp(STDIN_FILENO) == getpgrp(); }
 
-// The terminal as it was found; it has one mode, whoever looks at it.
-termios& found_mode() {
-    static termios mode{};
-    return mode;
-}
+// The terminal is the process's: it has one mode, whoever looks at it, and a signal handler may restore it.
+termios found_mode{};
+std::atomic<bool> mode_changed = false;
+std::atomic<bool> given_back = false;
 
 }  // namespace
 
@@ -86,22 +87,30 @@ void LiveKeys::finish() {
     note_.reset();
 }
 
+void give_terminal_back() {
+    const int interrupted_errno = errno;
+    given_back = true;
+    if (mode_changed && in_foreground()) { tcsetattr(STDIN_FILENO, TCSANOW, &found_mode); }
+    errno = interrupted_errno;
+}
+
 TerminalKeys::~TerminalKeys() {
-    if (changed_ && in_foreground()) { tcsetattr(STDIN_FILENO, TCSANOW, &found_mode()); }
+    if (mode_changed && in_foreground()) { tcsetattr(STDIN_FILENO, TCSANOW, &found_mode); }
+    mode_changed = false;
 }
 
 // Also after the shell has put its own mode back, when the program was stopped and goes on.
 bool TerminalKeys::take_over() {
-    if (!in_foreground()) { return false; }
+    if (given_back || !in_foreground()) { return false; }
     termios mode{};
     if (tcgetattr(STDIN_FILENO, &mode) != 0) { return false; }
     if ((mode.c_lflag & static_cast<tcflag_t>(ICANON)) == 0) { return true; }
-    if (!changed_) { found_mode() = mode; }
+    if (!mode_changed) { found_mode = mode; }
     mode.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
     mode.c_cc[VMIN] = 0;
     mode.c_cc[VTIME] = 0;
-    changed_ = tcsetattr(STDIN_FILENO, TCSANOW, &mode) == 0;
-    return changed_;
+    mode_changed = tcsetattr(STDIN_FILENO, TCSANOW, &mode) == 0;
+    return mode_changed;
 }
 
 std::string TerminalKeys::read() {

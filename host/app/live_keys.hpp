@@ -51,8 +51,9 @@ public:
 
 private:
     bool take_over();
-
-    bool changed_ = false;
 };
+
+// Gives the terminal back for good, for a signal handler: the next signal may end the program at once.
+void give_terminal_back();
 
 }  // namespace gyrolog

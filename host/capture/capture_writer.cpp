@@ -112,6 +112,12 @@ Status CaptureWriter::sync() {
     return {};
 }
 
+Status CaptureWriter::sync_soon() {
+    GYROLOG_CHECK(flush());
+    if (Status begun = file_->begin_sync(); !begun.ok()) { return fail(std::move(begun).error(), 0); }
+    return {};
+}
+
 Status CaptureWriter::close() {
     if (!failed_) { append_checkpoint(counters_, host_now(), true); }
     const Status synced = sync();

@@ -49,6 +49,8 @@ public:
     Status mark(CaptureMark mark);
     // Everything appended so far survives a loss of power.
     Status sync();
+    // The same soon, without waiting for the disk; a failure is told by the next call.
+    Status sync_soon();
     // Syncs. A writer that is destroyed without close() leaves what a kill would leave.
     Status close();
 

@@ -194,7 +194,7 @@ private:
         bytes_since_checkpoint_ = 0;
         if (storage_error_) { return; }
         Status written = writer_.checkpoint(counters());
-        if (written.ok() && sync_due) { written = writer_.sync(); }
+        if (written.ok() && sync_due) { written = last ? writer_.sync() : writer_.sync_soon(); }
         if (sync_due) { last_sync_ns_ = now_ns; }
         if (!written.ok()) { fail(std::move(written).error()); }
     }

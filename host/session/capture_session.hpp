@@ -27,6 +27,7 @@ public:
     virtual ~SampleObserver() = default;
     // What came before was meant for an earlier listener.
     virtual void on_start() = 0;
+    // Once their configuration is known.
     virtual void on_samples(const glp_frame& frame, const glp_samples& samples, const glp_config& config) = 0;
 };
 

@@ -123,8 +123,9 @@ TEST_F(LiveTerminal, MarksStopsStartsAndEndsByKeys) {
     terminal.type("mthe end");
     EXPECT_TRUE(terminal.shows("mark: the end_")) << terminal.screen();
     terminal.type("\x03");  // Ctrl-C: the mark that was being written is kept
-    EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
     EXPECT_TRUE(terminal.shows("live.pcapng: ")) << terminal.screen();
+    EXPECT_TRUE(terminal.echoes());
+    EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
 
     const auto capture = load_capture(path, false);
     ASSERT_TRUE(capture.ok());

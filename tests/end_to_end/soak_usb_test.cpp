@@ -59,7 +59,7 @@ private:
 };
 
 TEST(SoakUsb, DayAt1kHzLosesNothingInFlatMemory) {
-    const double hours = soak_hours(0.25);
+    const double hours = soak_hours(0.4);
     test::UmockdevBus bus;
     if (!bus.in_force()) { GTEST_SKIP() << "runs under umockdev-wrapper only"; }
     VirtualBoardOptions options;

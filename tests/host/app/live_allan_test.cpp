@@ -111,7 +111,7 @@ TEST(LiveAllan, LostSamplesAreAHole) {
     EXPECT_EQ(terms, 2 * 99);
 }
 
-TEST(LiveAllan, BeginsAnewWithAnotherSettingOrStart) {
+TEST(LiveAllan, BeginsAnewWithAnotherSettingOrItsFirstStart) {
     LiveAllan allan;
     Feed slow(100'000);
     Feed fast(1'000'000);
@@ -123,6 +123,15 @@ TEST(LiveAllan, BeginsAnewWithAnotherSettingOrStart) {
     EXPECT_EQ(allan.samples(), 0U);
     EXPECT_TRUE(allan.axes()[0].curve.points.empty());
     EXPECT_EQ(walk_text(allan.axes()[0]), "K: too early to say");
+
+    // The board comes back: its numbers begin anew, the recording goes on.
+    Feed again(1'000'000);
+    again.frames(allan, 30);
+    allan.on_start();
+    Feed third(1'000'000);
+    third.frames(allan, 30);
+    EXPECT_EQ(allan.samples(), 600U);
+    EXPECT_EQ(allan.axes()[0].curve.points.front().terms, 2 * 299);
 }
 
 AllanCurve falling(double at_1_s) {
