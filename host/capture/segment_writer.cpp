@@ -111,6 +111,8 @@ Status SegmentWriter::checkpoint(const CaptureCounters& counters) {
 
 Status SegmentWriter::sync() { return file_ ? file_->sync() : Status(); }
 
+Status SegmentWriter::sync_soon() { return file_ ? file_->sync_soon() : Status(); }
+
 Status SegmentWriter::close() {
     if (!file_) { return {}; }
     Status closed = file_->close();

@@ -36,6 +36,8 @@ public:
     // left.
     Status checkpoint(const CaptureCounters& counters);
     Status sync();
+    // The same soon, without waiting for the disk.
+    Status sync_soon();
 
     // Closes the present file, without another one yet. Harmless when there is none.
     Status close();
