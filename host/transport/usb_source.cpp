@@ -128,7 +128,12 @@ Status UsbSource::reconnect() {
     stream_.reset();
     device_.reset();
     GYROLOG_TRY(const UsbSurvey survey, survey_usb(*usb_));
-    GYROLOG_TRY(const UsbBoard board, choose_board(survey, identity_.serial));
+    auto chosen = choose_board(survey, identity_.serial);
+    // It was a board before: the kernel is still taking the old one away, or has not yet read the new one.
+    if (!chosen.ok() && chosen.error().code == ErrorCode::unsupported) {
+        return Error{ErrorCode::busy, chosen.error().message};
+    }
+    GYROLOG_TRY(const UsbBoard board, std::move(chosen));
     if (plan_.transfer_bytes % board.layout.packet_in_bytes != 0) {
         return Error{ErrorCode::unsupported, "open board '" + board.uri() + "': its packets have changed"};
     }

@@ -487,7 +487,14 @@ TEST_F(UsbSourceTest, ABoardThatWasPulledIsTakenUpAgainByItsSerialNumber) {
     identity.device_address = 3;
     plug_in(identity);
     EXPECT_EQ(source_->reconnect().error().code, ErrorCode::not_found);
+    // The kernel has not read its descriptors yet.
     identity.serial = "S1";
+    identity.device_address = 5;
+    identity.configuration_descriptor = test::cdc_acm_configuration(0x81, 0x83);
+    UmockdevBoard& unread = plug_in(identity);
+    EXPECT_EQ(source_->reconnect().error().code, ErrorCode::busy);
+    unread.unplug();
+    identity.configuration_descriptor = {};
     identity.device_address = 4;
     CountingFunction again;
     const UmockdevBoard& back = plug_in(identity, again);
