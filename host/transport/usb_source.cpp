@@ -127,7 +127,9 @@ Status UsbSource::reconnect() {
     stop();
     stream_.reset();
     device_.reset();
-    GYROLOG_TRY(const UsbSurvey survey, survey_usb(*usb_));
+    // A context of its own: where no udev daemon runs, an old one does not hear of new devices.
+    GYROLOG_TRY(std::shared_ptr<UsbContext> usb, UsbContext::create());
+    GYROLOG_TRY(const UsbSurvey survey, survey_usb(*usb));
     auto chosen = choose_board(survey, identity_.serial);
     // It was a board before: the kernel is still taking the old one away, or has not yet read the new one.
     if (!chosen.ok() && chosen.error().code == ErrorCode::unsupported) {
@@ -137,7 +139,8 @@ Status UsbSource::reconnect() {
     if (plan_.transfer_bytes % board.layout.packet_in_bytes != 0) {
         return Error{ErrorCode::unsupported, "open board '" + board.uri() + "': its packets have changed"};
     }
-    GYROLOG_TRY(std::unique_ptr<UsbDevice> device, UsbDevice::open(*usb_, board));
+    GYROLOG_TRY(std::unique_ptr<UsbDevice> device, UsbDevice::open(*usb, board));
+    usb_ = std::move(usb);
     use(std::move(device));
     return {};
 }
