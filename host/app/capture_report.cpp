@@ -68,6 +68,30 @@ std::optional<ClockComparison> board_clock(const LoadedCapture& capture) {
     return ClockComparison{(1.0 / fit->ratio - 1.0) * 1e6, fit->ratio_sd * 1e6};
 }
 
+// Device time of a mark, from the first sample; no value while the two clocks cannot be compared.
+std::optional<double> at_s(const LoadedCapture& capture, const CaptureMark& mark) {
+    const auto fit = capture.decoder->timeline().host_clock();
+    if (!fit || fit->ratio <= 0.0) { return std::nullopt; }
+    return (static_cast<double>(mark.time.monotonic_ns) * 1e-9 - fit->offset_s) / fit->ratio;
+}
+
+Json marks_json(const LoadedCapture& capture) {
+    Json marks = Json::array();
+    for (const CaptureMark& mark : capture.marks) {
+        const auto at = at_s(capture, mark);
+        marks.push_back({{"at_s", at ? Json(*at) : Json(nullptr)},
+                         {"time", utc_text(mark.time.realtime_ns)},
+                         {"text", mark.text}});
+    }
+    return marks;
+}
+
+std::string mark_text(const LoadedCapture& capture, const CaptureMark& mark) {
+    const auto at = at_s(capture, mark);
+    return fmt::format("{}  {}", at ? fmt::format("at {:.3f} s", *at) : utc_text(mark.time.realtime_ns),
+                       mark.text.empty() ? "(no text)" : mark.text);
+}
+
 // One row of a table: what, how much, and a remark.
 std::string row(std::string_view what, std::uint64_t count, std::string_view remark = "") {
     return fmt::format("  {:<22}{:>16}{}{}\n", what, format_count(count), remark.empty() ? "" : "  ", remark);
@@ -221,6 +245,7 @@ Json info_json(const std::string& path, const LoadedCapture& capture) {
             {"samples", link.samples.good},
             {"samples_missing", link.samples.missing},
             {"board_clock", clock},
+            {"marks", marks_json(capture)},
             {"end", name_of(capture.file.blocks.end)},
             {"file_bytes", capture.file.blocks.bytes_total},
             {"program", capture.metadata ? capture.metadata->program : ""}};
@@ -257,6 +282,7 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
     }
     line("missing", fmt::format("{} samples in {} dropouts", format_count(link.samples.missing),
                                 link.dropouts.size() + link.dropouts_unlisted));
+    for (const CaptureMark& mark : capture.marks) { line("mark", mark_text(capture, mark)); }
     line("file",
          fmt::format("{}, {}", format_bytes(capture.file.blocks.bytes_total), end_text(path, capture)));
     if (!hello) { line("note", "no HELLO frame: this capture does not say what it is a capture of"); }

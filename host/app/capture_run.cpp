@@ -73,6 +73,31 @@ ExitCode exit_code_of_opening(const Error& error) {
     }
 }
 
+// On a terminal: with the live view and its keys.
+Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, CaptureRequest request) {
+    if (!console.progress) {
+        return run_capture(source, request,
+                           [&](const CaptureProgress& /*progress*/) { return !console.stop_wanted(); });
+    }
+    CaptureControl control;
+    LiveAllan allan;
+    request.control = &control;
+    request.observer = &allan;
+    LiveKeys keys(control);
+    TerminalKeys terminal;
+    LiveView view(console, allan, keys);
+    auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
+        keys.take(terminal.read());
+        view.show(progress);
+        const bool end = console.stop_wanted() || keys.end_wanted();
+        if (end) { keys.finish(); }
+        return !end;
+    });
+    view.finish();
+    if (keys.note()) { console.err << "  the capture ended before the mark was finished: it is not kept\n"; }
+    return outcome;
+}
+
 }  // namespace
 
 CaptureResult capture_to_file(Console& console, const char* command, const CaptureOptions& options,
@@ -103,14 +128,8 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
     }
     ByteSource& source = *opened.source;
     console.err << "capturing from " << source.identity().uri << " to " << request.path
-                << (real_time && console.progress ? "; Ctrl-C stops, closes the file and analyses it\n"
-                                                  : "\n");
-    LiveView view(console);
-    const auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
-        view.show(progress);
-        return !console.stop_wanted();
-    });
-    view.finish();
+                << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n" : "\n");
+    const auto outcome = watch_capture(console, source, request);
     if (!outcome.ok()) {
         report_error(console, command, outcome.error());
         result.code = exit_code_of_opening(outcome.error());

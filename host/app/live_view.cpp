@@ -1,17 +1,32 @@
 #include "host/app/live_view.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "host/app/allan_chart.hpp"
 #include "host/app/quantity.hpp"
 
 namespace gyrolog {
 namespace {
 
-std::size_t terminal_columns() {
+struct TerminalSize {
+    std::size_t columns = 80;
+    std::size_t rows = 24;
+};
+
+TerminalSize terminal_size() {
     winsize size{};
-    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) { return {}; }
+    return {size.ws_col, size.ws_row};
+}
+
+// A job in the background would write over what its user types to the shell.
+bool in_background() {
+    const pid_t foreground = tcgetpgrp(STDERR_FILENO);
+    return foreground > 0 && foreground != getpgrp();
 }
 
 // The first `columns` characters of UTF-8 text.
@@ -43,19 +58,73 @@ std::string live_line(const CaptureProgress& progress) {
 }
 
 void LiveView::show(const CaptureProgress& progress) {
-    if (!console_.progress) { return; }
+    if (!console_.progress || in_background()) { return; }
     if (!announced_ && progress.hello && progress.config) {
         console_.err << "  " << describe_sensor(*progress.hello, *progress.config) << ", firmware "
                      << progress.hello->firmware << '\n';
         announced_ = true;
     }
-    console_.err << "\r\x1b[K  " << cut(live_line(progress), terminal_columns() - 3) << std::flush;
-    drawn_ = true;
+    const TerminalSize terminal = terminal_size();
+    if (terminal.columns != columns_drawn_ && lines_drawn_ > 1) {
+        // The terminal has wrapped what was drawn: it cannot be drawn over.
+        console_.err << '\n';
+        lines_drawn_ = 0;
+    }
+    columns_drawn_ = terminal.columns;
+    std::vector<std::string> lines{"  " + live_line(progress)};
+    if (allan_ != nullptr) { add_allan(lines, terminal.columns, terminal.rows); }
+    if (keys_ != nullptr) { lines.push_back(keys_line(progress)); }
+    for (std::string& line : lines) { line = cut(line, terminal.columns - 1); }
+    draw(lines);
+}
+
+// The sums grow with every sample, the fit to them is worth its time once a second at first and, since it
+// says less and less that is new, once for every hundredth more of the capture.
+void LiveView::add_allan(std::vector<std::string>& lines, std::size_t columns, std::size_t rows) {
+    constexpr std::chrono::seconds pause(1);
+    constexpr std::size_t other_lines = 8;  // of this view, and what stands above it
+    constexpr std::size_t chart_rows_max = 14;
+    const std::uint64_t samples = allan_->samples();
+    const bool grown = samples > axes_samples_ + axes_samples_ / 100 || samples < axes_samples_;
+    if (grown && Clock::now() >= axes_next_) {
+        axes_ = allan_->axes();
+        axes_samples_ = samples;
+        axes_next_ = Clock::now() + pause;
+    }
+    const std::size_t room = rows > other_lines ? std::min(rows - other_lines, chart_rows_max) : 0;
+    for (std::string& row :
+         allan_chart({&axes_[0].curve, &axes_[1].curve, &axes_[2].curve}, columns - 3, room)) {
+        lines.push_back("  " + std::move(row));
+    }
+    constexpr std::array names{'x', 'y', 'z'};
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        lines.push_back(fmt::format("  {}  {}", names[i], walk_text(axes_[i])));
+    }
+}
+
+std::string LiveView::keys_line(const CaptureProgress& progress) const {
+    if (keys_->note()) {
+        return fmt::format("  mark: {}_   Enter keeps it, Escape drops it", *keys_->note());
+    }
+    const std::string marks = progress.marks > 0 ? fmt::format(" ({} so far)", progress.marks) : "";
+    return fmt::format("  keys: m mark{}, s {}, q end", marks,
+                       progress.streaming ? "stop the board" : "start the board, which stands still");
+}
+
+void LiveView::draw(const std::vector<std::string>& lines) {
+    std::string text = "\r";
+    if (lines_drawn_ > 1) { text += fmt::format("\x1b[{}A", lines_drawn_ - 1); }
+    for (std::size_t i = 0; i < lines.size(); ++i) { text += (i == 0 ? "\x1b[K" : "\n\x1b[K") + lines[i]; }
+    if (lines.size() < lines_drawn_) { text += "\x1b[J"; }
+    console_.err << text << std::flush;
+    lines_drawn_ = lines.size();
 }
 
 void LiveView::finish() {
-    if (drawn_) { console_.err << '\n' << std::flush; }
-    drawn_ = false;
+    if (lines_drawn_ == 0) { return; }
+    // The keys mean nothing any more.
+    console_.err << (keys_ != nullptr ? "\r\x1b[K" : "\n") << std::flush;
+    lines_drawn_ = 0;
 }
 
 }  // namespace gyrolog

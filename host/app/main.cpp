@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "host/app/command_line.hpp"
+#include "host/app/live_keys.hpp"
 
 namespace {
 
@@ -16,6 +17,7 @@ std::atomic<int> stop_signal = 0;
 // caught.
 void on_stop_signal(int number) {
     stop_signal.store(number);
+    gyrolog::give_terminal_back();
     static_cast<void>(std::signal(number, SIG_DFL));
 }
 

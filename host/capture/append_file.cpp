@@ -6,6 +6,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "host/capture/background_sync.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -40,6 +42,7 @@ public:
     PosixAppendFile(const PosixAppendFile&) = delete;
     PosixAppendFile& operator=(const PosixAppendFile&) = delete;
     ~PosixAppendFile() override {
+        background_.reset();
         if (descriptor_ >= 0) { ::close(descriptor_); }
     }
 
@@ -62,15 +65,17 @@ public:
     }
 
     Status sync() override {
-        while (::fdatasync(descriptor_) != 0) {
-            // A pipe or a device file has nothing to sync.
-            if (errno == EINVAL || errno == EROFS) { return {}; }
-            if (errno != EINTR) { return errno_error("sync '" + path_ + "'"); }
-        }
-        return {};
+        const int earlier = background_ ? background_->wait() : 0;
+        return sync_status(earlier != 0 ? earlier : sync_data(descriptor_));
+    }
+
+    Status begin_sync() override {
+        if (!background_) { background_ = std::make_unique<BackgroundSync>(descriptor_); }
+        return sync_status(background_->begin());
     }
 
     Status close() override {
+        background_.reset();
         const int descriptor = descriptor_;
         descriptor_ = -1;
         // After EINTR the descriptor is gone all the same (Linux).
@@ -81,8 +86,15 @@ public:
     }
 
 private:
+    Status sync_status(int error_number) const {
+        if (error_number == 0) { return {}; }
+        errno = error_number;
+        return errno_error("sync '" + path_ + "'");
+    }
+
     int descriptor_;
     std::string path_;
+    std::unique_ptr<BackgroundSync> background_;
 };
 
 Status sync_directory_of(const std::string& path) {

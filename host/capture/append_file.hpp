@@ -20,6 +20,8 @@ public:
     virtual Status truncate(std::uint64_t size_bytes) = 0;
     // Everything written so far survives a loss of power.
     virtual Status sync() = 0;
+    // The same soon, without waiting for it. A failure is told by the next call of this or of sync().
+    virtual Status begin_sync() { return sync(); }
     virtual Status close() = 0;
 };
 

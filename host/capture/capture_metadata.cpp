@@ -165,6 +165,13 @@ std::string checkpoint_json(const CaptureCheckpoint& checkpoint) {
                  {"last", checkpoint.last}});
 }
 
+std::string mark_json(const CaptureMark& mark) {
+    return dump({{"schema", mark_schema},
+                 {"clock", clock_json(mark.time)},
+                 {"text", bounded(mark.text)},
+                 {"stream_bytes", mark.stream_bytes}});
+}
+
 std::optional<CaptureMetadata> read_metadata_json(std::string_view text) {
     const std::optional<Json> json = parse(text, capture_schema);
     if (!json) { return std::nullopt; }
@@ -209,6 +216,17 @@ std::optional<CaptureCheckpoint> read_checkpoint_json(std::string_view text) {
     counters.number("transfers_dropped", checkpoint.counters.transfers_dropped);
     counters.number("bytes_dropped", checkpoint.counters.bytes_dropped);
     return checkpoint;
+}
+
+std::optional<CaptureMark> read_mark_json(std::string_view text) {
+    const std::optional<Json> json = parse(text, mark_schema);
+    if (!json) { return std::nullopt; }
+    const Fields fields(*json);
+    CaptureMark mark;
+    mark.time = read_clock(fields.object("clock"));
+    fields.text("text", mark.text);
+    fields.number("stream_bytes", mark.stream_bytes);
+    return mark;
 }
 
 }  // namespace gyrolog

@@ -1,4 +1,5 @@
-// The JSON that a capture carries in its section header and its checkpoints (FORMAT.md, sections 3 and 5).
+// The JSON that a capture carries in its section header, its checkpoints and its marks (FORMAT.md, sections 3
+// and 5).
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@ namespace gyrolog {
 
 constexpr std::string_view capture_schema = "gyrolog-capture/1";
 constexpr std::string_view checkpoint_schema = "gyrolog-checkpoint/1";
+constexpr std::string_view mark_schema = "gyrolog-mark/1";
 
 struct CaptureMetadata {
     std::string program;  // "gyrolog 0.1.0"
@@ -29,6 +31,13 @@ struct CaptureCheckpoint {
     bool last = false;  // the writer closed the file behind it
 };
 
+// What somebody noted while the capture ran.
+struct CaptureMark {
+    HostTime time;                   // when it was made; it stands in the file a little later
+    std::string text;                // may be empty
+    std::uint64_t stream_bytes = 0;  // bulk IN data in the file before it
+};
+
 // "gyrolog" and its version.
 std::string program_name();
 // "2026-11-21T05:04:55.123456789Z"
@@ -36,9 +45,12 @@ std::string utc_text(std::int64_t realtime_ns);
 
 std::string metadata_json(const CaptureMetadata& metadata);
 std::string checkpoint_json(const CaptureCheckpoint& checkpoint);
+// Text beyond 4096 bytes is cut off.
+std::string mark_json(const CaptureMark& mark);
 
 // No value when the text is no JSON of the right schema. Fields that are missing keep their defaults.
 std::optional<CaptureMetadata> read_metadata_json(std::string_view text);
 std::optional<CaptureCheckpoint> read_checkpoint_json(std::string_view text);
+std::optional<CaptureMark> read_mark_json(std::string_view text);
 
 }  // namespace gyrolog

@@ -15,6 +15,8 @@ extern "C" {
 namespace gyrolog {
 namespace {
 
+constexpr std::size_t marks_kept = 100'000;  // more than anybody types
+
 bool is_device_descriptor(const Transfer& transfer) {
     return transfer.event == Transfer::Event::completion && transfer.kind == TransferKind::control &&
            transfer.data.size() == 18 && transfer.data[0] == 18 && transfer.data[1] == 1;
@@ -118,7 +120,11 @@ void CaptureReader::enter_section(const CaptureBlock& block) {
 void CaptureReader::enter_statistics(const CaptureBlock& block) {
     if (!scanner_.in_own_section()) { return; }
     if (const auto comment = pcapng::statistics_comment(block.bytes)) {
-        if (auto checkpoint = read_checkpoint_json(*comment)) { checkpoint_ = checkpoint; }
+        if (auto checkpoint = read_checkpoint_json(*comment)) {
+            checkpoint_ = checkpoint;
+        } else if (auto mark = read_mark_json(*comment); mark && marks_.size() < marks_kept) {
+            marks_.push_back(*std::move(mark));
+        }
     }
 }
 

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/base/result.hpp"
 #include "host/capture/block_scanner.hpp"
@@ -52,6 +53,8 @@ public:
     const std::optional<UsbAddress>& picked_device() const { return picked_; }
     // The checkpoint read last.
     const std::optional<CaptureCheckpoint>& checkpoint() const { return checkpoint_; }
+    // Those read so far, the first hundred thousand.
+    const std::vector<CaptureMark>& marks() const { return marks_; }
 
     // The next transfer, or nothing at the end. Error `failed`: the file could not be read.
     Result<std::optional<CapturedTransfer>> next();
@@ -71,6 +74,7 @@ private:
     BlockScanner scanner_;
     std::optional<CaptureMetadata> metadata_;
     std::optional<CaptureCheckpoint> checkpoint_;
+    std::vector<CaptureMark> marks_;
     std::optional<UsbAddress> picked_;
     std::uint8_t picked_endpoint_ = 0;
     std::int64_t monotonic_behind_ns_ = 0;   // real time less monotonic time in the present section

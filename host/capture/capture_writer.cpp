@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/capture/capture_metadata.hpp"
 #include "host/capture/head_records.hpp"
 #include "host/capture/pcapng.hpp"
 
@@ -82,12 +81,15 @@ Status CaptureWriter::append(const Transfer& transfer) {
     return due || buffer_.size() >= buffer_bytes ? flush() : Status();
 }
 
-void CaptureWriter::append_checkpoint(const CaptureCounters& counters, HostTime now, bool last) {
-    pcapng::append_statistics(buffer_, file_time_ns(now),
-                              checkpoint_json({now, transfers_, stream_bytes_, counters, last}),
-                              transfers_ + counters.transfers_dropped, counters.transfers_dropped);
+void CaptureWriter::append_statistics(HostTime now, std::string_view comment) {
+    pcapng::append_statistics(buffer_, file_time_ns(now), comment, transfers_ + counters_.transfers_dropped,
+                              counters_.transfers_dropped);
     block_ends_.push_back(buffer_.size());
+}
+
+void CaptureWriter::append_checkpoint(const CaptureCounters& counters, HostTime now, bool last) {
     counters_ = counters;
+    append_statistics(now, checkpoint_json({now, transfers_, stream_bytes_, counters, last}));
 }
 
 Status CaptureWriter::checkpoint(const CaptureCounters& counters, HostTime now) {
@@ -96,9 +98,22 @@ Status CaptureWriter::checkpoint(const CaptureCounters& counters, HostTime now) 
     return flush();
 }
 
+Status CaptureWriter::mark(CaptureMark mark) {
+    if (failed_) { return *failed_; }
+    mark.stream_bytes = stream_bytes_;
+    append_statistics(mark.time, mark_json(mark));
+    return flush();
+}
+
 Status CaptureWriter::sync() {
     GYROLOG_CHECK(flush());
     if (Status synced = file_->sync(); !synced.ok()) { return fail(std::move(synced).error(), 0); }
+    return {};
+}
+
+Status CaptureWriter::sync_soon() {
+    GYROLOG_CHECK(flush());
+    if (Status begun = file_->begin_sync(); !begun.ok()) { return fail(std::move(begun).error(), 0); }
     return {};
 }
 

@@ -16,6 +16,7 @@
 #include "host/base/result.hpp"
 #include "host/capture/append_file.hpp"
 #include "host/capture/capture_counters.hpp"
+#include "host/capture/capture_metadata.hpp"
 #include "host/capture/usbmon_record.hpp"
 #include "host/transport/byte_source.hpp"
 #include "host/transport/transfer.hpp"
@@ -43,8 +44,12 @@ public:
     // feet.
     Status checkpoint(const CaptureCounters& counters) { return checkpoint(counters, host_now()); }
     Status checkpoint(const CaptureCounters& counters, HostTime now);
+    // Its place in the file is here and now.
+    Status mark(CaptureMark mark);
     // Everything appended so far survives a loss of power.
     Status sync();
+    // The same soon, without waiting for the disk; a failure is told by the next call.
+    Status sync_soon();
     // Syncs. A writer that is destroyed without close() leaves what a kill would leave.
     Status close();
 
@@ -58,6 +63,7 @@ private:
     void append_head(const SourceIdentity& identity);
     void append_checkpoint(const CaptureCounters& counters, HostTime now, bool last);
     void append_record(const Transfer& transfer);
+    void append_statistics(HostTime now, std::string_view comment);
     std::int64_t file_time_ns(HostTime time) const;
     Status flush();
     Status fail(Error error, std::size_t buffered_bytes_written);

@@ -12,6 +12,7 @@ namespace {
 constexpr double standard_gravity = 9.80665;  // m/s^2, 3rd CGPM 1901
 constexpr double rate_tolerance = 0.03;       // the sensor's clock is good to 1 %
 constexpr double longest_pause_s = 1e9;
+constexpr double longest_pause_instants = 1e14;  // the same at 100 kHz: a broken clock may give any rate
 constexpr std::uint64_t most_rows_ahead = std::uint64_t{1} << 26U;  // a file's size may be a claim only
 
 bool same_setting(const glp_config& a, const glp_config& b) {
@@ -148,7 +149,8 @@ std::vector<RecordingBuilder::RunOrigin> RecordingBuilder::place_on_grid(const s
             const auto to = timeline.device_time_s(piece.run, piece.first_index, recording.rate_hz);
             std::int64_t grid = end;
             if (from && to) {
-                grid += std::llround(std::clamp(*to - *from, 0.0, longest_pause_s) * recording.rate_hz);
+                const double pause_s = std::clamp(*to - *from, 0.0, longest_pause_s);
+                grid += std::llround(std::min(pause_s * recording.rate_hz, longest_pause_instants));
                 // Numbers go on where the clock jumps: the board counted no loss, only its clock tells of it.
                 if (grid > end && piece.first_index == end_index) {
                     recording.dropouts.push_back(

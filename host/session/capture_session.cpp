@@ -25,6 +25,7 @@ constexpr milliseconds progress_interval(100);
 constexpr milliseconds reply_timeout(1000);
 constexpr milliseconds flush_time(150);  // for the partial frame that a board sends when it is stopped
 constexpr std::int64_t sync_interval_ns = 1'000'000'000;
+constexpr std::size_t queue_bytes_of_patient_source = std::size_t{2} << 20U;
 constexpr std::uint64_t checkpoint_bytes = std::uint64_t{1} << 20U;
 
 double seconds_since(Clock::time_point start) {
@@ -131,11 +132,25 @@ private:
     void run() {
         while (!queue_.finished()) {
             queue_.pop(progress_interval).for_each([&](const Transfer& transfer) { take(transfer); });
+            write_marks();
             if (clock_ns(CLOCK_MONOTONIC) - last_sync_ns_ >= sync_interval_ns) { checkpoint(false); }
             publish();
         }
+        write_marks();
         checkpoint(true);
         publish();
+    }
+
+    void write_marks() {
+        if (request_.control == nullptr) { return; }
+        for (CaptureMark& mark : request_.control->take_marks()) {
+            if (storage_error_) { return; }
+            if (Status written = writer_.mark(std::move(mark)); !written.ok()) {
+                fail(std::move(written).error());
+            } else {
+                ++marks_;
+            }
+        }
     }
 
     void take(const Transfer& transfer) {
@@ -150,6 +165,7 @@ private:
             instants_ = 0;
             next_index_.reset();
             latest_.reset();
+            if (request_.observer != nullptr) { request_.observer->on_start(); }
         }
         if (bytes_since_checkpoint_ >= checkpoint_bytes) { checkpoint(false); }
     }
@@ -160,7 +176,7 @@ private:
         bytes_since_checkpoint_ = 0;
         if (storage_error_) { return; }
         Status written = writer_.checkpoint(counters());
-        if (written.ok() && sync_due) { written = writer_.sync(); }
+        if (written.ok() && sync_due) { written = last ? writer_.sync() : writer_.sync_soon(); }
         if (sync_due) { last_sync_ns_ = now_ns; }
         if (!written.ok()) { fail(std::move(written).error()); }
     }
@@ -189,6 +205,7 @@ private:
         progress_.dropouts = link.dropouts.size() + link.dropouts_unlisted;
         progress_.frames_corrupted = link.frames.corrupted;
         progress_.file_bytes = writer_.bytes_written();
+        progress_.marks = marks_;
         progress_.rate_hz = decoder_.rate_hz();
         progress_.hello = decoder_.hello();
         progress_.config = decoder_.config();
@@ -213,6 +230,9 @@ private:
         const bool goes_on = next_index_ && !first && samples.first_index >= *next_index_;
         instants_ += samples.count + (goes_on ? samples.first_index - *next_index_ : 0);
         next_index_ = samples.first_index + samples.count;
+        if (request_.observer != nullptr && decoder_.config()) {
+            request_.observer->on_samples(received.frame, samples, *decoder_.config());
+        }
     }
     void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override {
         if (new_replies_.size() < replies_kept) { new_replies_.push_back(reply); }
@@ -228,6 +248,7 @@ private:
     // The writer thread's own.
     StreamDecoder decoder_;
     std::uint64_t bytes_since_checkpoint_ = 0;
+    std::uint64_t marks_ = 0;
     std::int64_t last_sync_ns_ = clock_ns(CLOCK_MONOTONIC);
     bool started_ = false;  // by DTR
     std::optional<glp_samples> latest_;
@@ -307,6 +328,16 @@ public:
         if (!source_.can_wait()) { std::this_thread::sleep_for(flush_time); }
     }
 
+    // As the user asks in the middle of a capture. A source that takes neither line nor commands goes on.
+    Status set_streaming(bool wanted) {
+        if (wanted == streaming_ || !(has_line_ || takes_commands_)) { return {}; }
+        streaming_ = wanted;
+        if (wanted) { return start(); }
+        stop();
+        return {};
+    }
+    bool streaming() const { return streaming_; }
+
 private:
     enum class Answer { awaited, not_awaited };
 
@@ -361,6 +392,7 @@ private:
     bool has_line_ = true;
     bool takes_commands_ = true;
     bool start_asked_ = false;
+    bool streaming_ = true;
     std::uint32_t sequence_ = 0;
 };
 
@@ -414,8 +446,8 @@ Error explain(const Error& error, const ByteSource& source, const LinkReport& li
 
 // Runs until there is enough, the caller or the source ends it, or the disk refuses.
 CaptureEnd stream_until_end(const ByteSource& source, WriterThread& writer, QueueingSink& sink,
-                            const CaptureRequest& request, const CaptureObserver& observe,
-                            std::optional<Error>& error) {
+                            BoardControl& control, const CaptureRequest& request,
+                            const CaptureObserver& observe, std::optional<Error>& error) {
     sink.restart_silence();
     const auto start = Clock::now();
     while (true) {
@@ -428,6 +460,7 @@ CaptureEnd stream_until_end(const ByteSource& source, WriterThread& writer, Queu
         });
         CaptureProgress progress = writer.progress();
         progress.elapsed_s = seconds_since(start);
+        progress.streaming = control.streaming();
         const bool go_on = observe(progress);
         if (refused) { return CaptureEnd::storage_failed; }
         if (enough) { return CaptureEnd::complete; }
@@ -437,6 +470,13 @@ CaptureEnd stream_until_end(const ByteSource& source, WriterThread& writer, Queu
             return CaptureEnd::device_lost;
         }
         if (!go_on) { return CaptureEnd::interrupted; }
+        if (request.control != nullptr) {
+            if (Status done = control.set_streaming(request.control->streaming_wanted()); !done.ok()) {
+                error = std::move(done).error();
+                return CaptureEnd::device_lost;
+            }
+            if (!control.streaming()) { sink.restart_silence(); }
+        }
         if (sink.silence_s() > request.idle_timeout_s) {
             error = Error{ErrorCode::device_lost, fmt::format("{}: silent for {:g} s", source.identity().uri,
                                                               request.idle_timeout_s)};
@@ -452,14 +492,18 @@ Result<CaptureOutcome> run_capture(ByteSource& source, const CaptureRequest& req
     auto created = CaptureWriter::create(request.path, source.identity(), request.overwrite);
     if (!created.ok()) { return storage_error_of(std::move(created).error()); }
     CaptureWriter writer = std::move(created).value();
-    TransferQueue queue(request.queue_bytes);
+    // A source that can wait fills whatever room there is, and loses nothing where there is little.
+    TransferQueue queue(source.can_wait() ? std::min(request.queue_bytes, queue_bytes_of_patient_source)
+                                          : request.queue_bytes);
     QueueingSink sink(queue, source.can_wait());
     WriterThread thread(queue, sink, writer, request);
     BoardControl control(source, thread, sink);
 
     CaptureOutcome outcome;
     const Status began = begin(source, sink, thread, control, request);
-    if (began.ok()) { outcome.end = stream_until_end(source, thread, sink, request, observe, outcome.error); }
+    if (began.ok()) {
+        outcome.end = stream_until_end(source, thread, sink, control, request, observe, outcome.error);
+    }
     control.stop();
     // Tear-down, in this order: the source (its last callback closes the queue), the queue, the writer, the
     // file.

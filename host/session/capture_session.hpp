@@ -13,9 +13,20 @@
 #include "host/base/result.hpp"
 #include "host/decode/protocol.hpp"
 #include "host/decode/stream_decoder.hpp"
+#include "host/session/capture_control.hpp"
 #include "host/transport/byte_source.hpp"
 
 namespace gyrolog {
+
+// Sees the samples as they come, on the writer's thread, which it must not keep waiting.
+class SampleObserver {
+public:
+    virtual ~SampleObserver() = default;
+    // What came before was meant for an earlier listener.
+    virtual void on_start() = 0;
+    // Once their configuration is known.
+    virtual void on_samples(const glp_frame& frame, const glp_samples& samples, const glp_config& config) = 0;
+};
 
 struct CaptureRequest {
     std::string path;
@@ -26,6 +37,8 @@ struct CaptureRequest {
     double hello_timeout_s = 3.0;
     double idle_timeout_s = 10.0;  // silence that counts as a lost device
     std::size_t queue_bytes = std::size_t{16} << 20U;
+    CaptureControl* control = nullptr;   // may be null; so may the observer
+    SampleObserver* observer = nullptr;  // both must outlive the capture
 };
 
 struct CaptureProgress {
@@ -38,6 +51,8 @@ struct CaptureProgress {
     std::uint64_t dropouts = 0;
     std::uint64_t frames_corrupted = 0;
     std::uint64_t file_bytes = 0;
+    std::uint64_t marks = 0;
+    bool streaming = true;  // false while the user has stopped the board
     std::optional<glp_hello> hello;
     std::optional<glp_config> config;
 };

@@ -43,6 +43,7 @@ Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
     }
     loaded.metadata = reader.metadata();
     loaded.last_checkpoint = reader.checkpoint();
+    loaded.marks = reader.marks();
     return loaded;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/recording/stage_observer.hpp"
 #include "host/base/result.hpp"
@@ -16,7 +17,8 @@ struct LoadedCapture {
     CaptureAccounts file;
     std::optional<CaptureMetadata> metadata;  // absent in a foreign capture
     std::optional<CaptureCheckpoint> last_checkpoint;
-    HostTime first_data;  // arrival of the first stream bytes
+    std::vector<CaptureMark> marks;  // in the order of the file
+    HostTime first_data;             // arrival of the first stream bytes
     std::unique_ptr<StreamDecoder> decoder;
 };
 

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include <sys/mman.h>
+
 namespace gyrolog {
 namespace {
 
@@ -21,6 +23,19 @@ struct Record {
 };
 
 constexpr std::size_t padded(std::size_t bytes) { return (bytes + 7U) & ~std::size_t{7}; }
+
+// A stall fills pages that no ordinary batch needs: the memory of a long capture would be that of its worst
+// second. The contents are not needed any more; the room is.
+void give_back_after_stall(Bytes& buffer) {
+    constexpr std::size_t ordinary_bytes = std::size_t{256} << 10U;
+    constexpr std::uintptr_t page = 4096;
+    if (buffer.size() <= ordinary_bytes) { return; }
+    const auto address = reinterpret_cast<std::uintptr_t>(buffer.data());
+    const std::uintptr_t begin = (address + page - 1) / page * page;
+    const std::uintptr_t end = (address + buffer.size()) / page * page;
+    // Without it, nothing is lost but the memory.
+    static_cast<void>(madvise(buffer.data() + (begin - address), end - begin, MADV_DONTNEED));
+}
 
 }  // namespace
 
@@ -67,6 +82,7 @@ void TransferQueue::close() {
 
 TransferQueue::Batch TransferQueue::pop(std::chrono::milliseconds wait) {
     std::unique_lock lock(mutex_);
+    give_back_after_stall(draining_);
     draining_.clear();
     ready_.wait_for(lock, wait, [&] { return closed_ || !filling_.empty(); });
     std::swap(filling_, draining_);

@@ -13,7 +13,8 @@ namespace gyrolog {
 
 // Invariants:
 //   - what pop() returns is what push() accepted, in the same order, and nothing else;
-//   - memory is 2 * capacity_bytes from the constructor on, whatever comes;
+//   - memory is 2 * capacity_bytes from the constructor on, whatever comes; what a stall has filled of it is
+//     given back to the system afterwards;
 //   - push() never waits for the consumer beyond the copy of its own transfer.
 class TransferQueue {
 public:

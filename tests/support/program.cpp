@@ -23,6 +23,7 @@ constexpr std::chrono::seconds time_limit(100);
 struct SignalPlan {
     std::chrono::milliseconds after;
     int number;
+    std::string once_there;  // counts from when this file exists; empty: from the start
 };
 
 std::string program_path() {
@@ -52,12 +53,17 @@ std::array<int, 2> make_pipe() {
 // Reads both pipes to their ends, sending the signal on the way.
 void collect(pid_t child, int out, int err, std::optional<SignalPlan> plan, ProgramResult& result) {
     const auto start = Clock::now();
+    auto counted_from = start;
     std::array<pollfd, 2> ends{{{out, POLLIN, 0}, {err, POLLIN, 0}}};
     std::array<std::string*, 2> texts{&result.out, &result.err};
     std::size_t open_ends = ends.size();
     while (open_ends > 0) {
         if (poll(ends.data(), ends.size(), 20) < 0 && errno != EINTR) { break; }
-        if (plan && Clock::now() - start >= plan->after) {
+        if (plan && !plan->once_there.empty() && std::filesystem::exists(plan->once_there)) {
+            plan->once_there.clear();
+            counted_from = Clock::now();
+        }
+        if (plan && plan->once_there.empty() && Clock::now() - counted_from >= plan->after) {
             kill(child, plan->number);
             plan.reset();
         }
@@ -101,8 +107,9 @@ ProgramResult run(const std::vector<std::string>& arguments, std::optional<Signa
 ProgramResult run_gyrolog(const std::vector<std::string>& arguments) { return run(arguments, std::nullopt); }
 
 ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,
-                                     std::chrono::milliseconds after, int signal) {
-    return run(arguments, SignalPlan{after, signal});
+                                     std::chrono::milliseconds after, int signal,
+                                     const std::string& once_there) {
+    return run(arguments, SignalPlan{after, signal, once_there});
 }
 
 std::string read_whole_file(const std::filesystem::path& path) {

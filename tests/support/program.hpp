@@ -18,9 +18,10 @@ struct ProgramResult {
 
 // The program under test: build/gyrolog by GYROLOG_BUILD_DIR.
 ProgramResult run_gyrolog(const std::vector<std::string>& arguments);
-// The same, but `signal` is sent after a while.
+// The same, but `signal` is sent after a while: from the start, or from when the file `once_there` exists.
 ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,
-                                     std::chrono::milliseconds after, int signal);
+                                     std::chrono::milliseconds after, int signal,
+                                     const std::string& once_there = "");
 
 std::string read_whole_file(const std::filesystem::path& path);
 

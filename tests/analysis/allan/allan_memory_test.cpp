@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/allan/allan_deviation.hpp"
+#include "analysis/allan/running_allan.hpp"
 #include "tests/support/heap_account.hpp"
 
 namespace gyrolog {
@@ -27,6 +28,20 @@ TEST(AllanMemory, OfThreeAxesOfCountsStaysBelowTheSamplesAsDoubles) {
     EXPECT_LT(used, 3 * samples * sizeof(double)) << used << " bytes";
     // Two bytes of counts for each axis, four of theta for one, and what does not grow with the record.
     EXPECT_LT(used, (3 * 2 + 4) * samples + 4'000'000) << used << " bytes";
+}
+
+TEST(AllanMemory, OfASignalThatIsStillComingInDoesNotGrow) {
+    const std::size_t before = bytes_now;
+    RunningAllan running;
+    const std::size_t empty = bytes_now - before;
+    EXPECT_LT(empty, 16'000U);
+    bytes_most = bytes_now.load();
+    std::minstd_rand random(1);
+    for (std::int64_t i = 0; i < 2'000'000; ++i) {
+        running.take(i, static_cast<std::int16_t>(random() % 64U));
+    }
+    EXPECT_EQ(bytes_most - before, empty);
+    EXPECT_EQ(running.points(1.0).back().m, std::int64_t{1} << 19);
 }
 
 }  // namespace

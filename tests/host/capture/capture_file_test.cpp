@@ -161,6 +161,65 @@ TEST(CaptureFile, ReadsTwoCapturesInOneFile) {
     EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
 }
 
+TEST(CaptureFile, GivesBackMarksWithTheirTimesAndPlaces) {
+    const std::vector<KeptTransfer> transfers = made_transfers(6, 50);
+    FakeDisk disk;
+    auto writer = CaptureWriter::create(disk.open(), made_identity(), made_start);
+    ASSERT_TRUE(writer.ok());
+    std::uint64_t stream_bytes = 0;
+    for (std::size_t i = 0; i < transfers.size(); ++i) {
+        ASSERT_TRUE(writer->append(transfers[i].view()).ok());
+        if (transfers[i].view().carries_stream()) { stream_bytes += transfers[i].data.size(); }
+        if (i == 7) {
+            ASSERT_TRUE(writer->mark({{5'004'000'000, 1'700'000'000'127'456'789}, "lamp on, 20 °C", 0}).ok());
+            EXPECT_EQ(writer->bytes_written(), disk.contents.size()) << "a mark does not wait for more";
+            ASSERT_TRUE(writer->checkpoint({}, made_start).ok());
+            ASSERT_TRUE(writer->mark({made_start, std::string(10'000, 'x'), 0}).ok());
+            EXPECT_GT(stream_bytes, 0U);
+        }
+    }
+    ASSERT_TRUE(writer->close().ok());
+    const auto read = read_capture(disk.contents);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(read->transfers.size(), transfers.size());
+    ASSERT_EQ(read->marks.size(), 2U);
+    EXPECT_EQ(read->marks[0].text, "lamp on, 20 °C");
+    EXPECT_EQ(read->marks[0].time.monotonic_ns, 5'004'000'000);
+    EXPECT_EQ(read->marks[0].time.realtime_ns, 1'700'000'000'127'456'789);
+    EXPECT_LT(read->marks[0].stream_bytes, stream_bytes);
+    EXPECT_EQ(read->marks[1].text, std::string(4096, 'x'));
+    ASSERT_TRUE(read->checkpoint.has_value());
+    EXPECT_TRUE(read->checkpoint->last) << "a mark is no checkpoint";
+
+    FakeDisk copy;
+    const std::unique_ptr<AppendFile> file = copy.open();
+    ASSERT_TRUE(recover_capture(input_from_memory(disk.contents), *file).ok());
+    EXPECT_EQ(copy.contents, disk.contents);
+}
+
+// One whose schema nobody knows yet costs nothing: that is how marks came after checkpoints.
+TEST(CaptureFile, FlippedBitInAMarkCostsTheMarkAlone) {
+    FakeDisk disk;
+    auto writer = CaptureWriter::create(disk.open(), made_identity(), made_start);
+    ASSERT_TRUE(writer.ok());
+    const std::vector<KeptTransfer> transfers = made_transfers(2, 50);
+    for (const KeptTransfer& transfer : transfers) { ASSERT_TRUE(writer->append(transfer.view()).ok()); }
+    const std::uint64_t begin = writer->bytes_written();
+    ASSERT_TRUE(writer->mark({made_start, "here", 0}).ok());
+    const std::uint64_t end = writer->bytes_written();
+    for (const KeptTransfer& transfer : transfers) { ASSERT_TRUE(writer->append(transfer.view()).ok()); }
+    ASSERT_TRUE(writer->close().ok());
+    for (std::size_t bit = begin * 8; bit < end * 8; ++bit) {
+        Bytes flipped = disk.contents;
+        flipped[bit / 8] = static_cast<std::uint8_t>(flipped[bit / 8] ^ (1U << (bit % 8)));
+        const auto read = read_capture(flipped);
+        ASSERT_TRUE(read.ok()) << "bit " << bit;
+        ASSERT_EQ(read->transfers.size(), 2 * transfers.size()) << "bit " << bit;
+        if (!read->marks.empty()) { ASSERT_EQ(read->marks[0].text, "here") << "bit " << bit; }
+        ASSERT_TRUE(read->accounts.blocks.balanced()) << "bit " << bit;
+    }
+}
+
 TEST(Recovery, KeepsEveryIntactBlockAndNothingElse) {
     MadeCapture made = make_capture(20, 300);
     made.bytes[made.ends[10] + 40] ^= 1U;

@@ -129,6 +129,7 @@ struct ReadCapture {
     CaptureAccounts accounts;
     std::optional<CaptureMetadata> metadata;
     std::optional<CaptureCheckpoint> checkpoint;
+    std::vector<CaptureMark> marks;
 };
 
 inline Result<ReadCapture> read_capture(std::unique_ptr<InputFile> file) {
@@ -143,6 +144,7 @@ inline Result<ReadCapture> read_capture(std::unique_ptr<InputFile> file) {
     read.accounts = reader.accounts();
     read.metadata = reader.metadata();
     read.checkpoint = reader.checkpoint();
+    read.marks = reader.marks();
     return read;
 }
 

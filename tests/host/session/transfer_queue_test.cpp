@@ -1,8 +1,10 @@
 #include "host/session/transfer_queue.hpp"
 
+#include <fstream>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace gyrolog {
 namespace {
@@ -65,6 +67,34 @@ TEST(TransferQueue, ClosedQueueGivesItsRestAndFinishes) {
     EXPECT_FALSE(queue.pop(milliseconds(1000)).empty());
     EXPECT_TRUE(queue.finished());
     EXPECT_TRUE(queue.pop(milliseconds(1000)).empty());
+}
+
+std::size_t resident_bytes() {
+    std::ifstream statm("/proc/self/statm");
+    std::size_t total_pages = 0;
+    std::size_t resident_pages = 0;
+    statm >> total_pages >> resident_pages;
+    return resident_pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(TransferQueue, GivesBackWhatAStallHasFilled) {
+    constexpr std::size_t capacity = std::size_t{32} << 20U;
+    TransferQueue queue(capacity);
+    const Bytes data(16'384, 0x55);
+    const std::size_t before = resident_bytes();
+    for (int round = 0; round < 2; ++round) {
+        std::uint64_t pushed = 0;
+        while (queue.push(stream_transfer(pushed, data))) { ++pushed; }
+        EXPECT_GT(resident_bytes(), before + capacity / 2);
+        std::uint64_t seen = 0;
+        queue.pop(milliseconds(0)).for_each([&](const Transfer& transfer) {
+            EXPECT_EQ(transfer.id, seen++);
+            EXPECT_EQ(transfer.data.back(), 0x55);
+        });
+        EXPECT_EQ(seen, pushed);
+        EXPECT_TRUE(queue.pop(milliseconds(0)).empty());
+        EXPECT_LT(resident_bytes(), before + capacity / 8);
+    }
 }
 
 TEST(TransferQueue, LosesNothingBetweenTwoThreads) {

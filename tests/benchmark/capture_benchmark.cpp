@@ -1,0 +1,201 @@
+// Processor time of a capture from a terminal line, and of `cat` from the same line into a file: at the
+// ceiling of USB full speed, 1.216 MB/s, and of a board at 1 kHz. On the line's other end the virtual board
+// answers commands and sends; at the ceiling its clock runs as much faster as is needed.
+//
+// cpu: share of one processor; ns_per_sample; bytes_per_s as they were written. Beginning and end are left
+// out.
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "host/base/clock.hpp"
+#include "host/virtual_board/virtual_board.hpp"
+
+namespace gyrolog {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double ceiling_bytes_per_s = 1'216'000.0;  // 19 packets of 64 bytes a millisecond
+constexpr std::chrono::milliseconds warm_up(1000);
+constexpr std::chrono::milliseconds measured(3000);
+
+std::unique_ptr<VirtualBoard> board_at(double rate_hz) {
+    VirtualBoardOptions options;
+    options.rate_hz = rate_hz;
+    options.dlpf_hz = rate_hz > 1000.0 ? 250 : 184;
+    options.ring_bytes = std::size_t{1} << 16U;
+    auto board = VirtualBoard::create(std::move(options));
+    if (!board.ok()) { throw std::runtime_error(board.error().message); }
+    board.value()->in_endpoint().set_capacity(std::size_t{1} << 16U);
+    return std::move(board).value();
+}
+
+// What a board at this rate sends in a second of its own.
+double bytes_per_board_second(double rate_hz) {
+    const auto board = board_at(rate_hz);
+    board->on_line_state(true);
+    std::vector<std::uint8_t> buffer(1U << 16U);
+    double bytes = 0.0;
+    for (int ms = 1; ms <= 5000; ++ms) {
+        board->advance_to(std::int64_t{ms} * 1'000'000);
+        bytes += static_cast<double>(board->in_endpoint().take_bytes(buffer));
+    }
+    return bytes / 5.0;
+}
+
+// A pseudo-terminal with a board behind it, in a thread.
+class BoardLine {
+public:
+    BoardLine(double rate_hz, double hurry, bool started) : board_(board_at(rate_hz)), hurry_(hurry) {
+        line_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+        if (line_ < 0 || grantpt(line_) != 0 || unlockpt(line_) != 0) { throw std::runtime_error("no pty"); }
+        path_ = ptsname(line_);
+        // Held open: a line without any reader hangs up.
+        slave_ = open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+        termios mode{};
+        tcgetattr(slave_, &mode);
+        cfmakeraw(&mode);
+        tcsetattr(slave_, TCSANOW, &mode);
+        if (started) { board_->on_line_state(true); }
+        thread_ = std::thread([this] { run(); });
+    }
+    BoardLine(const BoardLine&) = delete;
+    BoardLine& operator=(const BoardLine&) = delete;
+    ~BoardLine() {
+        stop_ = true;
+        tcflush(slave_, TCIOFLUSH);
+        thread_.join();
+        close(slave_);
+        close(line_);
+    }
+    const std::string& path() const { return path_; }
+    std::uint64_t bytes() const { return bytes_; }
+    std::uint64_t samples() const { return samples_; }
+
+private:
+    void run() {
+        const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+        std::vector<std::uint8_t> buffer(1U << 16U);
+        while (!stop_) {
+            pollfd line{line_, POLLIN, 0};
+            if (poll(&line, 1, 1) > 0 && (line.revents & POLLIN) != 0) {
+                const ssize_t count = read(line_, buffer.data(), buffer.size());
+                if (count > 0) { board_->on_receive({buffer.data(), static_cast<std::size_t>(count)}); }
+            }
+            const auto elapsed_ns = static_cast<double>(clock_ns(CLOCK_MONOTONIC) - begin_ns);
+            board_->advance_to(static_cast<std::int64_t>(elapsed_ns * hurry_));
+            send({buffer.data(), board_->in_endpoint().take_bytes(buffer)});
+            samples_ = board_->sampling_instants();
+        }
+    }
+    void send(ByteView bytes) {
+        while (!bytes.empty() && !stop_) {
+            const ssize_t sent = write(line_, bytes.data(), bytes.size());
+            if (sent <= 0) { return; }
+            bytes = bytes.subspan(static_cast<std::size_t>(sent));
+            bytes_ += static_cast<std::uint64_t>(sent);
+        }
+    }
+
+    std::unique_ptr<VirtualBoard> board_;
+    const double hurry_;
+    int line_ = -1;
+    int slave_ = -1;
+    std::string path_;
+    std::atomic<bool> stop_ = false;
+    std::atomic<std::uint64_t> bytes_ = 0;
+    std::atomic<std::uint64_t> samples_ = 0;
+    std::thread thread_;
+};
+
+// Nanoseconds on a processor so far, of all its threads that live.
+double processor_ns(pid_t process) {
+    double sum = 0.0;
+    for (const auto& task : fs::directory_iterator("/proc/" + std::to_string(process) + "/task")) {
+        double ns = 0.0;
+        std::ifstream(task.path() / "schedstat") >> ns;
+        sum += ns;
+    }
+    return sum;
+}
+
+pid_t start_reader(const std::vector<std::string>& command, const std::string& out_path) {
+    std::vector<char*> argv;
+    argv.reserve(command.size() + 1);
+    for (const std::string& word : command) { argv.push_back(const_cast<char*>(word.c_str())); }
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+        dup2(open("/dev/null", O_RDWR | O_CLOEXEC), STDIN_FILENO);
+        dup2(open(out_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600), STDOUT_FILENO);
+        dup2(STDIN_FILENO, STDERR_FILENO);
+        execvp(argv[0], argv.data());
+        _exit(127);
+    }
+    return child;
+}
+
+void measure(benchmark::State& state, double rate_hz, double hurry, bool with_cat) {
+    std::string folder = (fs::temp_directory_path() / "gyrolog_benchmark_XXXXXX").string();
+    if (mkdtemp(folder.data()) == nullptr) { throw std::runtime_error("no temporary folder"); }
+    const char* build = std::getenv("GYROLOG_BUILD_DIR");
+    const std::string program = std::string(build == nullptr ? "build" : build) + "/gyrolog";
+    for ([[maybe_unused]] const auto turn : state) {
+        BoardLine line(rate_hz, hurry, with_cat);
+        const pid_t reader = with_cat ? start_reader({"cat", line.path()}, folder + "/raw")
+                                      : start_reader({program, "capture", "--device", "tty:" + line.path(),
+                                                      "-o", folder + "/capture.pcapng"},
+                                                     folder + "/out");
+        std::this_thread::sleep_for(warm_up);
+        const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+        const double used_before_ns = processor_ns(reader);
+        const std::uint64_t bytes_before = line.bytes();
+        const std::uint64_t samples_before = line.samples();
+        std::this_thread::sleep_for(measured);
+        const double used_ns = processor_ns(reader) - used_before_ns;
+        const double elapsed_s = static_cast<double>(clock_ns(CLOCK_MONOTONIC) - begin_ns) * 1e-9;
+        const auto samples = static_cast<double>(line.samples() - samples_before);
+        state.counters["cpu"] = used_ns * 1e-9 / elapsed_s;
+        state.counters["ns_per_sample"] = used_ns / samples;
+        state.counters["bytes_per_s"] = static_cast<double>(line.bytes() - bytes_before) / elapsed_s;
+        state.SetIterationTime(elapsed_s);
+        kill(reader, with_cat ? SIGTERM : SIGINT);
+        int status = 0;
+        waitpid(reader, &status, 0);
+        if (!with_cat && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
+            state.SkipWithError("the capture lost data or failed");
+        }
+    }
+    fs::remove_all(folder);
+}
+
+void at_the_ceiling(benchmark::State& state, bool with_cat) {
+    constexpr double rate_hz = 8000.0;
+    measure(state, rate_hz, ceiling_bytes_per_s / bytes_per_board_second(rate_hz), with_cat);
+}
+void at_1_kHz(benchmark::State& state, bool with_cat) { measure(state, 1000.0, 1.0, with_cat); }
+
+BENCHMARK_CAPTURE(at_the_ceiling, capture, false)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_the_ceiling, cat, true)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_1_kHz, capture, false)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_1_kHz, cat, true)->UseManualTime()->Iterations(1);
+
+}  // namespace
+}  // namespace gyrolog

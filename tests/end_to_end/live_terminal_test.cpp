@@ -1,0 +1,164 @@
+// The program on a terminal of its own: what is drawn, and what the keys do.
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "host/session/load_capture.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Terminal {
+public:
+    explicit Terminal(std::vector<std::string> arguments) {
+        const winsize size{30, 100, 0, 0};
+        const char* build = std::getenv("GYROLOG_BUILD_DIR");
+        arguments.insert(arguments.begin(), std::string(build == nullptr ? "." : build) + "/gyrolog");
+        std::vector<char*> argv;
+        argv.reserve(arguments.size() + 1);
+        for (std::string& argument : arguments) { argv.push_back(argument.data()); }
+        argv.push_back(nullptr);
+        child_ = forkpty(&line_, nullptr, nullptr, &size);
+        if (child_ == 0) {
+            execv(argv[0], argv.data());
+            _exit(127);
+        }
+    }
+    Terminal(const Terminal&) = delete;
+    Terminal& operator=(const Terminal&) = delete;
+    ~Terminal() {
+        if (child_ > 0) {
+            kill(child_, SIGKILL);
+            waitpid(child_, nullptr, 0);
+        }
+        close(line_);
+    }
+
+    void type(const std::string& keys) {
+        EXPECT_EQ(write(line_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
+    }
+    // Whether this came on the screen since the last call, within ten seconds.
+    bool shows(const std::string& text) {
+        const auto start = Clock::now();
+        while (Clock::now() - start < std::chrono::seconds(10)) {
+            const std::size_t found = screen_.find(text, seen_);
+            if (found != std::string::npos) {
+                seen_ = found + text.size();
+                return true;
+            }
+            if (!read_more()) { break; }
+        }
+        return screen_.find(text, seen_) != std::string::npos;
+    }
+    bool echoes() const {
+        termios mode{};
+        EXPECT_EQ(tcgetattr(line_, &mode), 0);
+        return (mode.c_lflag & static_cast<tcflag_t>(ECHO)) != 0;
+    }
+    int wait() {
+        while (read_more()) {}
+        int status = 0;
+        waitpid(child_, &status, 0);
+        child_ = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    }
+    const std::string& screen() const { return screen_; }
+
+private:
+    bool read_more() {
+        pollfd input{line_, POLLIN, 0};
+        if (poll(&input, 1, 10'000) <= 0) { return false; }
+        std::array<char, 4096> bytes{};
+        const ssize_t count = read(line_, bytes.data(), bytes.size());
+        if (count <= 0) { return false; }
+        screen_.append(bytes.data(), static_cast<std::size_t>(count));
+        return true;
+    }
+
+    pid_t child_ = -1;
+    int line_ = -1;
+    std::string screen_;
+    std::size_t seen_ = 0;
+};
+
+class LiveTerminal : public testing::Test {
+protected:
+    std::vector<std::string> command() const {
+        return {"capture", "--device", "sim:rate=1000,realtime=1", "-o", path};
+    }
+
+    TemporaryFolder folder;
+    std::string path = folder.path("live.pcapng");
+};
+
+TEST_F(LiveTerminal, MarksStopsStartsAndEndsByKeys) {
+    Terminal terminal(command());
+    ASSERT_TRUE(terminal.shows("samples  ")) << terminal.screen();
+    EXPECT_TRUE(terminal.shows(" dps x")) << "an Allan deviation\n" << terminal.screen();
+    EXPECT_TRUE(terminal.shows("  z  K ")) << terminal.screen();
+    EXPECT_TRUE(terminal.shows("keys: m mark, s stop the board, q end")) << terminal.screen();
+    EXPECT_FALSE(terminal.echoes());
+    terminal.type("m");
+    EXPECT_TRUE(terminal.shows("mark: _")) << terminal.screen();
+    terminal.type("lamp on\r");
+    EXPECT_TRUE(terminal.shows("m mark (1 so far)")) << terminal.screen();
+    terminal.type("s");
+    EXPECT_TRUE(terminal.shows("s start the board, which stands still")) << terminal.screen();
+    terminal.type("s");
+    EXPECT_TRUE(terminal.shows("s stop the board")) << terminal.screen();
+    EXPECT_TRUE(terminal.shows("keys")) << terminal.screen();
+    terminal.type("mthe end");
+    EXPECT_TRUE(terminal.shows("mark: the end_")) << terminal.screen();
+    terminal.type("\x03");  // Ctrl-C: the mark that was being written is kept
+    EXPECT_TRUE(terminal.shows("live.pcapng: ")) << terminal.screen();
+    EXPECT_TRUE(terminal.echoes());
+    EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
+
+    const auto capture = load_capture(path, false);
+    ASSERT_TRUE(capture.ok());
+    ASSERT_EQ(capture->marks.size(), 2U);
+    EXPECT_EQ(capture->marks[0].text, "lamp on");
+    EXPECT_EQ(capture->marks[1].text, "the end");
+    const LinkReport link = capture->decoder->report();
+    EXPECT_EQ(link.runs, 2U);
+    EXPECT_TRUE(link.complete());
+    EXPECT_EQ(capture->file.blocks.end, FileEnd::clean);
+    const std::string info = run_gyrolog({"info", path}).out;
+    EXPECT_NE(info.find("mark       at "), std::string::npos) << info;
+    EXPECT_NE(info.find(" s  lamp on\n"), std::string::npos) << info;
+}
+
+TEST_F(LiveTerminal, EndsByItsKeyAndLeavesTheTerminalAsItWas) {
+    Terminal terminal(command());
+    ASSERT_TRUE(terminal.shows("keys:")) << terminal.screen();
+    EXPECT_FALSE(terminal.echoes());
+    terminal.type("q");
+    EXPECT_TRUE(terminal.shows("live.pcapng: ")) << terminal.screen();
+    EXPECT_TRUE(terminal.echoes());
+    EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
+}
+
+TEST_F(LiveTerminal, NothingOfItIsDrawnOffATerminal) {
+    const ProgramResult result = run_gyrolog_and_signal(command(), std::chrono::milliseconds(1500), SIGINT);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err.find('\x1b'), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("keys"), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("dps"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace gyrolog
