@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <mutex>
@@ -14,6 +15,7 @@
 #include <unistd.h>
 
 #include "host/session/capture_session.hpp"
+#include "host/session/load_capture.hpp"
 #include "tests/host/session/board_source.hpp"
 #include "tests/support/program.hpp"
 
@@ -25,6 +27,7 @@ struct SyncCall {
 };
 
 std::atomic<int> slow_ms = 0;  // a disk that takes its time
+std::atomic<bool> broken = false;
 std::mutex calls_mutex;
 std::vector<SyncCall> calls;
 
@@ -38,6 +41,10 @@ extern "C" int fdatasync(int descriptor) {
         calls.push_back({gyrolog::clock_ns(CLOCK_MONOTONIC), static_cast<std::uint64_t>(file.st_size)});
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(slow_ms));
+    if (broken) {
+        errno = EIO;
+        return -1;
+    }
     return static_cast<int>(syscall(SYS_fdatasync, descriptor));
 }
 
@@ -93,6 +100,29 @@ TEST(CaptureDurability, DiskThatSyncsForSecondsKeepsNothingFromBeingWritten) {
     ASSERT_TRUE(outcome.ok()) << outcome.error().message;
     EXPECT_LT(longest_ns, 900'000'000) << "it grows four times a second";
     EXPECT_FALSE(outcome->data_lost());
+}
+
+// What the disk says in its own time is not overheard.
+TEST(CaptureDurability, FailedSyncEndsTheCaptureAndLeavesAReadableFile) {
+    const TemporaryFolder folder;
+    CaptureRequest request;
+    request.path = folder.path("run.pcapng");
+    const auto source = BoardSource::create({.turn_board_s = 0.010, .turn_host_s = 0.010});
+    const auto outcome = run_capture(*source, request, [&](const CaptureProgress& progress) {
+        broken = progress.elapsed_s > 0.3;
+        return progress.elapsed_s < 10.0;
+    });
+    broken = false;
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::storage_failed);
+    ASSERT_TRUE(outcome->error.has_value());
+    EXPECT_EQ(outcome->error->code, ErrorCode::storage_failed);
+    EXPECT_NE(outcome->error->message.find("sync '"), std::string::npos) << outcome->error->message;
+    EXPECT_LT(outcome->progress.elapsed_s, 4.0) << "the first failure is told by the second's sync";
+    const auto stored = load_capture(request.path, false);
+    ASSERT_TRUE(stored.ok()) << stored.error().message;
+    EXPECT_EQ(stored->file.blocks.end, FileEnd::clean);
+    EXPECT_GT(stored->decoder->report().samples.good, 500U);
 }
 
 }  // namespace
