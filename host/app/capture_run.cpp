@@ -60,19 +60,6 @@ ExitCode exit_code_of(const CaptureOutcome& outcome) {
     return outcome.data_lost() ? ExitCode::data_lost : ExitCode::ok;
 }
 
-// A board that cannot be opened, for whatever reason, is "no device" to a script.
-ExitCode exit_code_of_opening(const Error& error) {
-    switch (error.code) {
-        case ErrorCode::not_found:
-        case ErrorCode::permission_denied:
-        case ErrorCode::busy:
-        case ErrorCode::timeout:
-            return ExitCode::no_device;
-        default:
-            return gyrolog::exit_code_of(error);
-    }
-}
-
 }  // namespace
 
 CaptureResult capture_to_file(Console& console, const char* command, const CaptureOptions& options,

@@ -1,0 +1,33 @@
+// Judges a device by the numbered rules of SPEC.md.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/conform/rule.hpp"
+#include "host/transport/byte_source.hpp"
+
+namespace gyrolog {
+
+struct RuleVerdict {
+    const Rule* rule;
+    Verdict verdict;
+};
+
+struct ConformanceReport {
+    std::string device;
+    std::optional<glp_hello> hello;
+    std::string broken_off;             // why the conversation ended early; empty when it did not
+    std::vector<RuleVerdict> verdicts;  // in the order of the specification
+
+    std::size_t count(VerdictState state) const;
+    bool conforms() const { return count(VerdictState::fail) == 0 && count(VerdictState::pass) > 0; }
+};
+
+// Errors as of converse().
+Result<ConformanceReport> judge(ByteSource& source, const std::function<bool()>& go_on);
+ConformanceReport judge(const Dialogue& dialogue);
+
+}  // namespace gyrolog
