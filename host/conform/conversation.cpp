@@ -45,7 +45,7 @@ Bytes payload_of(const AskedSettings& asked) {
 // Device time that the stretch's stamps cover, by the tick rate that HELLO tells.
 class DeviceTime {
 public:
-    explicit DeviceTime(std::size_t from) : next_(from) {}
+    explicit DeviceTime(std::size_t from) : from_(from) {}
 
     double covered_s(const Transcript& transcript) {
         const auto& entries = transcript.entries();
@@ -56,7 +56,7 @@ public:
                     hello->tick_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << hello->tick_bits) - 1;
             }
             const auto samples = samples_in(entries[next_]);
-            if (!samples || tick_hz_ == 0) { continue; }
+            if (!samples || next_ < from_ || tick_hz_ == 0) { continue; }
             if (last_) {
                 const std::uint64_t step = (samples->first_ticks - *last_) & tick_mask_;
                 // A step backward is for the rules to judge.
@@ -68,7 +68,8 @@ public:
     }
 
 private:
-    std::size_t next_;
+    const std::size_t from_;
+    std::size_t next_ = 0;
     std::uint32_t tick_hz_ = 0;
     std::uint64_t tick_mask_ = ~std::uint64_t{0};
     std::optional<std::uint64_t> last_;

@@ -29,6 +29,7 @@ namespace gyrolog {
 //   fault=KIND@SECONDS[+KIND@SECONDS...]   of device time since the start; link_stall@FROM..TO
 //                    kinds: fifo_overflow bus_error link_stall drop_packet duplicate_packet corrupt_byte
 //                    reset unplug
+//   breach=NAME      break one rule of the protocol (breaches.cpp): for trying `gyrolog conform`
 //   unplug=SECONDS, reset=SECONDS          the same as fault=unplug@SECONDS, fault=reset@SECONDS
 struct SimOptions {
     std::string model_path;  // empty: typical_mpu9250()
@@ -45,7 +46,8 @@ struct SimOptions {
     std::uint32_t boot_id = 1;
     std::size_t ring_bytes = 4096;
     std::vector<BoardFault> faults;
-    std::string text;  // as typed, without boards= and board=
+    std::string breach;  // of breaches(); empty for an honest board
+    std::string text;    // as typed, without boards= and board=
 };
 
 // Error `invalid_argument` names the option and what it may be.
