@@ -4,8 +4,6 @@
 #include <array>
 #include <cstdlib>
 
-#include "host/conform/conversation.hpp"
-
 namespace gyrolog {
 namespace {
 
@@ -43,11 +41,6 @@ ConformanceReport judge(const Dialogue& dialogue) {
         return earlier(a.rule->number, b.rule->number);
     });
     return report;
-}
-
-Result<ConformanceReport> judge(ByteSource& source, const std::function<bool()>& go_on) {
-    GYROLOG_TRY(const Dialogue dialogue, converse(source, go_on));
-    return judge(dialogue);
 }
 
 }  // namespace gyrolog

@@ -1,13 +1,11 @@
 // Judges a device by the numbered rules of SPEC.md.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host/conform/rule.hpp"
-#include "host/transport/byte_source.hpp"
 
 namespace gyrolog {
 
@@ -26,8 +24,6 @@ struct ConformanceReport {
     bool conforms() const { return count(VerdictState::fail) == 0 && count(VerdictState::pass) > 0; }
 };
 
-// Errors as of converse().
-Result<ConformanceReport> judge(ByteSource& source, const std::function<bool()>& go_on);
 ConformanceReport judge(const Dialogue& dialogue);
 
 }  // namespace gyrolog

@@ -14,13 +14,14 @@ namespace gyrolog {
 namespace {
 
 constexpr double settle_s = 0.05;  // silence that counts as stopped (SPEC.md, 9.5)
-constexpr double settle_limit_s = 2.0;
+constexpr double settle_limit_s = 1.0;
+constexpr double stopping_s = 1.0;
 constexpr double listen_s = 0.3;     // for what must not come
 constexpr double quiet_run_s = 6.8;  // of device time: a HELLO every 5 s, a third late
 constexpr double short_run_s = 0.6;
 constexpr double silence_is_end_s = 2.0;  // a stream that pauses for so long has ended
 constexpr double held_up_silence_s = 0.05;
-constexpr unsigned unanswered_max = 4;  // in a row: the device answers nothing
+constexpr unsigned unanswered_max = 3;  // in a row: the device answers nothing
 constexpr std::size_t overlong_bytes = 3000;
 constexpr unsigned type_unknown_command = 0xF0;
 
@@ -345,6 +346,15 @@ private:
         if (!dialogue_.has_line) { return ask(Ask::stop_at_end, glp_frame_stop); }
         const std::size_t begin = probe_.entry_count();
         GYROLOG_CHECK(probe_.set_line_state(false));
+        probe_.await(
+            [begin](const Transcript& now) {
+                return std::any_of(now.entries().begin() + static_cast<std::ptrdiff_t>(begin),
+                                   now.entries().end(), [](const TranscriptEntry& entry) {
+                                       const auto event = event_in(entry);
+                                       return event && event->code == glp_event_stopped;
+                                   });
+            },
+            stopping_s, stopping_s);
         GYROLOG_CHECK(listen_for_nothing());
         dialogue_.lowered = Stretch{begin, probe_.entry_count()};
         return {};

@@ -185,6 +185,11 @@ Verdict replies(const Dialogue& dialogue) {
         check_followed_by(dialogue, ask, {glp_frame_hello, glp_frame_config}, "REPLY, HELLO, CONFIG",
                           findings);
     }
+    const auto& hello = dialogue.asked(Ask::hello_streaming);
+    if (hello && hello->reply && has(dialogue, answer_of(*hello), glp_frame_event, glp_event_started)) {
+        findings.wrong("REPLY, HELLO, CONFIG, and the stream goes on", names_of(dialogue, answer_of(*hello)),
+                       at(dialogue, *hello->reply));
+    }
     for (const Ask ask : {Ask::status, Ask::status_streaming, Ask::status_stopped}) {
         check_followed_by(dialogue, ask, {glp_frame_status}, "REPLY, STATUS", findings);
     }
@@ -207,6 +212,17 @@ Verdict replies(const Dialogue& dialogue) {
 
 // ------------------------------------------------------------------------------------ CONFIGURE, and the
 // rhythm
+
+// A CONFIG that no HELLO goes before: one that is not repeated every 5 s.
+bool has_config_alone(const Dialogue& dialogue, Stretch stretch) {
+    for (std::size_t i = std::max<std::size_t>(stretch.begin, 1); i < stretch.end; ++i) {
+        if (dialogue.entry(i).is_frame(glp_frame_config) &&
+            !dialogue.entry(i - 1).is_frame(glp_frame_hello)) {
+            return true;
+        }
+    }
+    return false;
+}
 
 void check_generation(const Dialogue& dialogue, const Exchange& exchange, Findings& findings) {
     const std::size_t place = place_of(dialogue, answer_of(exchange), glp_frame_config);
@@ -252,8 +268,11 @@ Verdict configuring(const Dialogue& dialogue) {
     const auto& refused = dialogue.asked(Ask::refused_streaming);
     if (refused && refused->answer && refused->answer->result == glp_result_bad_value) {
         findings.looked();
-        if (has(dialogue, answer_of(*refused), glp_frame_config) ||
-            has(dialogue, answer_of(*refused), glp_frame_event)) {
+        Stretch answer = answer_of(*refused);
+        // What comes behind the next command that changes something is that one's.
+        if (changed) { answer.end = std::min(answer.end, std::max(answer.begin, changed->sent)); }
+        if (has_config_alone(dialogue, answer) || has(dialogue, answer, glp_frame_event, glp_event_stopped) ||
+            has(dialogue, answer, glp_frame_event, glp_event_started)) {
             findings.wrong("REPLY alone to a refused CONFIGURE", names_of(dialogue, answer_of(*refused)),
                            at(dialogue, *refused->reply));
         }
@@ -448,17 +467,27 @@ bool belongs_to_answer(unsigned command, unsigned type) {
 Verdict silent_until_asked(const Dialogue& dialogue) {
     Findings findings;
     if (dialogue.never_quiet) {
-        findings.wrong("silence after DTR fell and a STOP", "a stream that went on for 2 s");
+        findings.wrong("silence after DTR fell and a STOP", "a stream that went on for 1 s");
     }
-    unsigned command = 0;
+    const Exchange* sent = nullptr;
+    const Exchange* answered = nullptr;
     for (std::size_t i = 0; i < std::min(dialogue.first_start, dialogue.entries().size()); ++i) {
         const TranscriptEntry& entry = dialogue.entry(i);
         if (entry.kind != Kind::frame) { continue; }
         findings.looked();
-        if (const auto reply = reply_in(entry)) {
-            command = reply->command_type;
-        } else if (entry.type >= glp_frame_hello && entry.type <= glp_frame_status &&
-                   !belongs_to_answer(command, entry.type)) {
+        const auto reply = reply_in(entry);
+        for (const auto& exchange : dialogue.exchanges) {
+            if (!exchange) { continue; }
+            if (exchange->sent <= i && (sent == nullptr || exchange->sent >= sent->sent)) {
+                sent = &*exchange;
+            }
+            if (reply && exchange->number == reply->command_sequence) { answered = &*exchange; }
+        }
+        const auto explained = [&](const Exchange* by) {
+            return by != nullptr && belongs_to_answer(by->type, entry.type);
+        };
+        if (entry.type >= glp_frame_hello && entry.type <= glp_frame_status && !explained(sent) &&
+            !explained(answered)) {
             findings.wrong("before the first start only what a command asked for", name_of_type(entry.type),
                            &entry);
         }

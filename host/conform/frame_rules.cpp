@@ -85,25 +85,39 @@ Verdict body_length(const Dialogue& dialogue) {
     return refused_for(dialogue, glp_status_bad_length, "a body of 12 to 1016 bytes between two delimiters");
 }
 
-Verdict cobs(const Dialogue& dialogue) {
-    return refused_for(dialogue, glp_status_bad_cobs, "the COBS form of a body between two delimiters");
+enum class LastGroup : std::uint8_t { other, full, empty_behind_full };
+
+// 254 bytes other than 00 at the body's end have one form; many encoders write another.
+LastGroup last_group(const TranscriptEntry& entry) {
+    std::size_t code_at = 0;
+    std::size_t before = 0;
+    while (code_at < entry.bytes.size() && code_at + entry.bytes[code_at] < entry.bytes.size()) {
+        before = code_at;
+        code_at += entry.bytes[code_at];
+    }
+    if (code_at >= entry.bytes.size()) { return LastGroup::other; }
+    if (entry.bytes[code_at] == 0xFF) { return LastGroup::full; }
+    const bool empty = entry.bytes[code_at] == 0x01 && code_at > 0 && entry.bytes[before] == 0xFF;
+    return empty ? LastGroup::empty_behind_full : LastGroup::other;
 }
 
-// 254 bytes other than 00 at the body's end, and the one form they have.
+Verdict cobs(const Dialogue& dialogue) {
+    Findings findings;
+    for (const TranscriptEntry& entry : dialogue.entries()) {
+        if (entry.kind == Kind::frame) { findings.looked(); }
+        if (entry.kind != Kind::refused || entry.status != glp_status_bad_cobs) { continue; }
+        if (last_group(entry) == LastGroup::empty_behind_full) { continue; }
+        findings.wrong("the COBS form of a body between two delimiters",
+                       fmt::format("{} bytes that are none", entry.bytes.size()), &entry);
+    }
+    return findings.verdict(nothing_came);
+}
+
 Verdict full_last_group(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
-        if (entry.kind == Kind::sent || entry.kind == Kind::line) { continue; }
-        std::size_t code_at = 0;
-        std::size_t before = 0;
-        while (code_at < entry.bytes.size() && code_at + entry.bytes[code_at] < entry.bytes.size()) {
-            before = code_at;
-            code_at += entry.bytes[code_at];
-        }
-        if (code_at >= entry.bytes.size()) { continue; }
-        if (entry.kind == Kind::frame && entry.bytes[code_at] == 0xFF) { findings.looked(); }
-        if (entry.kind == Kind::refused && entry.bytes[code_at] == 0x01 && code_at > 0 &&
-            entry.bytes[before] == 0xFF) {
+        if (entry.kind == Kind::frame && last_group(entry) == LastGroup::full) { findings.looked(); }
+        if (entry.kind == Kind::refused && last_group(entry) == LastGroup::empty_behind_full) {
             findings.wrong("nothing behind a last group of 254 bytes", "a code byte 01", &entry);
         }
     }

@@ -343,22 +343,24 @@ Verdict status_rule(const Dialogue& dialogue) {
     if (form.state != VerdictState::pass) { return form; }
     Findings findings;
     RunSoFar now;
+    bool told_to_stop = false;
     std::size_t next_run = 0;
     for (std::size_t i = 0; i < dialogue.entries().size(); ++i) {
         const TranscriptEntry& entry = dialogue.entry(i);
         if (next_run < dialogue.runs.size() && i == dialogue.runs[next_run].entries.begin) {
             now = {false, 0, dialogue.runs[next_run].config ? &*dialogue.runs[next_run].config : nullptr};
             ++next_run;
+            told_to_stop = false;
         }
         if (const auto samples = samples_in(entry)) {
-            now.streaming = true;
+            now.streaming = !told_to_stop;
             now.sent_to = samples->first_index + samples->count;
         }
-        const bool stop = entry.kind == Kind::line && !entry.raised;
         const auto event = event_in(entry);
-        if (stop || (event && event->code == glp_event_stopped)) { now.streaming = false; }
         const auto reply = reply_in(entry);
-        if (reply && reply->command_type == glp_frame_stop) { now.streaming = false; }
+        told_to_stop = told_to_stop || (entry.kind == Kind::line && !entry.raised) ||
+                       (reply && reply->command_type == glp_frame_stop);
+        if (told_to_stop || (event && event->code == glp_event_stopped)) { now.streaming = false; }
         const auto status = status_in(entry);
         if (!status) { continue; }
         findings.looked();
@@ -424,7 +426,11 @@ Verdict reply_rule(const Dialogue& dialogue) {
     Verdict form = malformed(dialogue, glp_frame_reply, "8 bytes");
     if (form.state != VerdictState::pass) { return form; }
     Findings findings;
-    for (const auto& exchange : dialogue.exchanges) {
+    for (std::size_t i = 0; i < dialogue.exchanges.size(); ++i) {
+        const auto& exchange = dialogue.exchanges[i];
+        const auto ask = static_cast<Ask>(i);
+        // Those that must not be answered have rules of their own.
+        if (ask == Ask::echo || ask == Ask::bad_checksum || ask == Ask::other_version) { continue; }
         if (!exchange || !exchange->reply) { continue; }
         findings.looked();
         if (exchange->answer->command_type != exchange->type) {

@@ -13,6 +13,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double reply_timeout_s = 1.0;
+constexpr double held_up_limit_s = 3.0;  // what had been sent before is taken first: up to 1 s
 
 std::chrono::nanoseconds to_ns(double duration_s) {
     return std::chrono::nanoseconds(static_cast<std::int64_t>(duration_s * 1e9));
@@ -55,7 +56,7 @@ bool Probe::await_reply(std::uint32_t number) {
         return found;
     };
     // A stream that goes on is no answer: the limit is by the clock of both.
-    return await(has_reply, reply_timeout_s, held_up_ ? 20.0 : reply_timeout_s);
+    return await(has_reply, reply_timeout_s, held_up_ ? held_up_limit_s : reply_timeout_s);
 }
 
 bool Probe::await(const std::function<bool(const Transcript&)>& enough, double longest_silence_s,

@@ -90,6 +90,7 @@ void Transcript::take(const Transfer& transfer) {
 
 void Transcript::begin_here() {
     entries_.clear();
+    kept_bytes_ = 0;
     foreign_ = candidate_bytes_ > 0;
     bytes_received_ = candidate_bytes_;
     delimiters_ = std::max<std::size_t>(delimiters_, 1);
@@ -137,6 +138,7 @@ void Transcript::end_candidate() {
 void Transcript::add(TranscriptEntry entry) {
     if (full()) { return; }
     entry.at_s = now_s_;
+    kept_bytes_ += entry.bytes.size() + entry.payload.size();
     entries_.push_back(std::move(entry));
 }
 

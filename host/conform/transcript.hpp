@@ -55,13 +55,15 @@ std::optional<glp_reply> reply_in(const TranscriptEntry& entry);
 class Transcript {
 public:
     static constexpr std::size_t entries_max = 60'000;
+    static constexpr std::size_t bytes_max = std::size_t{8} << 20U;
 
     void take(const Transfer& transfer);
     // What came so far was there before the conversation: it is forgotten, a frame that has begun with it.
     void begin_here();
 
     const std::vector<TranscriptEntry>& entries() const { return entries_; }
-    bool full() const { return entries_.size() >= entries_max; }
+    bool full() const { return entries_.size() >= entries_max || kept_bytes_ >= bytes_max; }
+    std::size_t kept_bytes() const { return kept_bytes_; }
     std::uint64_t bytes_received() const { return bytes_received_; }
     // Of the candidate that no delimiter has ended yet.
     const Bytes& unended() const { return candidate_; }
@@ -78,6 +80,7 @@ private:
     std::size_t delimiters_ = 0;
     bool foreign_ = false;  // the candidate began before the conversation
     std::uint64_t bytes_received_ = 0;
+    std::size_t kept_bytes_ = 0;  // of all entries
     std::optional<std::int64_t> origin_ns_;
     double now_s_ = 0.0;
 };

@@ -46,7 +46,31 @@ std::string printable(std::string_view text) {
     return clean;
 }
 
+std::string words_of(const TranscriptEntry& entry) {
+    switch (entry.kind) {
+        case TranscriptEntry::Kind::line:
+            return entry.raised ? "DTR rises" : "DTR falls";
+        case TranscriptEntry::Kind::sent:
+            return "sent";
+        case TranscriptEntry::Kind::refused:
+            return fmt::format("refused {}", glp_status_name(entry.status));
+        case TranscriptEntry::Kind::frame:
+            break;
+    }
+    const char* problem = entry.status == glp_status_ok ? "" : glp_status_name(entry.status);
+    return fmt::format("{} {} flags {:04x} {}", name_of_type(entry.type), entry.sequence, entry.flags,
+                       problem);
+}
+
 }  // namespace
+
+std::string transcript_text(const Dialogue& dialogue) {
+    std::string text;
+    for (const TranscriptEntry& entry : dialogue.entries()) {
+        text += fmt::format("{:9.4f} s  {:<28} {}\n", entry.at_s, words_of(entry), hex(entry.bytes));
+    }
+    return text;
+}
 
 nlohmann::ordered_json conform_json(const ConformanceReport& report) {
     auto rules = nlohmann::ordered_json::array();

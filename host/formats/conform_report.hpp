@@ -21,5 +21,7 @@ namespace gyrolog {
 
 nlohmann::ordered_json conform_json(const ConformanceReport& report);
 std::string conform_text(const ConformanceReport& report);
+// The whole conversation, a line a frame, with its bytes.
+std::string transcript_text(const Dialogue& dialogue);
 
 }  // namespace gyrolog
