@@ -111,10 +111,19 @@ private:
         // A board that a program before left streaming on a command stops on one. What an earlier listener
         // left on the line is gone with it, and so is a command that was cut short.
         GYROLOG_CHECK(probe_.write(Bytes(2, 0)));
-        GYROLOG_CHECK(probe_.write(probe_.command(glp_frame_stop, {})));
+        GYROLOG_CHECK(stop_what_runs());
+        if (!dialogue_.has_line) { GYROLOG_CHECK(stop_what_runs()); }
         dialogue_.never_quiet =
             !probe_.await_silence(probe_.held_up() ? held_up_silence_s : 4 * settle_s, settle_limit_s);
         probe_.forget();
+        return {};
+    }
+
+    // A line that was just opened may take a second until it carries anything. An answer is not asked for
+    // yet.
+    Status stop_what_runs() {
+        GYROLOG_CHECK(probe_.write(probe_.command(glp_frame_stop, {})));
+        static_cast<void>(probe_.await_reply(probe_.last_number()));
         return {};
     }
 
@@ -255,6 +264,9 @@ private:
         static_cast<void>(probe_.write(probe_.command(glp_frame_stop, {})));
         static_cast<void>(probe_.write(probe_.command(glp_frame_configure, payload_of(back))));
         static_cast<void>(probe_.await_reply(probe_.last_number()));
+        // The CONFIG behind it is not to be cut off: the next one on this line would find half a frame.
+        static_cast<void>(
+            probe_.await_silence(probe_.held_up() ? held_up_silence_s : settle_s, settle_limit_s));
         if (dialogue_.has_line) { static_cast<void>(probe_.set_line_state(false)); }
     }
 
@@ -324,7 +336,7 @@ private:
             // What is still on its way would be dropped by the rising DTR.
             GYROLOG_CHECK(listen_for_nothing());
             begin_of_run_ = probe_.entry_count();
-            dialogue_.runs.push_back({Run::By::line, {begin_of_run_, 0}, std::nullopt});
+            dialogue_.runs.push_back({.by = Run::By::line, .entries = {begin_of_run_, 0}});
             return probe_.set_line_state(true);
         }
         GYROLOG_CHECK(ask(ask_without_line, glp_frame_start));
@@ -338,7 +350,7 @@ private:
         const auto& exchange = dialogue_.asked(ask);
         if (!exchange) { return; }
         begin_of_run_ = exchange->sent;
-        dialogue_.runs.push_back({by, {begin_of_run_, 0}, std::nullopt});
+        dialogue_.runs.push_back({.by = by, .entries = {begin_of_run_, 0}, .ask = ask});
     }
 
     Status end_run() {
@@ -393,6 +405,7 @@ private:
     static void append(Bytes& to, const Bytes& what) { to.insert(to.end(), what.begin(), what.end()); }
 
     void complete();
+    std::size_t first_of_answer(const Exchange& exchange) const;
 
     ByteSource& source_;
     Probe probe_;
@@ -402,6 +415,14 @@ private:
     std::size_t begin_of_run_ = 0;
     unsigned unanswered_ = 0;
 };
+
+// The REPLY, or a HELLO before it: what comes earlier is of the run before, or of an earlier command.
+std::size_t Conversation::first_of_answer(const Exchange& exchange) const {
+    if (!exchange.reply) { return exchange.sent; }
+    std::size_t first = exchange.sent;
+    while (first < *exchange.reply && !dialogue_.entry(first).is_frame(glp_frame_hello)) { ++first; }
+    return exchange.type == glp_frame_start ? first : *exchange.reply;
+}
 
 void Conversation::complete() {
     const auto& entries = dialogue_.entries();
@@ -422,11 +443,9 @@ void Conversation::complete() {
             ++exchange->end;
         }
     }
-    const auto& configured = dialogue_.asked(Ask::configure_streaming);
     for (std::size_t i = 0; i < dialogue_.runs.size(); ++i) {
         Run& run = dialogue_.runs[i];
-        // Up to its REPLY the stream is still that of the run before.
-        if (run.by == Run::By::configure && configured->reply) { run.entries.begin = *configured->reply; }
+        if (run.ask) { run.entries.begin = first_of_answer(*dialogue_.asked(*run.ask)); }
         if (i > 0) { dialogue_.runs[i - 1].entries.end = run.entries.begin; }
         run.entries.end = entries.size();
     }

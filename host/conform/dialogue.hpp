@@ -94,7 +94,8 @@ struct Run {
     enum class By : std::uint8_t { line, command, configure };
     By by = By::line;
     Stretch entries;
-    std::optional<glp_config> config;  // the one in force
+    std::optional<glp_config> config = std::nullopt;  // the one in force
+    std::optional<Ask> ask = std::nullopt;            // the command that began it
 };
 
 struct Dialogue {
