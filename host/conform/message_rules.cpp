@@ -214,10 +214,11 @@ bool padded(const TranscriptEntry& entry, std::size_t first, std::size_t bytes) 
     return std::all_of(std::find(begin, end, 0), end, [](std::uint8_t byte) { return byte == 0; });
 }
 
-// All but boot_id, which has a rule of its own.
+// All but boot_id, which has a rule of its own, and the sensor: one that did not answer may answer later.
 bool same_device(const TranscriptEntry& a, const TranscriptEntry& b) {
-    return std::equal(a.payload.begin(), a.payload.begin() + 8, b.payload.begin()) &&
-           std::equal(a.payload.begin() + 12, a.payload.begin() + 72, b.payload.begin() + 12);
+    return std::equal(a.payload.begin(), a.payload.begin() + 3, b.payload.begin()) &&
+           std::equal(a.payload.begin() + 4, a.payload.begin() + 8, b.payload.begin() + 4) &&
+           std::equal(a.payload.begin() + 12, a.payload.begin() + 56, b.payload.begin() + 12);
 }
 
 Verdict hello_rule(const Dialogue& dialogue) {

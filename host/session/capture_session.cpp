@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
@@ -107,6 +108,13 @@ public:
         if (thread_.joinable()) { thread_.join(); }
     }
 
+    // Before the command is sent. Other replies are not kept: a device may send any number of them.
+    void expect_reply(std::uint32_t sequence, std::uint8_t type) {
+        const std::lock_guard lock(mutex_);
+        expected_ = {sequence, type, 0};
+        reply_.reset();
+    }
+
     // Waits until `wanted(*this)` holds or the time is over; the lock is held while it looks.
     template <typename Wanted>
     bool wait(milliseconds time, Wanted&& wanted) {
@@ -119,7 +127,9 @@ public:
     bool has_config() const { return progress_.config.has_value(); }
     bool enough() const { return enough_; }
     const std::optional<Error>& storage_error() const { return storage_error_; }
-    const std::vector<glp_reply>& replies() const { return replies_; }
+    const std::optional<glp_reply>& reply() const { return reply_; }  // to what expect_reply() named
+    // How long bytes have been coming that are no frames, by the times of their arrival.
+    double frameless_s() const { return frameless_s_; }
 
     CaptureProgress progress() const {
         const std::lock_guard lock(mutex_);
@@ -145,7 +155,15 @@ private:
             }
         }
         if (transfer.carries_stream()) { bytes_since_checkpoint_ += transfer.data.size(); }
-        if (decoder_.take(transfer)) {
+        const std::uint64_t frames_before = decoder_.intact_frames();
+        const bool begins_anew = decoder_.take(transfer);
+        if (decoder_.intact_frames() != frames_before || begins_anew) {
+            last_frame_ns_ = transfer.time.monotonic_ns;
+        }
+        if (transfer.carries_stream() && !transfer.data.empty()) {
+            last_data_ns_ = transfer.time.monotonic_ns;
+        }
+        if (begins_anew) {
             started_ = true;
             instants_ = 0;
             next_index_.reset();
@@ -189,7 +207,7 @@ private:
         progress_.dropouts = link.dropouts.size() + link.dropouts_unlisted;
         progress_.frames_corrupted = link.frames.corrupted;
         progress_.file_bytes = writer_.bytes_written();
-        progress_.rate_hz = decoder_.rate_hz();
+        progress_.rate_hz = plausible_rate_hz();
         progress_.hello = decoder_.hello();
         progress_.config = decoder_.config();
         if (latest_ && progress_.config) {
@@ -198,12 +216,20 @@ private:
         }
         if (progress_.rate_hz) { progress_.device_s = static_cast<double>(instants_) / *progress_.rate_hz; }
         line_was_raised_ = started_;
-        replies_.insert(replies_.end(), new_replies_.begin(), new_replies_.end());
-        new_replies_.clear();
+        if (last_frame_ns_) { frameless_s_ = static_cast<double>(last_data_ns_ - *last_frame_ns_) * 1e-9; }
         enough_ = (request_.samples && instants_ >= *request_.samples) ||
                   (request_.duration_s && progress_.rate_hz &&
                    static_cast<double>(instants_) >= *request_.duration_s * *progress_.rate_hz);
         changed_.notify_all();
+    }
+
+    // By the stamps, unless they say what no sensor's clock is off by: an index or a tick has gone wrong
+    // then.
+    std::optional<double> plausible_rate_hz() const {
+        const std::optional<double> rate_hz = decoder_.rate_hz();
+        if (!rate_hz || !decoder_.config()) { return rate_hz; }
+        const double nominal_hz = decoder_.config()->rate_mHz * 1e-3;
+        return std::fabs(*rate_hz / nominal_hz - 1.0) <= clock_error_max ? *rate_hz : nominal_hz;
     }
 
     void on_samples(const ReceivedFrame& received, const glp_samples& samples) override {
@@ -211,14 +237,24 @@ private:
         latest_->samples = nullptr;
         const bool first = (received.frame.flags & glp_flag_first_after_start) != 0;
         const bool goes_on = next_index_ && !first && samples.first_index >= *next_index_;
-        instants_ += samples.count + (goes_on ? samples.first_index - *next_index_ : 0);
+        const std::uint64_t gap = goes_on ? samples.first_index - *next_index_ : 0;
+        // A gap that no board can have passed since its last samples is an index gone wrong, not time.
+        const double since_s = static_cast<double>(received.arrival.monotonic_ns - last_samples_ns_) * 1e-9;
+        instants_ += samples.count + (static_cast<double>(gap) <= fastest_hz * (since_s + slack_s) ? gap : 0);
         next_index_ = samples.first_index + samples.count;
+        last_samples_ns_ = received.arrival.monotonic_ns;
     }
     void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override {
-        if (new_replies_.size() < replies_kept) { new_replies_.push_back(reply); }
+        const std::lock_guard lock(mutex_);
+        if (reply.command_sequence == expected_.command_sequence &&
+            reply.command_type == expected_.command_type) {
+            reply_ = reply;
+        }
     }
 
-    static constexpr std::size_t replies_kept = 64;
+    static constexpr double fastest_hz = 33'000.0;  // of an MPU-9250, with its clock's error
+    static constexpr double clock_error_max = 0.25;
+    static constexpr double slack_s = 10.0;  // of what had waited on its way
 
     TransferQueue& queue_;
     const QueueingSink& sink_;
@@ -236,12 +272,16 @@ private:
     // capture.
     std::uint64_t instants_ = 0;
     std::optional<std::uint64_t> next_index_;
-    std::vector<glp_reply> new_replies_;
+    std::int64_t last_samples_ns_ = 0;
+    std::optional<std::int64_t> last_frame_ns_;
+    std::int64_t last_data_ns_ = 0;
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     CaptureProgress progress_;
-    std::vector<glp_reply> replies_;
+    glp_reply expected_{};
+    std::optional<glp_reply> reply_;
+    double frameless_s_ = 0.0;
     std::optional<Error> storage_error_;
     bool enough_ = false;
     bool line_was_raised_ = false;
@@ -315,15 +355,12 @@ private:
                               payload.size()};
         std::array<std::uint8_t, GLP_FRAME_WIRE_MAX> wire{};
         const glp_cobs_result encoded = glp_frame_encode(&frame, wire.data(), wire.size());
+        writer_.expect_reply(sequence_, frame.type);
         GYROLOG_CHECK(source_.write(ByteView(wire).first(encoded.size)));
         if (answer == Answer::not_awaited) { return {}; }
         std::optional<std::uint8_t> result;
         writer_.wait(reply_timeout, [&] {
-            for (const glp_reply& reply : writer_.replies()) {
-                if (reply.command_sequence == sequence_ && reply.command_type == type) {
-                    result = reply.result;
-                }
-            }
+            if (writer_.reply()) { result = writer_.reply()->result; }
             return result.has_value() || sink_.end().has_value();
         });
         if (!result) {
@@ -421,10 +458,13 @@ CaptureEnd stream_until_end(const ByteSource& source, WriterThread& writer, Queu
     while (true) {
         bool enough = false;
         bool refused = false;
+        bool frameless = false;
         writer.wait(progress_interval, [&] {
             enough = writer.enough();
             refused = writer.storage_error().has_value();
-            return enough || refused || sink.end().has_value();
+            // An old capture may hold any amount of noise; a device that is there may not.
+            frameless = !source.can_wait() && writer.frameless_s() > request.idle_timeout_s;
+            return enough || refused || frameless || sink.end().has_value();
         });
         CaptureProgress progress = writer.progress();
         progress.elapsed_s = seconds_since(start);
@@ -437,6 +477,13 @@ CaptureEnd stream_until_end(const ByteSource& source, WriterThread& writer, Queu
             return CaptureEnd::device_lost;
         }
         if (!go_on) { return CaptureEnd::interrupted; }
+        if (frameless) {
+            error = Error{
+                ErrorCode::device_lost,
+                fmt::format("{}: for {:g} s only bytes came that are no frames; `gyrolog conform` shows them",
+                            source.identity().uri, request.idle_timeout_s)};
+            return CaptureEnd::device_lost;
+        }
         if (sink.silence_s() > request.idle_timeout_s) {
             error = Error{ErrorCode::device_lost, fmt::format("{}: silent for {:g} s", source.identity().uri,
                                                               request.idle_timeout_s)};
