@@ -19,8 +19,6 @@ constexpr double wrap_min_s = 10.0;
 constexpr double rate_tolerance = 0.05;
 constexpr double step_tolerance_periods = 0.5;
 constexpr std::uint64_t fit_samples_min = 20;
-constexpr double clock_tolerance = 0.02;
-constexpr double arrival_spread_s = 0.3;
 
 bool tells_overflow(const TranscriptEntry& entry) {
     const auto event = event_in(entry);

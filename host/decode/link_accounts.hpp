@@ -66,10 +66,10 @@ struct LinkReport {
     std::vector<LinkDropout> dropouts;  // in order of arrival
     std::uint64_t dropouts_unlisted = 0;
     std::uint64_t frames_before_start = 0;  // intact, of a stream that ran before this host raised DTR
-    // HELLO frames that say other than the one before them within one boot. They are counted as corrupted, and
-    // used for nothing.
+    // HELLO frames that say other than the one before them within one boot. They are counted as corrupted,
+    // and used for nothing.
     std::uint64_t hellos_contradicting = 0;
-    std::uint64_t boots = 0;                // of the board, as far as the stream shows
+    std::uint64_t boots = 0;  // of the board, as far as the stream shows
     std::uint64_t runs = 0;
 
     bool complete() const { return frames.missing == 0 && samples.missing == 0; }
