@@ -105,7 +105,7 @@ private:
     // order
 
     Status settle() {
-        const Status lowered = probe_.set_line_state(false);
+        Status lowered = probe_.set_line_state(false);
         if (!lowered.ok() && lowered.error().code != ErrorCode::unsupported) { return lowered; }
         dialogue_.has_line = lowered.ok();
         // A board that a program before left streaming on a command stops on one. What an earlier listener
