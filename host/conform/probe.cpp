@@ -13,6 +13,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double reply_timeout_s = 1.0;
+// A virtual board answers at once, when this computer lets it.
+constexpr double held_up_timeout_s = 3.0;
 constexpr double held_up_limit_s = 3.0;  // what had been sent before is taken first: up to 1 s
 
 std::chrono::nanoseconds to_ns(double duration_s) {
@@ -56,7 +58,8 @@ bool Probe::await_reply(std::uint32_t number) {
         return found;
     };
     // A stream that goes on is no answer: the limit is by the clock of both.
-    return await(has_reply, reply_timeout_s, held_up_ ? held_up_limit_s : reply_timeout_s);
+    return await(has_reply, held_up_ ? held_up_timeout_s : reply_timeout_s,
+                 held_up_ ? held_up_limit_s : reply_timeout_s);
 }
 
 bool Probe::await(const std::function<bool(const Transcript&)>& enough, double longest_silence_s,
