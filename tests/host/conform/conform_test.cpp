@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -221,6 +222,48 @@ TEST(ConformHostile, StrangersAreJudgedInBoundedMemoryAndTime) {
     EXPECT_LE(endless->transcript.unended().size(), TranscriptEntry::bytes_kept);
     EXPECT_FALSE(judge(*endless).conforms());
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+// Intact frames whose payloads are anything: bytes turned round, cut short, made longer. REPLY is left alone,
+// so that the conversation goes on.
+void spoils_payloads(BreachedLine& line, RawFrame& frame) {
+    if (frame.type == glp_frame_reply) {
+        line.send(frame);
+        return;
+    }
+    if (!frame.payload.empty()) { line.noted += frame.payload.back(); }
+    line.noted = line.noted * 6364136223846793005U + 1442695040888963407U;
+    const std::uint64_t dice = line.noted >> 32U;
+    const std::size_t size = frame.payload.size();
+    if (dice % 4 == 0 && size > 0) {
+        frame.payload[(dice >> 8U) % size] ^= static_cast<std::uint8_t>(dice >> 20U);
+    }
+    if (dice % 16 == 1) { frame.payload.resize((dice >> 8U) % (size + 1)); }
+    if (dice % 16 == 2) {
+        frame.payload.resize(std::min<std::size_t>(GLP_FRAME_PAYLOAD_MAX, size + (dice >> 8U) % 64));
+    }
+    if (dice % 32 == 3) { frame.type = static_cast<std::uint8_t>(dice >> 8U); }
+    line.send(frame);
+}
+
+TEST(ConformHostile, PayloadsOfAnyKindAreJudgedAndNothingElseHappens) {
+    const Breach breach{"", "", "", spoils_payloads, nullptr, nullptr};
+    std::vector<std::future<void>> talks;
+    talks.reserve(8);
+    for (unsigned seed = 1; seed <= 8; ++seed) {
+        talks.push_back(std::async(std::launch::async, [&breach, seed] {
+            auto opened = open_source("sim:seed=" + std::to_string(seed), {}, false);
+            ASSERT_TRUE(opened.ok());
+            BreachedSource source(std::move(opened->source), breach);
+            const auto dialogue = converse(source, [] { return true; });
+            ASSERT_TRUE(dialogue.ok()) << dialogue.error().message;
+            const ConformanceReport report = judge(*dialogue);
+            EXPECT_FALSE(report.conforms());
+            EXPECT_NE(conform_json(report).dump(), "");
+            EXPECT_NE(transcript_text(*dialogue), "");
+        }));
+    }
+    for (auto& talk : talks) { talk.get(); }
 }
 
 TEST(ConformHostile, ABoardThatIsUnpluggedIsCalledLost) {
