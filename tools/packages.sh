@@ -5,7 +5,7 @@ packages_build="g++ cmake ninja-build pkg-config libusb-1.0-0-dev libeigen3-dev 
   libfreetype-dev libpng-dev libarchive-dev libmatio-dev fonts-dejavu-core"
 packages_test="libgtest-dev libgmock-dev zlib1g-dev libumockdev-dev umockdev tshark xz-utils python3 python3-numpy"
 packages_all="libbenchmark-dev clang clang-format clang-tidy libclang-rt-14-dev gcc-arm-none-eabi
-  qemu-system-x86 busybox-static kmod"
+  qemu-system-arm qemu-system-x86 busybox-static kmod"
 
 # install_packages NAME...: installs those that are missing, as root or through sudo; does nothing when all are there.
 install_packages() {

@@ -400,6 +400,10 @@ static void tell_setup(glp_board* self) {
         send_event(self, glp_event_sensor_fault, self->next_index, value, "");
     }
     self->setup_outcome = glp_mpu_ok;
+}
+
+static void tell_start(glp_board* self) {
+    tell_setup(self);
     if (self->streaming) { send_event(self, glp_event_started, 0, 0, ""); }
 }
 
@@ -499,7 +503,7 @@ void glp_board_on_line_state(glp_board* self, bool dtr) {
     glp_stream_init(&self->commands);
     start(self);
     introduce(self);
-    tell_setup(self);
+    tell_start(self);
 }
 
 // ------------------------------------------------------------------------------------------------- commands
@@ -541,7 +545,7 @@ static void on_configure(glp_board* self, const glp_frame* command) {
     if ((result == glp_result_ok) && was_streaming && !start(self)) { result = glp_result_sensor_fault; }
     send_reply(self, command, result);
     send_config(self);
-    tell_setup(self);
+    tell_start(self);
 }
 
 static void on_start(glp_board* self, const glp_frame* command) {
@@ -552,7 +556,7 @@ static void on_start(glp_board* self, const glp_frame* command) {
     const bool started = start(self);
     send_reply(self, command, started ? glp_result_ok : glp_result_sensor_fault);
     introduce(self);
-    tell_setup(self);
+    tell_start(self);
 }
 
 static void on_command(glp_board* self, const glp_frame* command) {

@@ -50,6 +50,12 @@ void sum_up(Console& console, const CaptureOutcome& outcome, const LinkReport& l
             "  in {} files, {} to {}: every command takes them all by the first one's name\n",
             outcome.paths.size(), outcome.paths.front(), outcome.paths.back());
     }
+    if (link.hellos_contradicting > 0) {
+        console.err << fmt::format(
+            "  the board contradicted itself {} times about its clock or its number: its first word holds; "
+            "`gyrolog conform` shows more\n",
+            link.hellos_contradicting);
+    }
     if (outcome.transfers_dropped > 0) {
         console.err << fmt::format(
             "  {} transfers ({}) found the queue full and were lost on this computer\n",

@@ -28,6 +28,7 @@ Action setup_analyze(CLI::App& app);
 Action setup_capture(CLI::App& app);
 Action setup_check(CLI::App& app);
 Action setup_compare(CLI::App& app);
+Action setup_conform(CLI::App& app);
 Action setup_denoise(CLI::App& app);
 Action setup_diagnose(CLI::App& app);
 Action setup_export(CLI::App& app);

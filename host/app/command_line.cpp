@@ -18,6 +18,7 @@ constexpr std::array commands{
     Command{"analyze", "Work out Allan deviation, noise coefficients and bias", setup_analyze},
     Command{"compare", "Hold a recording against a model's simulations, or against another one",
             setup_compare},
+    Command{"conform", "Judge a board by the numbered rules of the protocol", setup_conform},
     Command{"diagnose", "Find what a model lacks: where it parts from a recording, and why", setup_diagnose},
     Command{"denoise", "Combine an array of gyros and take noise out, sample by sample", setup_denoise},
     Command{"simulate", "Make a recording of a simulated sensor", setup_simulate},

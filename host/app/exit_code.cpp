@@ -23,4 +23,16 @@ ExitCode exit_code_of(const Error& error) {
     return ExitCode::failed;
 }
 
+ExitCode exit_code_of_opening(const Error& error) {
+    switch (error.code) {
+        case ErrorCode::not_found:
+        case ErrorCode::permission_denied:
+        case ErrorCode::busy:
+        case ErrorCode::timeout:
+            return ExitCode::no_device;
+        default:
+            return exit_code_of(error);
+    }
+}
+
 }  // namespace gyrolog

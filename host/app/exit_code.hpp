@@ -17,5 +17,8 @@ enum class ExitCode : int {
 };
 
 ExitCode exit_code_of(const Error& error);
+// The same while a device is being opened: one that cannot be had, for whatever reason, is "no device" to a
+// script.
+ExitCode exit_code_of_opening(const Error& error);
 
 }  // namespace gyrolog

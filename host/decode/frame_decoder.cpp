@@ -1,5 +1,7 @@
 #include "host/decode/frame_decoder.hpp"
 
+#include <algorithm>
+
 namespace gyrolog {
 namespace {
 
@@ -35,13 +37,28 @@ glp_status deliver_by_type(const ReceivedFrame& received, MessageHandler& handle
 
 }  // namespace
 
+// How many of the bytes to take at once: at the head up to the first delimiter, so that what it ends is
+// judged by itself.
+std::size_t FrameDecoder::head_of(ByteView bytes) {
+    if (!at_head_) { return bytes.size(); }
+    const auto delimiter = std::find(bytes.begin(), bytes.end(), std::uint8_t{0});
+    if (delimiter == bytes.end()) { return bytes.size(); }
+    at_head_ = false;
+    return static_cast<std::size_t>(delimiter - bytes.begin()) + 1;
+}
+
 void FrameDecoder::feed(ByteView bytes, HostTime arrival, MessageHandler& handler) {
     while (!bytes.empty()) {
         ReceivedFrame received{{}, arrival};
         bool have_frame = false;
+        const bool was_at_head = at_head_;
+        const std::size_t offered = head_of(bytes);
         const std::size_t taken =
-            glp_stream_push(&stream_, bytes.data(), bytes.size(), &received.frame, &have_frame);
+            glp_stream_push(&stream_, bytes.data(), offered, &received.frame, &have_frame);
         bytes = bytes.subspan(taken);
+        if (was_at_head && !at_head_) {
+            std::copy_n(stream_.rejected, rejected_at_head_.size(), rejected_at_head_.begin());
+        }
         if (have_frame) { deliver(received, handler); }
     }
 }

@@ -60,15 +60,22 @@ public:
     std::uint64_t bytes_skipped_at_head() const;
     std::uint64_t intact_frames() const { return stream_.frames; }
     // Candidates that were no intact frame, by glp_status, and intact frames with a malformed payload.
-    const std::uint64_t* rejected() const { return stream_.rejected; }
+    // Half a frame at the head of a stream that was joined in its middle is none of them: it came whole to
+    // somebody else.
+    std::uint64_t rejected(std::size_t reason) const {
+        return stream_.rejected[reason] - rejected_at_head_[reason];
+    }
     const std::array<std::uint64_t, glp_status_count>& malformed() const { return malformed_; }
 
 private:
     void deliver(const ReceivedFrame& received, MessageHandler& handler);
+    std::size_t head_of(ByteView bytes);
 
     glp_stream stream_;
     std::array<std::uint64_t, glp_status_count> malformed_{};
     std::uint64_t skipped_at_head_ = 0;
+    bool at_head_ = true;  // no delimiter has come yet
+    std::array<std::uint64_t, glp_status_count> rejected_at_head_{};
 };
 
 }  // namespace gyrolog

@@ -274,7 +274,7 @@ LinkReport LinkAccounts::report(const FrameDecoder& decoder) const {
     report.frames = frames_;
     report.frames.missing += frames_before_hello_;
     for (std::size_t reason = 0; reason < glp_status_count; ++reason) {
-        report.frames.corrupted_by_reason[reason] = decoder.rejected()[reason] + decoder.malformed()[reason];
+        report.frames.corrupted_by_reason[reason] = decoder.rejected(reason) + decoder.malformed()[reason];
         report.frames.corrupted += report.frames.corrupted_by_reason[reason];
     }
     report.frames.good = intact_ - frames_.duplicated - malformed_;

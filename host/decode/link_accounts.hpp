@@ -80,7 +80,10 @@ struct LinkReport {
     std::vector<LinkJoin> joins;  // each is a dropout, too, as soon as the clocks say of how many samples
     std::uint64_t samples_in_joins = 0;     // of the missing ones
     std::uint64_t frames_before_start = 0;  // intact, of a stream that ran before this host raised DTR
-    std::uint64_t boots = 0;                // of the board, as far as the stream shows
+    // HELLO frames that say other than the one before them within one boot. They are counted as corrupted,
+    // and used for nothing.
+    std::uint64_t hellos_contradicting = 0;
+    std::uint64_t boots = 0;  // of the board, as far as the stream shows
     std::uint64_t runs = 0;
 
     bool complete() const { return frames.missing == 0 && samples.missing == 0 && joins.empty(); }

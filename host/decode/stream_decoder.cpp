@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <gyrolog_protocol/usb_identity.h>
 
@@ -14,6 +15,14 @@ bool raises_line(const Transfer& transfer) {
     return transfer.event == Transfer::Event::submission && transfer.kind == TransferKind::control &&
            transfer.setup[0] == 0x21 && transfer.setup[1] == GLP_CDC_SET_CONTROL_LINE_STATE &&
            (transfer.setup[2] & GLP_CDC_LINE_DTR) != 0;
+}
+
+// What cannot change within one boot. The sensor may: one that did not answer may answer later.
+bool contradicts(const glp_hello& told, const glp_hello& now) {
+    return told.boot_id == now.boot_id &&
+           (told.tick_hz != now.tick_hz || told.tick_bits != now.tick_bits ||
+            told.protocol_major != now.protocol_major ||
+            !std::equal(std::begin(told.uid), std::end(told.uid), std::begin(now.uid)));
 }
 
 }  // namespace
@@ -70,7 +79,11 @@ void StreamDecoder::enter_joins(LinkReport& report) const {
 LinkReport StreamDecoder::report() const {
     LinkReport report = accounts_.report(frames_);
     enter_joins(report);
+    report.hellos_contradicting = hellos_contradicting_;
+    report.frames.corrupted += hellos_contradicting_;
+    report.frames.corrupted_by_reason[glp_status_bad_value] += hellos_contradicting_;
     if (before_start_) {
+        report.hellos_contradicting -= before_start_->hellos_contradicting;
         report.frames_before_start = before_start_->frames.good;
         report.frames.corrupted -= before_start_->frames.corrupted;
         for (std::size_t reason = 0; reason < report.frames.corrupted_by_reason.size(); ++reason) {
@@ -81,6 +94,10 @@ LinkReport StreamDecoder::report() const {
 }
 
 void StreamDecoder::on_hello(const ReceivedFrame& frame, const glp_hello& hello) {
+    if (hello_ && contradicts(*hello_, hello)) {
+        if (accounts_.take_malformed(frame.frame)) { ++hellos_contradicting_; }
+        return;
+    }
     if (!accounts_.take_hello(frame.frame, hello)) { return; }
     hello_ = hello;
     timeline_.take_hello(hello);

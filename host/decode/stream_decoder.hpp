@@ -46,6 +46,7 @@ public:
     const SampleTimeline& timeline() const { return timeline_; }
     // As last told by the board, over whatever connection.
     const std::optional<glp_hello>& hello() const { return hello_; }
+    std::uint64_t intact_frames() const { return frames_.intact_frames(); }
     const std::optional<glp_config>& config() const { return config_; }
     const std::optional<glp_device_status>& device_status() const { return status_; }
     // The sensor's rate in the present run: by the stamps, or nominal before there are enough of them.
@@ -82,6 +83,7 @@ private:
     std::optional<glp_config> config_;
     std::optional<glp_device_status> status_;
     std::uint32_t run_ = 0;
+    std::uint64_t hellos_contradicting_ = 0;
     std::optional<LinkReport> before_start_;
     unsigned connections_ = 1;
     bool line_raised_ = false;  // in the present connection

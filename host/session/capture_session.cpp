@@ -117,8 +117,16 @@ public:
         hello_came_ = false;
         config_came_ = false;
         next_index_.reset();
+        last_frame_ns_.reset();
+        frameless_s_ = 0.0;
         publish();
         thread_ = std::thread([this] { run(); });
+    }
+    // Before the command is sent. Other replies are not kept: a device may send any number of them.
+    void expect_reply(std::uint32_t sequence, std::uint8_t type) {
+        const std::lock_guard lock(mutex_);
+        expected_ = {sequence, type, 0};
+        reply_.reset();
     }
 
     // Waits until `wanted(*this)` holds or the time is over; the lock is held while it looks.
@@ -133,7 +141,9 @@ public:
     bool has_config() const { return has_config_; }
     bool enough() const { return enough_; }
     const std::optional<Error>& storage_error() const { return storage_error_; }
-    const std::vector<glp_reply>& replies() const { return replies_; }
+    const std::optional<glp_reply>& reply() const { return reply_; }  // to what expect_reply() named
+    // How long bytes have been coming that are no frames, by the times of their arrival.
+    double frameless_s() const { return frameless_s_; }
 
     CaptureProgress progress() const {
         const std::lock_guard lock(mutex_);
@@ -173,7 +183,15 @@ private:
             }
         }
         if (transfer.carries_stream()) { bytes_since_checkpoint_ += transfer.data.size(); }
-        if (decoder_.take(transfer)) {
+        const std::uint64_t frames_before = decoder_.intact_frames();
+        const bool begins_anew = decoder_.take(transfer);
+        if (decoder_.intact_frames() != frames_before || begins_anew) {
+            last_frame_ns_ = transfer.time.monotonic_ns;
+        }
+        if (transfer.carries_stream() && !transfer.data.empty()) {
+            last_data_ns_ = transfer.time.monotonic_ns;
+        }
+        if (begins_anew) {
             started_ = true;
             hello_came_ = false;
             config_came_ = false;
@@ -225,7 +243,7 @@ private:
         progress_.file_bytes = writer_.bytes_written();
         progress_.path = writer_.paths().back();
         progress_.marks = marks_;
-        progress_.rate_hz = decoder_.rate_hz();
+        progress_.rate_hz = plausible_rate_hz();
         progress_.hello = decoder_.hello();
         progress_.config = decoder_.config();
         if (latest_ && progress_.config) {
@@ -237,8 +255,7 @@ private:
         line_was_raised_ = started_;
         has_hello_ = hello_came_;
         has_config_ = config_came_;
-        replies_.insert(replies_.end(), new_replies_.begin(), new_replies_.end());
-        new_replies_.clear();
+        if (last_frame_ns_) { frameless_s_ = static_cast<double>(last_data_ns_ - *last_frame_ns_) * 1e-9; }
         enough_ = (request_.samples && instants >= *request_.samples) ||
                   (request_.duration_s && progress_.rate_hz &&
                    static_cast<double>(instants) >= *request_.duration_s * *progress_.rate_hz);
@@ -249,22 +266,41 @@ private:
     void on_config(const ReceivedFrame& /*frame*/, const glp_config& /*config*/) override {
         config_came_ = true;
     }
+    // By the stamps, unless they say what no sensor's clock is off by: an index or a tick has gone wrong
+    // then.
+    std::optional<double> plausible_rate_hz() const {
+        const std::optional<double> rate_hz = decoder_.rate_hz();
+        if (!rate_hz || !decoder_.config()) { return rate_hz; }
+        const double nominal_hz = decoder_.config()->rate_mHz * 1e-3;
+        return std::fabs(*rate_hz / nominal_hz - 1.0) <= clock_error_max ? *rate_hz : nominal_hz;
+    }
+
     void on_samples(const ReceivedFrame& received, const glp_samples& samples) override {
         latest_ = samples;
         latest_->samples = nullptr;
         const bool first = (received.frame.flags & glp_flag_first_after_start) != 0;
         const bool goes_on = next_index_ && !first && samples.first_index >= *next_index_;
-        instants_ += samples.count + (goes_on ? samples.first_index - *next_index_ : 0);
+        const std::uint64_t gap = goes_on ? samples.first_index - *next_index_ : 0;
+        // A gap that no board can have passed since its last samples is an index gone wrong, not time.
+        const double since_s = static_cast<double>(received.arrival.monotonic_ns - last_samples_ns_) * 1e-9;
+        instants_ += samples.count + (static_cast<double>(gap) <= fastest_hz * (since_s + slack_s) ? gap : 0);
         next_index_ = samples.first_index + samples.count;
         if (request_.observer != nullptr && decoder_.config()) {
             request_.observer->on_samples(received.frame, samples, *decoder_.config());
         }
+        last_samples_ns_ = received.arrival.monotonic_ns;
     }
     void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override {
-        if (new_replies_.size() < replies_kept) { new_replies_.push_back(reply); }
+        const std::lock_guard lock(mutex_);
+        if (reply.command_sequence == expected_.command_sequence &&
+            reply.command_type == expected_.command_type) {
+            reply_ = reply;
+        }
     }
 
-    static constexpr std::size_t replies_kept = 64;
+    static constexpr double fastest_hz = 33'000.0;  // of an MPU-9250, with its clock's error
+    static constexpr double clock_error_max = 0.25;
+    static constexpr double slack_s = 10.0;  // of what had waited on its way
 
     TransferQueue& queue_;
     const QueueingSink& sink_;
@@ -286,12 +322,16 @@ private:
     // capture.
     std::uint64_t instants_ = 0;
     std::optional<std::uint64_t> next_index_;
-    std::vector<glp_reply> new_replies_;
+    std::int64_t last_samples_ns_ = 0;
+    std::optional<std::int64_t> last_frame_ns_;
+    std::int64_t last_data_ns_ = 0;
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     CaptureProgress progress_;
-    std::vector<glp_reply> replies_;
+    glp_reply expected_{};
+    std::optional<glp_reply> reply_;
+    double frameless_s_ = 0.0;
     std::optional<Error> storage_error_;
     bool enough_ = false;
     bool line_was_raised_ = false;
@@ -378,15 +418,12 @@ private:
                               payload.size()};
         std::array<std::uint8_t, GLP_FRAME_WIRE_MAX> wire{};
         const glp_cobs_result encoded = glp_frame_encode(&frame, wire.data(), wire.size());
+        writer_.expect_reply(sequence_, frame.type);
         GYROLOG_CHECK(source_.write(ByteView(wire).first(encoded.size)));
         if (answer == Answer::not_awaited) { return {}; }
         std::optional<std::uint8_t> result;
         writer_.wait(reply_timeout, [&] {
-            for (const glp_reply& reply : writer_.replies()) {
-                if (reply.command_sequence == sequence_ && reply.command_type == type) {
-                    result = reply.result;
-                }
-            }
+            if (writer_.reply()) { result = writer_.reply()->result; }
             return result.has_value() || sink_.end().has_value();
         });
         if (!result) {
@@ -621,10 +658,13 @@ private:
         while (true) {
             bool enough = false;
             bool refused = false;
+            bool frameless = false;
             thread_.wait(progress_interval, [&] {
                 enough = thread_.enough();
                 refused = thread_.storage_error().has_value();
-                return enough || refused || sink_.end().has_value();
+                // An old capture may hold any amount of noise; a device that is there may not.
+                frameless = !source_.can_wait() && thread_.frameless_s() > request_.idle_timeout_s;
+                return enough || refused || frameless || sink_.end().has_value();
             });
             const bool go_on = observe_(progress());
             if (refused) { return end(CaptureEnd::storage_failed); }
@@ -635,6 +675,14 @@ private:
                 return end(done ? CaptureEnd::complete : CaptureEnd::device_lost);
             }
             if (!go_on) { return end(CaptureEnd::interrupted); }
+            if (frameless) {
+                outcome_.error = Error{
+                    ErrorCode::device_lost,
+                    fmt::format(
+                        "{}: for {:g} s only bytes came that are no frames; `gyrolog conform` shows them",
+                        source_.identity().uri, request_.idle_timeout_s)};
+                return end(CaptureEnd::device_lost);
+            }
             if (Status obeyed = obey(); !obeyed.ok()) {
                 outcome_.error = std::move(obeyed).error();
                 return end(CaptureEnd::device_lost);

@@ -5,6 +5,7 @@
 #include "host/transport/source_uri.hpp"
 #include "host/transport/tty_source.hpp"
 #include "host/transport/usb_source.hpp"
+#include "host/virtual_board/breached_source.hpp"
 #include "host/virtual_board/sim_source.hpp"
 
 namespace gyrolog {
@@ -44,7 +45,12 @@ Opened open_simulated(const SourceUri& uri, const SourceLimit& limit, bool real_
         if (!read.ok()) { return file_error(std::move(read).error()); }
         model = std::move(read).value();
     }
-    return opened(SimSource::create(options, model, {limit.samples, limit.duration_s}), true);
+    GYROLOG_TRY(std::unique_ptr<ByteSource> board,
+                SimSource::create(options, model, {limit.samples, limit.duration_s}));
+    if (const Breach* breach = breach_named(options.breach)) {
+        board = std::make_unique<BreachedSource>(std::move(board), *breach);
+    }
+    return OpenedSource{std::move(board), true};
 }
 
 }  // namespace

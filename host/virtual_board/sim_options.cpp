@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "firmware_protocol/device/board.h"
+#include "host/virtual_board/breached_source.hpp"
 
 namespace gyrolog {
 
@@ -110,6 +111,16 @@ Status set_fault(SimOptions& to, BoardFault::Kind kind, std::string_view key, st
     return {};
 }
 
+Status set_breach(SimOptions& to, std::string_view key, std::string_view value) {
+    if (breach_named(value) == nullptr) {
+        std::string names;
+        for (const Breach& breach : breaches()) { names.append(" ").append(breach.name); }
+        return refused(key, value, "there is no such breach; there are" + names);
+    }
+    to.breach = value;
+    return {};
+}
+
 Status set_option(SimOptions& to, std::string_view key, std::string_view value) {
     constexpr std::uint32_t any_32 = std::numeric_limits<std::uint32_t>::max();
     constexpr std::uint64_t any_64 = std::numeric_limits<std::uint64_t>::max();
@@ -166,6 +177,7 @@ Status set_option(SimOptions& to, std::string_view key, std::string_view value) 
                           "wants at least " + std::to_string(GLP_BOARD_RING_MIN) + " bytes");
     }
     if (key == "fault") { return parse_faults(value, to.faults); }
+    if (key == "breach") { return set_breach(to, key, value); }
     if (key == "unplug") { return set_fault(to, BoardFault::Kind::unplug, key, value); }
     if (key == "reset") { return set_fault(to, BoardFault::Kind::reset, key, value); }
     if (key == "replug") {
@@ -179,7 +191,7 @@ Status set_option(SimOptions& to, std::string_view key, std::string_view value) 
     return refused(
         key, value,
         "there is no such option; there are model rate full_scale dlpf seed boards board realtime clock_ppm "
-        "first_tick first_sequence boot_id ring fault unplug replug reset self_powered");
+        "first_tick first_sequence boot_id ring fault unplug replug reset self_powered breach");
 }
 
 // Of the last cable that is pulled for good.

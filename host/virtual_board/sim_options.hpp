@@ -30,6 +30,7 @@ namespace gyrolog {
 //   unplug@FROM..TO
 //                    kinds: fifo_overflow bus_error link_stall drop_packet duplicate_packet corrupt_byte
 //                    reset unplug
+//   breach=NAME      break one rule of the protocol (breaches.cpp): for trying `gyrolog conform`
 //   unplug=SECONDS, reset=SECONDS          the same as fault=unplug@SECONDS, fault=reset@SECONDS
 //   replug=SECONDS   when the cable that unplug= pulled is back; without it the board is gone for good
 //   self_powered=1   the board keeps its memory while it is unplugged; otherwise it boots anew
@@ -50,7 +51,8 @@ struct SimOptions {
     std::vector<BoardFault> faults;
     std::optional<double> replug_s;  // as typed; already in `faults`
     bool self_powered = false;
-    std::string text;  // as typed, without boards= and board=
+    std::string breach;  // of breaches(); empty for an honest board
+    std::string text;    // as typed, without boards= and board=
 };
 
 // Error `invalid_argument` names the option and what it may be.

@@ -95,5 +95,25 @@ TEST(CommandLine, AMissingTtyIsNoDevice) {
     EXPECT_NE(result.err.find("/dev/no_such_tty"), std::string::npos) << result.err;
 }
 
+TEST(CommandLine, ConformTellsABoardThatKeepsTheRulesFromOneThatDoesNot) {
+    const ProgramResult good = run_gyrolog({"conform", "--device", "sim:"});
+    EXPECT_EQ(good.exit_code, 0) << good.out;
+    EXPECT_NE(good.out.find("conforms: "), std::string::npos) << good.out;
+    const ProgramResult bad = run_gyrolog({"conform", "--device", "sim:breach=checksum", "--json", "-"});
+    EXPECT_EQ(bad.exit_code, 7) << bad.err;
+    const json answer = json::parse(bad.out);
+    EXPECT_EQ(answer["schema"], "gyrolog-conform/1");
+    EXPECT_EQ(answer["conforms"], false);
+    EXPECT_EQ(answer["failed"], 1);
+}
+
+TEST(CommandLine, ConformWithoutADeviceThatAnswersGivesNoVerdict) {
+    EXPECT_EQ(run_gyrolog({"conform", "--device", "tty:/dev/no_such_tty"}).exit_code, 3);
+    EXPECT_EQ(run_gyrolog({"conform", "--device", "sim:unplug=2"}).exit_code, 4);
+    const ProgramResult unknown = run_gyrolog({"conform", "--device", "sim:breach=nothing"});
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_NE(unknown.err.find("checksum"), std::string::npos) << "the breaches there are: " << unknown.err;
+}
+
 }  // namespace
 }  // namespace gyrolog

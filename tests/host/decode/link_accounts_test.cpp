@@ -265,6 +265,7 @@ TEST(LinkAccounts, JoiningARunningStreamMissesNothing) {
     const LinkReport report = link.decoder.report();
     EXPECT_TRUE(report.complete());
     EXPECT_EQ(report.bytes_skipped_at_head, report.bytes.skipped);
+    EXPECT_EQ(report.frames.corrupted, 0U);
     EXPECT_EQ(report.samples.good, 80U);
 }
 

@@ -14,6 +14,7 @@
 #include "host/capture/capture_reader.hpp"
 #include "host/session/load_capture.hpp"
 #include "host/transport/replay_source.hpp"
+#include "host/virtual_board/breached_source.hpp"
 #include "tests/host/session/board_source.hpp"
 #include "tests/support/program.hpp"
 
@@ -378,6 +379,100 @@ TEST_F(CaptureSession, FullQueueHoldsUpASourceThatCanWait) {
     EXPECT_EQ(outcome->transfers_dropped, 0U);
     EXPECT_FALSE(outcome->data_lost());
     EXPECT_EQ(stored_stream(request_.path), source->delivered());
+}
+
+// ------------------------------------------------------------------------------------------ hostile devices
+
+// The board of `manner`, with what it says tampered with on the way.
+std::unique_ptr<ByteSource> tampered(const SourceManner& manner, const Breach& breach) {
+    return std::make_unique<BreachedSource>(BoardSource::create(manner), breach);
+}
+
+constexpr Breach frames_by(void (*hook)(BreachedLine&, RawFrame&)) {
+    return {"", "", "", hook, nullptr, nullptr};
+}
+
+// The first HELLO says 1 MHz; all the time others follow, which say 2 MHz.
+void changes_its_mind(BreachedLine& line, RawFrame& frame) {
+    if (frame.type == glp_frame_hello) { line.kept = frame; }
+    line.send(frame);
+    if (frame.type != glp_frame_samples || !line.kept) { return; }
+    RawFrame other = *line.kept;
+    other.payload[4] = 0x80;  // 2'000'000 = 1e8480
+    other.payload[5] = 0x84;
+    other.payload[6] = 0x1E;
+    line.send(other);
+}
+
+TEST_F(CaptureSession, TheFirstWordOfABoardThatContradictsItselfHolds) {
+    const Breach breach = frames_by(changes_its_mind);
+    const auto source = tampered({}, breach);
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_GT(outcome->link.hellos_contradicting, 10U);
+    EXPECT_EQ(outcome->link.frames.corrupted, outcome->link.hellos_contradicting);
+    EXPECT_EQ(outcome->link.samples.missing, 0U);
+    EXPECT_EQ(outcome->progress.hello->tick_hz, 1'000'000U);
+    EXPECT_NEAR(*outcome->progress.rate_hz, 1000.0, 20.0);
+}
+
+void floods_replies(BreachedLine& line, RawFrame& frame) {
+    RawFrame reply{.type = glp_frame_reply, .payload = Bytes(8, 0)};
+    for (unsigned i = 0; i < 300; ++i) {
+        reply.payload[0] = static_cast<std::uint8_t>(i);
+        reply.payload[4] = glp_frame_get_status;
+        line.send(reply);
+    }
+    line.send(frame);
+}
+
+TEST_F(CaptureSession, AnAnswerIsFoundAmongAFloodOfOthers) {
+    const Breach breach = frames_by(floods_replies);
+    const auto source = tampered({.has_line = false}, breach);
+    request_.configure.rate_mHz = 500'000;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_EQ(outcome->progress.config->rate_mHz, 500'000U);
+    EXPECT_EQ(outcome->link.samples.missing, 0U);
+}
+
+void turns_to_noise(BreachedLine& line, RawFrame& frame) {
+    if (++line.noted < 40) {
+        line.send(frame);
+    } else {
+        line.send_bytes(Bytes(500, static_cast<std::uint8_t>(line.noted % 7)));
+    }
+}
+
+TEST_F(CaptureSession, NoiseWithoutEndIsALostDeviceAndNotACapture) {
+    const Breach breach = frames_by(turns_to_noise);
+    const auto source = tampered({}, breach);
+    request_.duration_s = 3600.0;
+    request_.idle_timeout_s = 0.3;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::device_lost);
+    EXPECT_NE(outcome->error->message.find("bytes came that are no frames"), std::string::npos)
+        << outcome->error->message;
+    EXPECT_EQ(loaded().decoder->report().samples.good, outcome->link.samples.good);
+}
+
+void index_goes_astray(BreachedLine& line, RawFrame& frame) {
+    if (frame.type == glp_frame_samples && ++line.noted > 5) { frame.payload[12] = 0x40; }  // 2^38
+    line.send(frame);
+}
+
+TEST_F(CaptureSession, AnIndexGoneWrongIsNotTakenForTimeThatHasPassed) {
+    const Breach breach = frames_by(index_goes_astray);
+    const auto source = tampered({}, breach);
+    request_.duration_s = 2.0;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_GE(outcome->link.samples.good, 1900U);
+    EXPECT_TRUE(outcome->data_lost());
 }
 
 }  // namespace

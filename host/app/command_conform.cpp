@@ -1,0 +1,73 @@
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "host/app/command.hpp"
+#include "host/app/result_output.hpp"
+#include "host/conform/conformance.hpp"
+#include "host/conform/conversation.hpp"
+#include "host/formats/conform_report.hpp"
+#include "host/session/open_source.hpp"
+
+namespace gyrolog {
+namespace {
+
+struct Options {
+    std::string device = "usb:";
+    std::string json;
+    std::string transcript;
+};
+
+ExitCode fail_to_open(Console& console, const Error& error) {
+    report_error(console, "conform", error);
+    return exit_code_of_opening(error);
+}
+
+ExitCode conform(Console& console, const Options& options) {
+    auto opened = open_source(options.device, {}, false);
+    if (!opened.ok()) { return fail_to_open(console, opened.error()); }
+    console.err << "gyrolog conform: talking to " << opened->source->identity().uri
+                << " for about ten seconds\n";
+    const auto dialogue = converse(*opened->source, [&] { return !console.stop_wanted(); });
+    if (!dialogue.ok()) {
+        if (dialogue.error().code == ErrorCode::unsupported) {
+            report_error(
+                console, "conform",
+                {ErrorCode::invalid_argument,
+                 dialogue.error().message + "; conform wants a device that answers: usb:, tty:PATH or sim:"});
+            return ExitCode::usage;
+        }
+        return fail_to_open(console, dialogue.error());
+    }
+    const ConformanceReport report = judge(*dialogue);
+    if (!options.transcript.empty()) {
+        if (const Status written = write_text(console, options.transcript, transcript_text(*dialogue));
+            !written.ok()) {
+            return report_error(console, "conform", written.error());
+        }
+    }
+    if (!options.json.empty()) {
+        if (const Status written = write_json(console, options.json, conform_json(report)); !written.ok()) {
+            return report_error(console, "conform", written.error());
+        }
+    }
+    if (options.json != "-") { console.out << conform_text(report); }
+    return report.conforms() ? ExitCode::ok : ExitCode::not_conforming;
+}
+
+}  // namespace
+
+Action setup_conform(CLI::App& app) {
+    auto options = std::make_shared<Options>();
+    app.add_option("--device", options->device,
+                   "usb: (the only board), usb:SERIAL, tty:PATH or sim:KEY=VALUE,...")
+        ->type_name("URI")
+        ->capture_default_str();
+    app.add_option("--json", options->json, "Write the verdicts as JSON to FILE (- for standard output)")
+        ->type_name("FILE");
+    app.add_option("--transcript", options->transcript, "Write the whole conversation with its bytes to FILE")
+        ->type_name("FILE");
+    return [options](Console& console) { return conform(console, *options); };
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,117 @@
+#include <array>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gyrolog_protocol/usb_identity.h>
+
+#include "host/conform/rule.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint8_t descriptor_interface = 4;  // USB 2.0, table 9-5
+constexpr std::uint8_t descriptor_endpoint = 5;
+
+TranscriptEntry entry_of(const Bytes& bytes) {
+    TranscriptEntry entry;
+    entry.bytes = bytes;
+    return entry;
+}
+
+std::string hexadecimal(const std::uint8_t* bytes, std::size_t size) {
+    std::string text;
+    for (std::size_t i = 0; i < size; ++i) { text += fmt::format("{:02X}", bytes[i]); }
+    return text;
+}
+
+bool same_letters(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char one, char other) {
+               return (one | 0x20) == (other | 0x20);
+           });
+}
+
+Verdict identity(const Dialogue& dialogue) {
+    const SourceIdentity& board = dialogue.identity;
+    if (board.vendor_id == 0) { return not_tested("the line is not USB"); }
+    Findings findings;
+    findings.looked();
+    const bool known = board.vendor_id == GLP_USB_VENDOR_ID && board.product_id == GLP_USB_PRODUCT_ID;
+    const TranscriptEntry descriptor = entry_of(board.device_descriptor);
+    if (!known && !board.product.starts_with(GLP_USB_PRODUCT_PREFIX)) {
+        findings.wrong("1fc9:0083, or a product string that begins with gyrolog",
+                       fmt::format("{:04x}:{:04x} '{}'", board.vendor_id, board.product_id, board.product),
+                       &descriptor);
+    }
+    const auto hello = dialogue.hello();
+    if (dialogue.on_usb && hello) {
+        const std::string uid = hexadecimal(hello->uid, GLP_UID_BYTES);
+        if (!same_letters(board.serial, uid)) {
+            findings.wrong("the uid in hexadecimal as the serial string: " + uid, "'" + board.serial + "'",
+                           &descriptor);
+        }
+    }
+    return findings.verdict({});
+}
+
+struct Endpoint {
+    unsigned interface;
+    unsigned address;
+    unsigned transfer;  // 2 bulk, 3 interrupt
+    unsigned packet_bytes;
+};
+
+Verdict endpoints(const Dialogue& dialogue) {
+    const Bytes& bytes = dialogue.identity.configuration_descriptor;
+    if (bytes.empty()) { return not_tested("the line is not USB, or its descriptors are not to be had"); }
+    Findings findings;
+    findings.looked();
+    std::vector<Endpoint> found;
+    std::string classes;
+    unsigned interface = 0;
+    for (std::size_t at = 0; at + 2 <= bytes.size() && bytes[at] >= 2; at += bytes[at]) {
+        if (at + bytes[at] > bytes.size()) { break; }
+        if (bytes[at + 1] == descriptor_interface && bytes[at] >= 9) {
+            interface = bytes[at + 2];
+            classes += fmt::format("{}:{:02x}/{:02x} ", interface, bytes[at + 5], bytes[at + 6]);
+        } else if (bytes[at + 1] == descriptor_endpoint && bytes[at] >= 7) {
+            found.push_back(
+                {interface, bytes[at + 2], bytes[at + 3] & 3U, bytes[at + 4] | bytes[at + 5] * 256U});
+        }
+    }
+    const auto has = [&](unsigned of, unsigned address, unsigned transfer, unsigned least, unsigned most) {
+        for (const Endpoint& endpoint : found) {
+            if (endpoint.interface == of && endpoint.address == address && endpoint.transfer == transfer &&
+                endpoint.packet_bytes >= least && endpoint.packet_bytes <= most) {
+                return true;
+            }
+        }
+        return false;
+    };
+    const TranscriptEntry descriptor = entry_of(bytes);
+    std::string told;
+    for (const Endpoint& endpoint : found) {
+        told += fmt::format("{}:{:02x} kind {} {} bytes ", endpoint.interface, endpoint.address,
+                            endpoint.transfer, endpoint.packet_bytes);
+    }
+    if (classes.find("0:02/02") == std::string::npos || classes.find("1:0a/00") == std::string::npos) {
+        findings.wrong("interface 0 of class 02/02 and interface 1 of class 0a/00", classes, &descriptor);
+    } else if (!has(0, GLP_USB_ENDPOINT_NOTIFY, 3, 8, 64) || !has(1, GLP_USB_ENDPOINT_IN, 2, 64, 64) ||
+               !has(1, GLP_USB_ENDPOINT_OUT, 2, 64, 64)) {
+        findings.wrong(
+            "82 interrupt IN at interface 0, 81 bulk IN and 01 bulk OUT of 64 bytes at interface 1", told,
+            &descriptor);
+    }
+    return findings.verdict({});
+}
+
+constexpr std::array rules{
+    Rule{"10.1", "The device is known by its id or product, and its serial is its uid", identity},
+    Rule{"10.2", "Interfaces and endpoints are those of the table", endpoints},
+};
+
+}  // namespace
+
+std::span<const Rule> usb_rules() { return rules; }
+
+}  // namespace gyrolog

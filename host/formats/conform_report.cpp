@@ -1,0 +1,143 @@
+#include "host/formats/conform_report.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace gyrolog {
+namespace {
+
+constexpr std::size_t text_bytes_max = 96;
+
+const char* name_of(VerdictState state) {
+    switch (state) {
+        case VerdictState::pass:
+            return "pass";
+        case VerdictState::fail:
+            return "fail";
+        case VerdictState::not_tested:
+            break;
+    }
+    return "not_tested";
+}
+
+std::string hex(ByteView bytes) {
+    std::string text;
+    text.reserve(2 * bytes.size());
+    for (const std::uint8_t byte : bytes) { text += fmt::format("{:02x}", byte); }
+    return text;
+}
+
+std::string spaced_hex(const Bytes& bytes) {
+    std::string text;
+    for (const std::uint8_t byte : ByteView(bytes).first(std::min(bytes.size(), text_bytes_max))) {
+        text += fmt::format(" {:02x}", byte);
+    }
+    if (bytes.size() > text_bytes_max) { text += fmt::format(" ... ({} bytes)", bytes.size()); }
+    return text;
+}
+
+// A device may put any byte into its texts.
+std::string printable(std::string_view text) {
+    std::string clean;
+    for (const char c : text) { clean += c >= 0x20 && c < 0x7F ? c : '?'; }
+    return clean;
+}
+
+std::string words_of(const TranscriptEntry& entry) {
+    switch (entry.kind) {
+        case TranscriptEntry::Kind::line:
+            return entry.raised ? "DTR rises" : "DTR falls";
+        case TranscriptEntry::Kind::sent:
+            return "sent";
+        case TranscriptEntry::Kind::refused:
+            return fmt::format("refused {}", glp_status_name(entry.status));
+        case TranscriptEntry::Kind::frame:
+            break;
+    }
+    const char* problem = entry.status == glp_status_ok ? "" : glp_status_name(entry.status);
+    return fmt::format("{} {} flags {:04x} {}", name_of_type(entry.type), entry.sequence, entry.flags,
+                       problem);
+}
+
+}  // namespace
+
+std::string transcript_text(const Dialogue& dialogue) {
+    std::string text;
+    for (const TranscriptEntry& entry : dialogue.entries()) {
+        text += fmt::format("{:9.4f} s  {:<28} {}\n", entry.at_s, words_of(entry), hex(entry.bytes));
+    }
+    return text;
+}
+
+nlohmann::ordered_json conform_json(const ConformanceReport& report) {
+    auto rules = nlohmann::ordered_json::array();
+    for (const RuleVerdict& one : report.verdicts) {
+        const Verdict& verdict = one.verdict;
+        nlohmann::ordered_json rule = {
+            {"rule", one.rule->number}, {"title", one.rule->title}, {"verdict", name_of(verdict.state)}};
+        if (verdict.state == VerdictState::not_tested) { rule["why"] = verdict.expected; }
+        if (verdict.state == VerdictState::fail) {
+            rule["expected"] = verdict.expected;
+            rule["came"] = verdict.came;
+            rule["bytes"] = hex(verdict.bytes);
+            rule["at_s"] = verdict.at_s;
+            rule["times"] = verdict.times;
+        }
+        rules.push_back(std::move(rule));
+    }
+    nlohmann::ordered_json board;
+    if (report.hello) {
+        board = {{"firmware", printable(report.hello->firmware)},
+                 {"sensor", printable(report.hello->sensor)},
+                 {"uid", hex(report.hello->uid)},
+                 {"boot_id", report.hello->boot_id}};
+    }
+    return {{"schema", "gyrolog-conform/1"},
+            {"device", report.device},
+            {"board", board},
+            {"conforms", report.conforms()},
+            {"broken_off", report.broken_off},
+            {"passed", report.count(VerdictState::pass)},
+            {"failed", report.count(VerdictState::fail)},
+            {"not_tested", report.count(VerdictState::not_tested)},
+            {"rules", std::move(rules)}};
+}
+
+std::string conform_text(const ConformanceReport& report) {
+    std::string text = report.device;
+    if (report.hello) {
+        text += fmt::format(": {}, {}", printable(report.hello->firmware), printable(report.hello->sensor));
+    }
+    text += '\n';
+    for (const RuleVerdict& one : report.verdicts) {
+        const Verdict& verdict = one.verdict;
+        const char* word = verdict.state == VerdictState::pass   ? "pass"
+                           : verdict.state == VerdictState::fail ? "FAIL"
+                                                                 : "-";
+        text += fmt::format("{:<5} {:<4} {}\n", one.rule->number, word, one.rule->title);
+        if (verdict.state == VerdictState::not_tested) {
+            text += fmt::format("           not tested: {}\n", verdict.expected);
+        }
+        if (verdict.state != VerdictState::fail) { continue; }
+        text +=
+            fmt::format("           expected: {}\n           came:     {}\n", verdict.expected, verdict.came);
+        if (!verdict.bytes.empty()) {
+            text += fmt::format("           at {:.3f} s:{}\n", verdict.at_s, spaced_hex(verdict.bytes));
+        }
+        if (verdict.times > 1) {
+            text += fmt::format("           {} times; this is the first\n", verdict.times);
+        }
+    }
+    if (!report.broken_off.empty()) {
+        text += fmt::format("the conversation was broken off: {}\n", report.broken_off);
+    }
+    text += fmt::format("{}: {} rules pass, {} fail, {} not tested\n",
+                        report.conforms() ? "conforms" : "does not conform", report.count(VerdictState::pass),
+                        report.count(VerdictState::fail), report.count(VerdictState::not_tested));
+    return text;
+}
+
+}  // namespace gyrolog
