@@ -76,22 +76,6 @@ ExitCode exit_code_of(const CaptureOutcome& outcome) {
     return outcome.data_lost() ? ExitCode::data_lost : ExitCode::ok;
 }
 
-}  // namespace
-
-ExitCode exit_code_of_opening(const Error& error) {
-    switch (error.code) {
-        case ErrorCode::not_found:
-        case ErrorCode::permission_denied:
-        case ErrorCode::busy:
-        case ErrorCode::timeout:
-            return ExitCode::no_device;
-        default:
-            return gyrolog::exit_code_of(error);
-    }
-}
-
-namespace {
-
 // On a terminal: with the live view and its keys.
 Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, CaptureRequest request) {
     if (!console.progress) {

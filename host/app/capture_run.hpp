@@ -29,7 +29,4 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
 CaptureResult tell_outcome(Console& console, const char* command, const Result<CaptureOutcome>& outcome,
                            const std::string& path);
 
-// A board that cannot be opened, for whatever reason, is "no device" to a script.
-ExitCode exit_code_of_opening(const Error& error);
-
 }  // namespace gyrolog
