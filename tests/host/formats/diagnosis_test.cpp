@@ -351,7 +351,7 @@ TEST(DiagnosisText, SaysWhereWhatIsLeftLies) {
     diagnosis.left.axes = {1};
     diagnosis.left.freq_hz = Span{37.9, 38.1};
     EXPECT_THAT(diagnosis_text(diagnosis),
-                HasSubstr("by chance either (p < 1e-6): y axis, 37.9 Hz to 38.1 Hz."));
+                HasSubstr("by chance either (p < 1e-6): y axis,\n37.9 Hz to 38.1 Hz."));
     const json left = json::parse(diagnosis_json(diagnosis))["left"];
     EXPECT_EQ(left, json::parse(R"({"axes": ["y"], "freq_hz": [37.9, 38.1]})"));
 }
