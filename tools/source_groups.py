@@ -32,8 +32,9 @@ def tracked(*patterns):
 
 
 def groups_of(sources):
-    """Groups of C++ sources; one whose local types or values are also a header's is alone."""
-    of_headers = set().union(*(names(TYPES_AND_VALUES, (ROOT / header).read_text()) for header in tracked("*.hpp", "*.h")))
+    """Groups of C++ sources; one whose local types or values have a name that a header declares is alone."""
+    headers = "\n".join((ROOT / header).read_text() for header in tracked("*.hpp", "*.h"))
+    of_headers = names(TYPES_AND_VALUES, headers) | names(FUNCTIONS_AND_TESTS, headers)
     groups = []  # with their names
     alone = []
     for source in sources:

@@ -23,7 +23,7 @@ bool earlier(const char* a, const char* b) {
 
 }  // namespace
 
-std::size_t ConformanceReport::count(VerdictState state) const {
+std::size_t ConformanceReport::count(JudgementState state) const {
     return static_cast<std::size_t>(
         std::count_if(verdicts.begin(), verdicts.end(),
                       [&](const RuleVerdict& one) { return one.verdict.state == state; }));

@@ -11,7 +11,7 @@ namespace gyrolog {
 
 struct RuleVerdict {
     const Rule* rule;
-    Verdict verdict;
+    Judgement verdict;
 };
 
 struct ConformanceReport {
@@ -20,8 +20,8 @@ struct ConformanceReport {
     std::string broken_off;             // why the conversation ended early; empty when it did not
     std::vector<RuleVerdict> verdicts;  // in the order of the specification
 
-    std::size_t count(VerdictState state) const;
-    bool conforms() const { return count(VerdictState::fail) == 0 && count(VerdictState::pass) > 0; }
+    std::size_t count(JudgementState state) const;
+    bool conforms() const { return count(JudgementState::fail) == 0 && count(JudgementState::pass) > 0; }
 };
 
 ConformanceReport judge(const Dialogue& dialogue);

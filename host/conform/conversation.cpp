@@ -214,7 +214,7 @@ private:
         GYROLOG_CHECK(begin_run(Ask::start));
         const std::size_t begin = probe_.entry_count();
         GYROLOG_CHECK(stream_for(quiet_run_s, begin_of_run_));
-        dialogue_.quiet_run = Stretch{begin_of_run_, std::max(begin, probe_.entry_count())};
+        dialogue_.quiet_run = Passage{begin_of_run_, std::max(begin, probe_.entry_count())};
         GYROLOG_CHECK(ask(Ask::start_again, glp_frame_start));
         GYROLOG_CHECK(ask(Ask::hello_streaming, glp_frame_get_hello));
         GYROLOG_CHECK(ask(Ask::status_streaming, glp_frame_get_status));
@@ -368,7 +368,7 @@ private:
             },
             stopping_s, stopping_s);
         GYROLOG_CHECK(listen_for_nothing());
-        dialogue_.lowered = Stretch{begin, probe_.entry_count()};
+        dialogue_.lowered = Passage{begin, probe_.entry_count()};
         return {};
     }
 

@@ -25,7 +25,7 @@ const TranscriptEntry* at(const Dialogue& dialogue, std::size_t i) {
 }
 
 // The place of the first frame of a type (and event code) in a stretch, or its end.
-std::size_t place_of(const Dialogue& dialogue, Stretch stretch, unsigned type, unsigned code = 0) {
+std::size_t place_of(const Dialogue& dialogue, Passage stretch, unsigned type, unsigned code = 0) {
     for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
         const TranscriptEntry& entry = dialogue.entry(i);
         if (!entry.is_frame(type)) { continue; }
@@ -36,14 +36,14 @@ std::size_t place_of(const Dialogue& dialogue, Stretch stretch, unsigned type, u
     return stretch.end;
 }
 
-bool has(const Dialogue& dialogue, Stretch stretch, unsigned type, unsigned code = 0) {
+bool has(const Dialogue& dialogue, Passage stretch, unsigned type, unsigned code = 0) {
     return place_of(dialogue, stretch, type, code) != stretch.end;
 }
 
-Stretch answer_of(const Exchange& exchange) { return {*exchange.reply, exchange.end}; }
+Passage answer_of(const Exchange& exchange) { return {*exchange.reply, exchange.end}; }
 
 // HELLO, CONFIG, EVENT started and SAMPLES of a run, in this order.
-void check_introduction(const Dialogue& dialogue, Stretch stretch, Findings& findings) {
+void check_introduction(const Dialogue& dialogue, Passage stretch, Findings& findings) {
     findings.looked();
     const std::size_t samples = place_of(dialogue, stretch, glp_frame_samples);
     const std::size_t hello = place_of(dialogue, stretch, glp_frame_hello);
@@ -54,7 +54,7 @@ void check_introduction(const Dialogue& dialogue, Stretch stretch, Findings& fin
                    at(dialogue, stretch.begin));
 }
 
-Verdict rising_dtr(const Dialogue& dialogue) {
+Judgement rising_dtr(const Dialogue& dialogue) {
     if (!dialogue.has_line) { return not_tested("the line has no DTR"); }
     Findings findings;
     for (const Run& run : dialogue.runs) {
@@ -62,15 +62,15 @@ Verdict rising_dtr(const Dialogue& dialogue) {
             check_introduction(dialogue, {run.entries.begin + 1, run.entries.end}, findings);
         }
     }
-    return findings.verdict(why_not_asked(dialogue, "it was not started"));
+    return findings.judgement(why_not_asked(dialogue, "it was not started"));
 }
 
-Verdict falling_dtr(const Dialogue& dialogue) {
+Judgement falling_dtr(const Dialogue& dialogue) {
     if (!dialogue.has_line) { return not_tested("the line has no DTR"); }
     if (!dialogue.lowered) { return not_tested(why_not_asked(dialogue, "it was not started")); }
     Findings findings;
     findings.looked();
-    const Stretch& stretch = *dialogue.lowered;
+    const Passage& stretch = *dialogue.lowered;
     const std::size_t stopped = place_of(dialogue, stretch, glp_frame_event, glp_event_stopped);
     if (stopped == stretch.end) {
         findings.wrong("EVENT 2 (stopped) behind the last samples", names_of(dialogue, stretch),
@@ -79,10 +79,10 @@ Verdict falling_dtr(const Dialogue& dialogue) {
         findings.wrong("nothing behind EVENT 2 (stopped)", names_of(dialogue, {stopped + 1, stretch.end}),
                        at(dialogue, stopped + 1));
     }
-    return findings.verdict({});
+    return findings.judgement({});
 }
 
-Verdict start_and_stop(const Dialogue& dialogue) {
+Judgement start_and_stop(const Dialogue& dialogue) {
     Findings findings;
     for (const Run& run : dialogue.runs) {
         if (run.by == Run::By::command) { check_introduction(dialogue, run.entries, findings); }
@@ -116,7 +116,7 @@ Verdict start_and_stop(const Dialogue& dialogue) {
                            at(dialogue, *after->reply));
         }
     }
-    return findings.verdict(why_not_asked(dialogue, "no START or STOP was answered"));
+    return findings.judgement(why_not_asked(dialogue, "no START or STOP was answered"));
 }
 
 // ------------------------------------------------------------------------------------------------- replies
@@ -148,7 +148,7 @@ void check_followed_by(const Dialogue& dialogue, Ask ask, std::initializer_list<
     }
 }
 
-Verdict replies(const Dialogue& dialogue) {
+Judgement replies(const Dialogue& dialogue) {
     Findings findings;
     for (const Ask ask : {Ask::hello,
                           Ask::status,
@@ -207,14 +207,14 @@ Verdict replies(const Dialogue& dialogue) {
                        fmt::format("REPLY {}", name_of_result(echo->answer->result)),
                        at(dialogue, *echo->reply));
     }
-    return findings.verdict(why_not_asked(dialogue, "nothing was asked"));
+    return findings.judgement(why_not_asked(dialogue, "nothing was asked"));
 }
 
 // ------------------------------------------------------------------------------------ CONFIGURE, and the
 // rhythm
 
 // A CONFIG that no HELLO goes before: one that is not repeated every 5 s.
-bool has_config_alone(const Dialogue& dialogue, Stretch stretch) {
+bool has_config_alone(const Dialogue& dialogue, Passage stretch) {
     for (std::size_t i = std::max<std::size_t>(stretch.begin, 1); i < stretch.end; ++i) {
         if (dialogue.entry(i).is_frame(glp_frame_config) &&
             !dialogue.entry(i - 1).is_frame(glp_frame_hello)) {
@@ -241,7 +241,7 @@ void check_generation(const Dialogue& dialogue, const Exchange& exchange, Findin
     }
 }
 
-Verdict configuring(const Dialogue& dialogue) {
+Judgement configuring(const Dialogue& dialogue) {
     Findings findings;
     for (const Ask ask : {Ask::rate_slow, Ask::rate_third, Ask::rate_kilohertz, Ask::one_field, Ask::standard,
                           Ask::configure_streaming, Ask::decimated}) {
@@ -252,7 +252,7 @@ Verdict configuring(const Dialogue& dialogue) {
     }
     const auto& changed = dialogue.asked(Ask::configure_streaming);
     if (changed && changed->answer && changed->answer->result == glp_result_ok) {
-        const Stretch answer = answer_of(*changed);
+        const Passage answer = answer_of(*changed);
         const std::size_t config = place_of(dialogue, answer, glp_frame_config);
         const std::size_t started = place_of(dialogue, answer, glp_frame_event, glp_event_started);
         const std::size_t samples = place_of(dialogue, answer, glp_frame_samples);
@@ -268,7 +268,7 @@ Verdict configuring(const Dialogue& dialogue) {
     const auto& refused = dialogue.asked(Ask::refused_streaming);
     if (refused && refused->answer && refused->answer->result == glp_result_bad_value) {
         findings.looked();
-        Stretch answer = answer_of(*refused);
+        Passage answer = answer_of(*refused);
         // What comes behind the next command that changes something is that one's.
         if (changed) { answer.end = std::min(answer.end, std::max(answer.begin, changed->sent)); }
         if (has_config_alone(dialogue, answer) || has(dialogue, answer, glp_frame_event, glp_event_stopped) ||
@@ -277,7 +277,7 @@ Verdict configuring(const Dialogue& dialogue) {
                            at(dialogue, *refused->reply));
         }
     }
-    return findings.verdict(why_not_asked(dialogue, "no CONFIGURE was accepted"));
+    return findings.judgement(why_not_asked(dialogue, "no CONFIGURE was accepted"));
 }
 
 // Device time since the quiet run's first sample, at each of its frames: of the last SAMPLES before it.
@@ -302,7 +302,7 @@ private:
 };
 
 void check_rhythm(const Dialogue& dialogue, unsigned type, double period_s, Findings& findings) {
-    const Stretch& run = *dialogue.quiet_run;
+    const Passage& run = *dialogue.quiet_run;
     RunClock clock(dialogue);
     double last_s = 0.0;
     const TranscriptEntry* last = nullptr;
@@ -325,16 +325,16 @@ void check_rhythm(const Dialogue& dialogue, unsigned type, double period_s, Find
     }
 }
 
-Verdict rhythm(const Dialogue& dialogue) {
+Judgement rhythm(const Dialogue& dialogue) {
     if (!dialogue.quiet_run) { return not_tested(why_not_asked(dialogue, "it was not started")); }
     Findings findings;
     check_rhythm(dialogue, glp_frame_status, status_period_s, findings);
     check_rhythm(dialogue, glp_frame_hello, hello_period_s, findings);
     check_rhythm(dialogue, glp_frame_config, hello_period_s, findings);
-    return findings.verdict("no SAMPLES came");
+    return findings.judgement("no SAMPLES came");
 }
 
-Verdict patience(const Dialogue& dialogue) {
+Judgement patience(const Dialogue& dialogue) {
     Findings findings;
     for (const Run& run : dialogue.runs) {
         if (!run.config || run.by != Run::By::configure) { continue; }
@@ -354,10 +354,10 @@ Verdict patience(const Dialogue& dialogue) {
             }
         }
     }
-    return findings.verdict("no SAMPLES came at a rate at which frames fill slowly");
+    return findings.judgement("no SAMPLES came at a rate at which frames fill slowly");
 }
 
-Verdict chosen_samples(const Dialogue& dialogue) {
+Judgement chosen_samples(const Dialogue& dialogue) {
     Findings findings;
     for (const Ask ask : {Ask::standard, Ask::decimated}) {
         const auto& exchange = dialogue.asked(ask);
@@ -374,13 +374,13 @@ Verdict chosen_samples(const Dialogue& dialogue) {
                 at(dialogue, place));
         }
     }
-    return findings.verdict("no CONFIGURE that leaves the choice was accepted");
+    return findings.judgement("no CONFIGURE that leaves the choice was accepted");
 }
 
 // ---------------------------------------------------------------------------------------- losses, faults,
 // rest
 
-Verdict losses(const Dialogue& dialogue) {
+Judgement losses(const Dialogue& dialogue) {
     constexpr unsigned cause_flags = glp_flag_sensor_fifo_overflow | glp_flag_bus_error |
                                      glp_flag_ring_overflow | glp_flag_time_discontinuity;
     Findings findings;
@@ -400,10 +400,10 @@ Verdict losses(const Dialogue& dialogue) {
             lost = samples->lost_samples;
         }
     }
-    return findings.verdict("nothing was lost");
+    return findings.judgement("nothing was lost");
 }
 
-Verdict sensor_fault(const Dialogue& dialogue) {
+Judgement sensor_fault(const Dialogue& dialogue) {
     Findings findings;
     for (const Ask ask : {Ask::start, Ask::start_by_command}) {
         const auto& exchange = dialogue.asked(ask);
@@ -417,10 +417,10 @@ Verdict sensor_fault(const Dialogue& dialogue) {
                            at(dialogue, *exchange->reply));
         }
     }
-    return findings.verdict("the sensor is in order");
+    return findings.judgement("the sensor is in order");
 }
 
-Verdict setup_at_boot(const Dialogue& dialogue) {
+Judgement setup_at_boot(const Dialogue& dialogue) {
     const auto& asked = dialogue.asked(Ask::hello);
     if (!asked || !asked->reply) { return not_tested("GET_HELLO is not answered"); }
     const std::size_t place = place_of(dialogue, answer_of(*asked), glp_frame_config);
@@ -439,10 +439,10 @@ Verdict setup_at_boot(const Dialogue& dialogue) {
                                    config->accel_full_scale_g, config->dlpf_hz, config->samples_per_frame),
                        at(dialogue, place));
     }
-    return findings.verdict({});
+    return findings.judgement({});
 }
 
-Verdict ring_overflow(const Dialogue& /*dialogue*/) {
+Judgement ring_overflow(const Dialogue& /*dialogue*/) {
     return not_tested(
         "it takes a host that does not read; the virtual bench in tests/firmware_protocol does");
 }
@@ -464,7 +464,7 @@ bool belongs_to_answer(unsigned command, unsigned type) {
     }
 }
 
-Verdict silent_until_asked(const Dialogue& dialogue) {
+Judgement silent_until_asked(const Dialogue& dialogue) {
     Findings findings;
     if (dialogue.never_quiet) {
         findings.wrong("silence after DTR fell and a STOP", "a stream that went on for 1 s");
@@ -492,7 +492,7 @@ Verdict silent_until_asked(const Dialogue& dialogue) {
                            &entry);
         }
     }
-    return findings.verdict(why_not_asked(dialogue, "nothing came"));
+    return findings.judgement(why_not_asked(dialogue, "nothing came"));
 }
 
 constexpr std::array rules{

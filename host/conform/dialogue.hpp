@@ -84,7 +84,7 @@ struct Exchange {
 };
 
 // Entries [begin, end) of a transcript.
-struct Stretch {
+struct Passage {
     std::size_t begin = 0;
     std::size_t end = 0;
 };
@@ -93,7 +93,7 @@ struct Stretch {
 struct Run {
     enum class By : std::uint8_t { line, command, configure };
     By by = By::line;
-    Stretch entries;
+    Passage entries;
     std::optional<glp_config> config = std::nullopt;  // the one in force
     std::optional<Ask> ask = std::nullopt;            // the command that began it
 };
@@ -106,8 +106,8 @@ struct Dialogue {
     Transcript transcript;
     std::array<std::optional<Exchange>, static_cast<std::size_t>(Ask::count)> exchanges;
     std::size_t first_start = 0;       // entries before this one came before any start
-    std::optional<Stretch> lowered;    // from the falling DTR up to the next thing the host did
-    std::optional<Stretch> quiet_run;  // the first run, as long as the host said nothing
+    std::optional<Passage> lowered;    // from the falling DTR up to the next thing the host did
+    std::optional<Passage> quiet_run;  // the first run, as long as the host said nothing
     std::vector<Run> runs;
     bool never_quiet = false;  // it talked on after it had been told to stop, before the conversation began
     std::string broken_off;    // why the conversation ended before its end; empty when it did not

@@ -19,7 +19,7 @@ std::size_t decoded_bytes(const TranscriptEntry& entry) {
     return glp_cobs_decode(entry.bytes.data(), entry.bytes.size(), body.data(), body.size()).size;
 }
 
-Verdict unended_bytes(const Dialogue& dialogue) {
+Judgement unended_bytes(const Dialogue& dialogue) {
     Findings findings;
     const Bytes& rest = dialogue.transcript.unended();
     if (!dialogue.entries().empty()) { findings.looked(); }
@@ -30,10 +30,10 @@ Verdict unended_bytes(const Dialogue& dialogue) {
         findings.wrong("a 00 behind the last frame", fmt::format("{} bytes that nothing ends", rest.size()),
                        &entry);
     }
-    return findings.verdict(nothing_came);
+    return findings.judgement(nothing_came);
 }
 
-Verdict both_delimiters(const Dialogue& dialogue) {
+Judgement both_delimiters(const Dialogue& dialogue) {
     Findings findings;
     bool after_frame = false;
     for (const TranscriptEntry& entry : dialogue.entries()) {
@@ -47,10 +47,10 @@ Verdict both_delimiters(const Dialogue& dialogue) {
         }
         after_frame = entry.kind == Kind::frame;
     }
-    return findings.verdict(nothing_came);
+    return findings.judgement(nothing_came);
 }
 
-Verdict header(const Dialogue& dialogue) {
+Judgement header(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (entry.kind == Kind::refused && entry.status == glp_status_bad_version) {
@@ -64,10 +64,10 @@ Verdict header(const Dialogue& dialogue) {
                            fmt::format("{:04x}", entry.flags), &entry);
         }
     }
-    return findings.verdict(nothing_came);
+    return findings.judgement(nothing_came);
 }
 
-Verdict refused_for(const Dialogue& dialogue, glp_status status, const char* expected) {
+Judgement refused_for(const Dialogue& dialogue, glp_status status, const char* expected) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (entry.kind == Kind::frame) { findings.looked(); }
@@ -78,10 +78,10 @@ Verdict refused_for(const Dialogue& dialogue, glp_status status, const char* exp
                            : fmt::format("{} bytes: {}", entry.bytes.size(), glp_status_name(status)),
                        &entry);
     }
-    return findings.verdict(nothing_came);
+    return findings.judgement(nothing_came);
 }
 
-Verdict body_length(const Dialogue& dialogue) {
+Judgement body_length(const Dialogue& dialogue) {
     return refused_for(dialogue, glp_status_bad_length, "a body of 12 to 1016 bytes between two delimiters");
 }
 
@@ -101,7 +101,7 @@ LastGroup last_group(const TranscriptEntry& entry) {
     return empty ? LastGroup::empty_behind_full : LastGroup::other;
 }
 
-Verdict cobs(const Dialogue& dialogue) {
+Judgement cobs(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (entry.kind == Kind::frame) { findings.looked(); }
@@ -110,10 +110,10 @@ Verdict cobs(const Dialogue& dialogue) {
         findings.wrong("the COBS form of a body between two delimiters",
                        fmt::format("{} bytes that are none", entry.bytes.size()), &entry);
     }
-    return findings.verdict(nothing_came);
+    return findings.judgement(nothing_came);
 }
 
-Verdict full_last_group(const Dialogue& dialogue) {
+Judgement full_last_group(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (entry.kind == Kind::frame && last_group(entry) == LastGroup::full) { findings.looked(); }
@@ -121,10 +121,10 @@ Verdict full_last_group(const Dialogue& dialogue) {
             findings.wrong("nothing behind a last group of 254 bytes", "a code byte 01", &entry);
         }
     }
-    return findings.verdict("no frame ended with 254 bytes other than 00");
+    return findings.judgement("no frame ended with 254 bytes other than 00");
 }
 
-Verdict checksum(const Dialogue& dialogue) {
+Judgement checksum(const Dialogue& dialogue) {
     return refused_for(
         dialogue, glp_status_bad_crc,
         "CRC-32, 04C11DB7 reflected, initial value and final xor FFFFFFFF, over header and payload");
@@ -132,7 +132,7 @@ Verdict checksum(const Dialogue& dialogue) {
 
 // ------------------------------------------------------------------------------ the device as the receiver
 
-Verdict answered(const Dialogue& dialogue, std::initializer_list<Ask> asks, const char* manner) {
+Judgement answered(const Dialogue& dialogue, std::initializer_list<Ask> asks, const char* manner) {
     Findings findings;
     const auto& plain = dialogue.asked(Ask::status);
     if (!plain || !plain->reply) { return not_tested("a plain GET_STATUS is not answered either"); }
@@ -148,31 +148,31 @@ Verdict answered(const Dialogue& dialogue, std::initializer_list<Ask> asks, cons
         findings.wrong(fmt::format("an answer to {} {}", name_of_type(exchange->type), manner),
                        "none within 1 s", sent);
     }
-    return findings.verdict(why_not_asked(dialogue, "it was not asked"));
+    return findings.judgement(why_not_asked(dialogue, "it was not asked"));
 }
 
-Verdict delimiters(const Dialogue& dialogue) {
-    Verdict written = both_delimiters(dialogue);
-    Verdict taken = answered(dialogue, {Ask::shared_delimiter, Ask::many_delimiters},
-                             "that shares its opening 00 with the command before, or stands among many 00");
-    return taken.state == VerdictState::fail && written.state != VerdictState::fail ? taken : written;
+Judgement delimiters(const Dialogue& dialogue) {
+    Judgement written = both_delimiters(dialogue);
+    Judgement taken = answered(dialogue, {Ask::shared_delimiter, Ask::many_delimiters},
+                               "that shares its opening 00 with the command before, or stands among many 00");
+    return taken.state == JudgementState::fail && written.state != JudgementState::fail ? taken : written;
 }
 
-Verdict takes_pieces(const Dialogue& dialogue) {
+Judgement takes_pieces(const Dialogue& dialogue) {
     return answered(dialogue, {Ask::in_pieces}, "that comes byte by byte");
 }
 
-Verdict skips_overlong(const Dialogue& dialogue) {
+Judgement skips_overlong(const Dialogue& dialogue) {
     return answered(dialogue, {Ask::after_overlong}, "behind 3000 bytes without a 00");
 }
 
-Verdict damage_costs_one(const Dialogue& dialogue) {
+Judgement damage_costs_one(const Dialogue& dialogue) {
     return answered(dialogue, {Ask::after_noise, Ask::after_damage},
                     "behind bytes that no frame owns, or behind a command that lacks a byte");
 }
 
 // A frame that must be refused: no answer, and no CONFIG that shows what it asked for.
-Verdict refused(const Dialogue& dialogue, Ask ask, const char* what) {
+Judgement refused(const Dialogue& dialogue, Ask ask, const char* what) {
     Findings findings;
     const auto& exchange = dialogue.asked(ask);
     if (!exchange || !dialogue.answers_commands()) {
@@ -184,14 +184,14 @@ Verdict refused(const Dialogue& dialogue, Ask ask, const char* what) {
                        fmt::format("REPLY {}", name_of_result(exchange->answer->result)),
                        &dialogue.entry(*exchange->reply));
     }
-    return findings.verdict({});
+    return findings.judgement({});
 }
 
-Verdict refuses_bad_checksum(const Dialogue& dialogue) {
+Judgement refuses_bad_checksum(const Dialogue& dialogue) {
     return refused(dialogue, Ask::bad_checksum, "a CONFIGURE with a wrong checksum");
 }
 
-Verdict refuses_other_version(const Dialogue& dialogue) {
+Judgement refuses_other_version(const Dialogue& dialogue) {
     return refused(dialogue, Ask::other_version, "a CONFIGURE of major version 2");
 }
 

@@ -42,7 +42,7 @@ bool later_minor(const Dialogue& dialogue) {
     return hello && hello->protocol_minor > 0;
 }
 
-Verdict known_types(const Dialogue& dialogue) {
+Judgement known_types(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (entry.kind != Kind::frame) { continue; }
@@ -53,11 +53,11 @@ Verdict known_types(const Dialogue& dialogue) {
             findings.wrong("types 01 to 06 from a device of version 1.0", name_of_type(entry.type), &entry);
         }
     }
-    return findings.verdict("no frame came");
+    return findings.judgement("no frame came");
 }
 
 // By the rule that has the message's table.
-Verdict malformed(const Dialogue& dialogue, unsigned type, const char* expected) {
+Judgement malformed(const Dialogue& dialogue, unsigned type, const char* expected) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (!entry.is_frame(type)) { continue; }
@@ -69,7 +69,7 @@ Verdict malformed(const Dialogue& dialogue, unsigned type, const char* expected)
                 &entry);
         }
     }
-    return findings.verdict(fmt::format("no {} came", name_of_type(type)));
+    return findings.judgement(fmt::format("no {} came", name_of_type(type)));
 }
 
 struct Reserved {
@@ -83,7 +83,7 @@ constexpr std::array<Reserved, 4> reserved_fields = {{{glp_frame_hello, 13, 3},
                                                       {glp_frame_event, 19, 1},
                                                       {glp_frame_reply, 6, 2}}};
 
-Verdict lengths_and_reserved(const Dialogue& dialogue) {
+Judgement lengths_and_reserved(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (entry.kind != Kind::frame) { continue; }
@@ -116,12 +116,12 @@ Verdict lengths_and_reserved(const Dialogue& dialogue) {
                            longer->reply ? &dialogue.entry(*longer->reply) : nullptr);
         }
     }
-    return findings.verdict("no frame came");
+    return findings.judgement("no frame came");
 }
 
 // -------------------------------------------------------------------------------------------------- SAMPLES
 
-Verdict samples_values(const Dialogue& dialogue) {
+Judgement samples_values(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (!entry.is_frame(glp_frame_samples)) { continue; }
@@ -130,10 +130,10 @@ Verdict samples_values(const Dialogue& dialogue) {
         findings.wrong("a count of 1 or more, and a layout of the bits 01, 02 and 04",
                        fmt::format("count {}, layout {:02x}", entry.payload[24], entry.payload[25]), &entry);
     }
-    return findings.verdict("no SAMPLES came");
+    return findings.judgement("no SAMPLES came");
 }
 
-Verdict samples_length(const Dialogue& dialogue) {
+Judgement samples_length(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (!entry.is_frame(glp_frame_samples)) { continue; }
@@ -142,10 +142,10 @@ Verdict samples_length(const Dialogue& dialogue) {
         findings.wrong("28 bytes and count x bytes of a sample",
                        fmt::format("{} bytes of payload", entry.payload.size()), &entry);
     }
-    return findings.verdict("no SAMPLES came");
+    return findings.judgement("no SAMPLES came");
 }
 
-Verdict one_configuration(const Dialogue& dialogue) {
+Judgement one_configuration(const Dialogue& dialogue) {
     Findings findings;
     for (const Run& run : dialogue.runs) {
         if (!run.config) { continue; }
@@ -164,7 +164,7 @@ Verdict one_configuration(const Dialogue& dialogue) {
             }
         }
     }
-    return findings.verdict("no SAMPLES came, or no CONFIG");
+    return findings.judgement("no SAMPLES came, or no CONFIG");
 }
 
 bool holds_end_of_range(const glp_samples& samples) {
@@ -179,7 +179,7 @@ bool holds_end_of_range(const glp_samples& samples) {
     return false;
 }
 
-Verdict sample_flags(const Dialogue& dialogue) {
+Judgement sample_flags(const Dialogue& dialogue) {
     Findings findings;
     for (const Run& run : dialogue.runs) {
         bool first = true;
@@ -203,7 +203,7 @@ Verdict sample_flags(const Dialogue& dialogue) {
             first = false;
         }
     }
-    return findings.verdict("no SAMPLES came");
+    return findings.judgement("no SAMPLES came");
 }
 
 // ------------------------------------------------------------------------------------------ HELLO and CONFIG
@@ -221,10 +221,10 @@ bool same_device(const TranscriptEntry& a, const TranscriptEntry& b) {
            std::equal(a.payload.begin() + 12, a.payload.begin() + 56, b.payload.begin() + 12);
 }
 
-Verdict hello_rule(const Dialogue& dialogue) {
-    Verdict form = malformed(dialogue, glp_frame_hello,
-                             "72 bytes; major version not 0, tick_bits 32 to 64, tick_hz not 0");
-    if (form.state != VerdictState::pass) { return form; }
+Judgement hello_rule(const Dialogue& dialogue) {
+    Judgement form = malformed(dialogue, glp_frame_hello,
+                               "72 bytes; major version not 0, tick_bits 32 to 64, tick_hz not 0");
+    if (form.state != JudgementState::pass) { return form; }
     Findings findings;
     const TranscriptEntry* first = nullptr;
     for (const TranscriptEntry& entry : dialogue.entries()) {
@@ -243,7 +243,7 @@ Verdict hello_rule(const Dialogue& dialogue) {
             findings.wrong("the same HELLO each time", "another one", &entry);
         }
     }
-    return findings.verdict("no HELLO came");
+    return findings.judgement("no HELLO came");
 }
 
 unsigned dlpf_cfg_of(unsigned dlpf_hz) {
@@ -280,10 +280,10 @@ bool off_scale(double full_scale, double per_lsb) {
     return std::fabs(full_scale / 32768.0 / per_lsb - 1.0) > scale_tolerance;
 }
 
-Verdict config_rule(const Dialogue& dialogue) {
-    Verdict form = malformed(dialogue, glp_frame_config,
-                             "40 bytes; samples_per_frame, rate, decimation and scales not 0");
-    if (form.state != VerdictState::pass) { return form; }
+Judgement config_rule(const Dialogue& dialogue) {
+    Judgement form = malformed(dialogue, glp_frame_config,
+                               "40 bytes; samples_per_frame, rate, decimation and scales not 0");
+    if (form.state != JudgementState::pass) { return form; }
     const auto hello = dialogue.hello();
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
@@ -306,10 +306,10 @@ Verdict config_rule(const Dialogue& dialogue) {
             }
         }
     }
-    return findings.verdict("no CONFIG came");
+    return findings.judgement("no CONFIG came");
 }
 
-Verdict decimation(const Dialogue& dialogue) {
+Judgement decimation(const Dialogue& dialogue) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         const auto config = config_in(entry);
@@ -327,7 +327,7 @@ Verdict decimation(const Dialogue& dialogue) {
                 std::to_string(config->decimation), &entry);
         }
     }
-    return findings.verdict("the device refused a rate at which samples are left out");
+    return findings.judgement("the device refused a rate at which samples are left out");
 }
 
 // ---------------------------------------------------------------------------------- STATUS, EVENT and REPLY
@@ -339,9 +339,9 @@ struct RunSoFar {
     const glp_config* config = nullptr;
 };
 
-Verdict status_rule(const Dialogue& dialogue) {
-    Verdict form = malformed(dialogue, glp_frame_status, "48 bytes; streaming 0 or 1");
-    if (form.state != VerdictState::pass) { return form; }
+Judgement status_rule(const Dialogue& dialogue) {
+    Judgement form = malformed(dialogue, glp_frame_status, "48 bytes; streaming 0 or 1");
+    if (form.state != JudgementState::pass) { return form; }
     Findings findings;
     RunSoFar now;
     bool told_to_stop = false;
@@ -384,10 +384,10 @@ Verdict status_rule(const Dialogue& dialogue) {
                 std::to_string(status->next_index), &entry);
         }
     }
-    return findings.verdict("no STATUS came");
+    return findings.judgement("no STATUS came");
 }
 
-Verdict event_rule(const Dialogue& dialogue) {
+Judgement event_rule(const Dialogue& dialogue) {
     Findings findings;
     std::uint32_t lost = 0;
     for (const TranscriptEntry& entry : dialogue.entries()) {
@@ -416,16 +416,16 @@ Verdict event_rule(const Dialogue& dialogue) {
             findings.wrong("text in UTF-8", "bytes that are none", &entry);
         }
     }
-    return findings.verdict("no EVENT came");
+    return findings.judgement("no EVENT came");
 }
 
-Verdict event_text(const Dialogue& dialogue) {
+Judgement event_text(const Dialogue& dialogue) {
     return malformed(dialogue, glp_frame_event, "text_bytes of at most 96, and as many bytes behind the 24");
 }
 
-Verdict reply_rule(const Dialogue& dialogue) {
-    Verdict form = malformed(dialogue, glp_frame_reply, "8 bytes");
-    if (form.state != VerdictState::pass) { return form; }
+Judgement reply_rule(const Dialogue& dialogue) {
+    Judgement form = malformed(dialogue, glp_frame_reply, "8 bytes");
+    if (form.state != JudgementState::pass) { return form; }
     Findings findings;
     for (std::size_t i = 0; i < dialogue.exchanges.size(); ++i) {
         const auto& exchange = dialogue.exchanges[i];
@@ -444,7 +444,7 @@ Verdict reply_rule(const Dialogue& dialogue) {
                            &dialogue.entry(*exchange->reply));
         }
     }
-    return findings.verdict("no command is answered");
+    return findings.judgement("no command is answered");
 }
 
 // --------------------------------------------------------------------------------------------------
@@ -470,7 +470,7 @@ std::string told(const glp_config& config) {
                        config.gyro_full_scale_dps, config.accel_full_scale_g, config.dlpf_hz, config.layout);
 }
 
-Verdict configure_is_obeyed(const Dialogue& dialogue) {
+Judgement configure_is_obeyed(const Dialogue& dialogue) {
     Findings findings;
     for (const Ask ask : {Ask::rate_slow, Ask::rate_third, Ask::rate_kilohertz, Ask::one_field, Ask::standard,
                           Ask::configure_streaming, Ask::decimated}) {
@@ -500,10 +500,10 @@ Verdict configure_is_obeyed(const Dialogue& dialogue) {
                 &dialogue.entry(now->second));
         }
     }
-    return findings.verdict(why_not_asked(dialogue, "no CONFIGURE was accepted"));
+    return findings.judgement(why_not_asked(dialogue, "no CONFIGURE was accepted"));
 }
 
-Verdict rates(const Dialogue& dialogue) {
+Judgement rates(const Dialogue& dialogue) {
     Findings findings;
     const TranscriptEntry* refusal = nullptr;
     std::uint32_t refused_mHz = 0;
@@ -521,10 +521,10 @@ Verdict rates(const Dialogue& dialogue) {
             refusal = nullptr;
         }
     }
-    return findings.verdict(why_not_asked(dialogue, "no CONFIGURE was answered"));
+    return findings.judgement(why_not_asked(dialogue, "no CONFIGURE was answered"));
 }
 
-Verdict bad_values(const Dialogue& dialogue) {
+Judgement bad_values(const Dialogue& dialogue) {
     Findings findings;
     for (const Ask ask : {Ask::bad_full_scale, Ask::bad_combination, Ask::bad_layout, Ask::too_many_samples,
                           Ask::refused_streaming}) {
@@ -540,7 +540,7 @@ Verdict bad_values(const Dialogue& dialogue) {
     const auto& after = dialogue.asked(Ask::hello_after_refusals);
     const auto& before = dialogue.asked(Ask::hello);
     if (after && after->reply && before && before->reply &&
-        findings.verdict({}).state == VerdictState::pass) {
+        findings.judgement({}).state == JudgementState::pass) {
         const auto was = config_in_answer(dialogue, *before);
         const auto now = config_in_answer(dialogue, *after);
         const auto& damaged = dialogue.asked(Ask::bad_checksum);
@@ -553,7 +553,7 @@ Verdict bad_values(const Dialogue& dialogue) {
                            &dialogue.entry(now->second));
         }
     }
-    return findings.verdict(why_not_asked(dialogue, "no CONFIGURE was answered"));
+    return findings.judgement(why_not_asked(dialogue, "no CONFIGURE was answered"));
 }
 
 constexpr std::array rules{

@@ -6,9 +6,9 @@
 
 namespace gyrolog {
 
-Verdict not_tested(std::string why) {
-    Verdict verdict;
-    verdict.state = VerdictState::not_tested;
+Judgement not_tested(std::string why) {
+    Judgement verdict;
+    verdict.state = JudgementState::not_tested;
     verdict.expected = std::move(why);
     return verdict;
 }
@@ -59,7 +59,7 @@ std::string name_of_result(unsigned result) {
     }
 }
 
-std::string names_of(const Dialogue& dialogue, Stretch stretch) {
+std::string names_of(const Dialogue& dialogue, Passage stretch) {
     constexpr std::size_t names_max = 8;
     std::string names;
     std::size_t count = 0;

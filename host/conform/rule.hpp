@@ -13,10 +13,10 @@
 
 namespace gyrolog {
 
-enum class VerdictState : std::uint8_t { pass, fail, not_tested };
+enum class JudgementState : std::uint8_t { pass, fail, not_tested };
 
-struct Verdict {
-    VerdictState state = VerdictState::pass;
+struct Judgement {
+    JudgementState state = JudgementState::pass;
     std::string expected;  // fail: what the rule asks for; not tested: why not
     std::string came;      // fail
     Bytes bytes;        // fail: of the frame that is wrong (its COBS form), or that should have been answered
@@ -27,7 +27,7 @@ struct Verdict {
 struct Rule {
     const char* number;  // of SPEC.md
     const char* title;
-    Verdict (*check)(const Dialogue&);
+    Judgement (*check)(const Dialogue&);
 };
 
 std::span<const Rule> frame_rules();     // sections 1 to 3, and what a device must make of the host's frames
@@ -43,33 +43,33 @@ public:
     void looked() { ++looked_at_; }
     void wrong(std::string expected, std::string came, const TranscriptEntry* entry = nullptr) {
         ++looked_at_;
-        if (++verdict_.times > 1) { return; }
-        verdict_.state = VerdictState::fail;
-        verdict_.expected = std::move(expected);
-        verdict_.came = std::move(came);
+        if (++judgement_.times > 1) { return; }
+        judgement_.state = JudgementState::fail;
+        judgement_.expected = std::move(expected);
+        judgement_.came = std::move(came);
         if (entry == nullptr) { return; }
-        verdict_.bytes = entry->bytes;
-        verdict_.at_s = entry->at_s;
+        judgement_.bytes = entry->bytes;
+        judgement_.at_s = entry->at_s;
     }
-    Verdict verdict(std::string why_not_tested) const {
-        if (looked_at_ > 0) { return verdict_; }
-        Verdict none;
-        none.state = VerdictState::not_tested;
+    Judgement judgement(std::string why_not_tested) const {
+        if (looked_at_ > 0) { return judgement_; }
+        Judgement none;
+        none.state = JudgementState::not_tested;
         none.expected = std::move(why_not_tested);
         return none;
     }
 
 private:
-    Verdict verdict_;
+    Judgement judgement_;
     std::size_t looked_at_ = 0;
 };
 
-Verdict not_tested(std::string why);
+Judgement not_tested(std::string why);
 // "SAMPLES", "type 20".
 std::string name_of_type(unsigned type);
 std::string name_of_result(unsigned result);
 // "REPLY, HELLO, CONFIG"; the first few of them.
-std::string names_of(const Dialogue& dialogue, Stretch stretch);
+std::string names_of(const Dialogue& dialogue, Passage stretch);
 // Why an exchange was not had.
 std::string why_not_asked(const Dialogue& dialogue, const char* otherwise);
 

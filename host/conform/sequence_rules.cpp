@@ -26,7 +26,7 @@ bool tells_overflow(const TranscriptEntry& entry) {
            (entry.is_frame(glp_frame_samples) && (entry.flags & glp_flag_ring_overflow) != 0);
 }
 
-Verdict numbers(const Dialogue& dialogue) {
+Judgement numbers(const Dialogue& dialogue) {
     Findings findings;
     std::optional<std::uint32_t> expected;
     std::uint32_t excused = 0;  // refused candidates may have been frames, and a start drops what waits
@@ -47,7 +47,7 @@ Verdict numbers(const Dialogue& dialogue) {
         expected = entry.sequence + 1;
         excused = 0;
     }
-    return findings.verdict("no two frames came");
+    return findings.judgement("no two frames came");
 }
 
 // A SAMPLES frame, also one whose payload is not as it should be: it counts as long as its header is there.
@@ -70,7 +70,7 @@ std::optional<glp_samples> counted_samples(const TranscriptEntry& entry) {
     return samples;
 }
 
-Verdict index_from_zero(const Dialogue& dialogue) {
+Judgement index_from_zero(const Dialogue& dialogue) {
     Findings findings;
     for (const Run& run : dialogue.runs) {
         for (std::size_t i = run.entries.begin; i < run.entries.end; ++i) {
@@ -85,10 +85,10 @@ Verdict index_from_zero(const Dialogue& dialogue) {
             break;
         }
     }
-    return findings.verdict("no SAMPLES came");
+    return findings.judgement("no SAMPLES came");
 }
 
-Verdict index_accounts(const Dialogue& dialogue) {
+Judgement index_accounts(const Dialogue& dialogue) {
     Findings findings;
     for (const Run& run : dialogue.runs) {
         bool known = false;
@@ -116,10 +116,10 @@ Verdict index_accounts(const Dialogue& dialogue) {
             lost = samples->lost_samples;
         }
     }
-    return findings.verdict("no two SAMPLES frames came");
+    return findings.judgement("no two SAMPLES frames came");
 }
 
-Verdict one_boot(const Dialogue& dialogue) {
+Judgement one_boot(const Dialogue& dialogue) {
     Findings findings;
     std::optional<glp_hello> last;
     std::uint32_t last_sequence = 0;
@@ -134,7 +134,7 @@ Verdict one_boot(const Dialogue& dialogue) {
         last = hello;
         last_sequence = entry.sequence;
     }
-    return findings.verdict("no HELLO came");
+    return findings.judgement("no HELLO came");
 }
 
 // ---------------------------------------------------------------------------------------------------- ticks
@@ -156,7 +156,7 @@ std::vector<Tick> ticks_of(const Dialogue& dialogue) {
     return all;
 }
 
-Verdict tick_counter(const Dialogue& dialogue) {
+Judgement tick_counter(const Dialogue& dialogue) {
     const auto hello = dialogue.hello();
     if (!hello) { return not_tested("no HELLO came"); }
     const bool whole = hello->tick_bits >= 64;
@@ -174,10 +174,10 @@ Verdict tick_counter(const Dialogue& dialogue) {
         }
         before = tick.ticks;
     }
-    return findings.verdict("nothing with a device time came");
+    return findings.judgement("nothing with a device time came");
 }
 
-Verdict tick_wrap(const Dialogue& dialogue) {
+Judgement tick_wrap(const Dialogue& dialogue) {
     const auto hello = dialogue.hello();
     if (!hello) { return not_tested("no HELLO came"); }
     Findings findings;
@@ -187,7 +187,7 @@ Verdict tick_wrap(const Dialogue& dialogue) {
         findings.wrong("2^tick_bits ticks that last 10 s",
                        fmt::format("{} bits at {} Hz: {:.3g} s", hello->tick_bits, hello->tick_hz, wrap_s));
     }
-    return findings.verdict({});
+    return findings.judgement({});
 }
 
 // Ticks against indices over a run, from its first frame to its last.
@@ -213,7 +213,7 @@ std::optional<RateFit> fitted(const Dialogue& dialogue, const Run& run) {
     return RateFit{duration_s / static_cast<double>(samples), samples};
 }
 
-Verdict instants(const Dialogue& dialogue) {
+Judgement instants(const Dialogue& dialogue) {
     Findings findings;
     for (const Run& run : dialogue.runs) {
         const auto fit = fitted(dialogue, run);
@@ -240,10 +240,10 @@ Verdict instants(const Dialogue& dialogue) {
             before = samples;
         }
     }
-    return findings.verdict("too few SAMPLES came");
+    return findings.judgement("too few SAMPLES came");
 }
 
-Verdict nominal_rate(const Dialogue& dialogue) {
+Judgement nominal_rate(const Dialogue& dialogue) {
     Findings findings;
     for (const Run& run : dialogue.runs) {
         const auto fit = fitted(dialogue, run);
@@ -260,7 +260,7 @@ Verdict nominal_rate(const Dialogue& dialogue) {
                                    1.0 / fit->period_s),
                        config);
     }
-    return findings.verdict("too few SAMPLES came");
+    return findings.judgement("too few SAMPLES came");
 }
 
 constexpr std::array rules{

@@ -31,7 +31,7 @@ bool same_letters(std::string_view a, std::string_view b) {
            });
 }
 
-Verdict identity(const Dialogue& dialogue) {
+Judgement identity(const Dialogue& dialogue) {
     const SourceIdentity& board = dialogue.identity;
     if (board.vendor_id == 0) { return not_tested("the line is not USB"); }
     Findings findings;
@@ -51,7 +51,7 @@ Verdict identity(const Dialogue& dialogue) {
                            &descriptor);
         }
     }
-    return findings.verdict({});
+    return findings.judgement({});
 }
 
 struct Endpoint {
@@ -61,7 +61,7 @@ struct Endpoint {
     unsigned packet_bytes;
 };
 
-Verdict endpoints(const Dialogue& dialogue) {
+Judgement endpoints(const Dialogue& dialogue) {
     const Bytes& bytes = dialogue.identity.configuration_descriptor;
     if (bytes.empty()) { return not_tested("the line is not USB, or its descriptors are not to be had"); }
     Findings findings;
@@ -102,7 +102,7 @@ Verdict endpoints(const Dialogue& dialogue) {
             "82 interrupt IN at interface 0, 81 bulk IN and 01 bulk OUT of 64 bytes at interface 1", told,
             &descriptor);
     }
-    return findings.verdict({});
+    return findings.judgement({});
 }
 
 constexpr std::array rules{

@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::size_t text_bytes_max = 96;
 
-const char* name_of(VerdictState state) {
+const char* name_of(JudgementState state) {
     switch (state) {
-        case VerdictState::pass:
+        case JudgementState::pass:
             return "pass";
-        case VerdictState::fail:
+        case JudgementState::fail:
             return "fail";
-        case VerdictState::not_tested:
+        case JudgementState::not_tested:
             break;
     }
     return "not_tested";
@@ -75,11 +75,11 @@ std::string transcript_text(const Dialogue& dialogue) {
 nlohmann::ordered_json conform_json(const ConformanceReport& report) {
     auto rules = nlohmann::ordered_json::array();
     for (const RuleVerdict& one : report.verdicts) {
-        const Verdict& verdict = one.verdict;
+        const Judgement& verdict = one.verdict;
         nlohmann::ordered_json rule = {
             {"rule", one.rule->number}, {"title", one.rule->title}, {"verdict", name_of(verdict.state)}};
-        if (verdict.state == VerdictState::not_tested) { rule["why"] = verdict.expected; }
-        if (verdict.state == VerdictState::fail) {
+        if (verdict.state == JudgementState::not_tested) { rule["why"] = verdict.expected; }
+        if (verdict.state == JudgementState::fail) {
             rule["expected"] = verdict.expected;
             rule["came"] = verdict.came;
             rule["bytes"] = hex(verdict.bytes);
@@ -100,9 +100,9 @@ nlohmann::ordered_json conform_json(const ConformanceReport& report) {
             {"board", board},
             {"conforms", report.conforms()},
             {"broken_off", report.broken_off},
-            {"passed", report.count(VerdictState::pass)},
-            {"failed", report.count(VerdictState::fail)},
-            {"not_tested", report.count(VerdictState::not_tested)},
+            {"passed", report.count(JudgementState::pass)},
+            {"failed", report.count(JudgementState::fail)},
+            {"not_tested", report.count(JudgementState::not_tested)},
             {"rules", std::move(rules)}};
 }
 
@@ -113,15 +113,15 @@ std::string conform_text(const ConformanceReport& report) {
     }
     text += '\n';
     for (const RuleVerdict& one : report.verdicts) {
-        const Verdict& verdict = one.verdict;
-        const char* word = verdict.state == VerdictState::pass   ? "pass"
-                           : verdict.state == VerdictState::fail ? "FAIL"
-                                                                 : "-";
+        const Judgement& verdict = one.verdict;
+        const char* word = verdict.state == JudgementState::pass   ? "pass"
+                           : verdict.state == JudgementState::fail ? "FAIL"
+                                                                   : "-";
         text += fmt::format("{:<5} {:<4} {}\n", one.rule->number, word, one.rule->title);
-        if (verdict.state == VerdictState::not_tested) {
+        if (verdict.state == JudgementState::not_tested) {
             text += fmt::format("           not tested: {}\n", verdict.expected);
         }
-        if (verdict.state != VerdictState::fail) { continue; }
+        if (verdict.state != JudgementState::fail) { continue; }
         text +=
             fmt::format("           expected: {}\n           came:     {}\n", verdict.expected, verdict.came);
         if (!verdict.bytes.empty()) {
@@ -134,9 +134,10 @@ std::string conform_text(const ConformanceReport& report) {
     if (!report.broken_off.empty()) {
         text += fmt::format("the conversation was broken off: {}\n", report.broken_off);
     }
-    text += fmt::format("{}: {} rules pass, {} fail, {} not tested\n",
-                        report.conforms() ? "conforms" : "does not conform", report.count(VerdictState::pass),
-                        report.count(VerdictState::fail), report.count(VerdictState::not_tested));
+    text +=
+        fmt::format("{}: {} rules pass, {} fail, {} not tested\n",
+                    report.conforms() ? "conforms" : "does not conform", report.count(JudgementState::pass),
+                    report.count(JudgementState::fail), report.count(JudgementState::not_tested));
     return text;
 }
 

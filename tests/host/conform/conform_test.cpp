@@ -32,7 +32,7 @@ Result<Dialogue> talk_to(const std::string& uri) {
     return converse(*opened.source, [] { return true; });
 }
 
-std::vector<std::string> rules_that(const ConformanceReport& report, VerdictState state) {
+std::vector<std::string> rules_that(const ConformanceReport& report, JudgementState state) {
     std::vector<std::string> numbers;
     for (const RuleVerdict& one : report.verdicts) {
         if (one.verdict.state == state) { numbers.emplace_back(one.rule->number); }
@@ -50,17 +50,17 @@ Judged judged(const Breach& breach) {
     const auto dialogue = talk_to(std::string("sim:breach=") + breach.name);
     if (!dialogue.ok()) { return {{}, dialogue.error().message}; }
     const ConformanceReport report = judge(*dialogue);
-    return {rules_that(report, VerdictState::fail), conform_text(report)};
+    return {rules_that(report, JudgementState::fail), conform_text(report)};
 }
 
 TEST(Conform, TheHonestBoardBreaksNoRule) {
     const auto dialogue = talk_to("sim:");
     ASSERT_TRUE(dialogue.ok()) << dialogue.error().message;
     const ConformanceReport report = judge(*dialogue);
-    EXPECT_THAT(rules_that(report, VerdictState::fail), ElementsAre()) << conform_text(report);
+    EXPECT_THAT(rules_that(report, JudgementState::fail), ElementsAre()) << conform_text(report);
     EXPECT_TRUE(report.conforms());
     // What it does not show when all is well.
-    EXPECT_THAT(rules_that(report, VerdictState::not_tested),
+    EXPECT_THAT(rules_that(report, JudgementState::not_tested),
                 ElementsAre("2.2", "8.7", "8.10", "8.11", "8.12"));
 }
 
@@ -215,7 +215,7 @@ TEST(ConformHostile, StrangersAreJudgedInBoundedMemoryAndTime) {
     EXPECT_LE(noised->transcript.kept_bytes(), Transcript::bytes_max + TranscriptEntry::bytes_kept);
     const ConformanceReport report = judge(*noised);
     EXPECT_NE(report.broken_off, "");
-    EXPECT_THAT(rules_that(report, VerdictState::fail), testing::Contains("2.1"));
+    EXPECT_THAT(rules_that(report, JudgementState::fail), testing::Contains("2.1"));
 
     const auto endless = steadiness.get();
     ASSERT_TRUE(endless.ok()) << endless.error().message;
