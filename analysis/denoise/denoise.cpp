@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/allan/allan_deviation.hpp"
+#include "analysis/denoise/axis_denoiser.hpp"
 #include "analysis/noise/analyze.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 
@@ -213,30 +214,15 @@ private:
 
 std::vector<double> run_filter(const Recording& recording, const ArrayAxis& columns,
                                const AxisKnowledge& knowledge, const DenoiseDesign& design, FailureLog* log) {
-    std::vector<UnitLimits> limits;
-    limits.reserve(knowledge.units.size());
-    for (const UnitKnowledge& unit : knowledge.units) { limits.push_back(unit.limits); }
-    const std::span<const double> offsets = design.gain == FilterGain::steady
-                                                ? std::span<const double>(knowledge.offsets)
-                                                : std::span<const double>();
-    ArrayDenoiser denoiser(knowledge.noise, limits, design, offsets);
+    AxisDenoiser denoiser(knowledge, design);
     std::vector<double> rate(recording.rows());
-    std::vector<double> samples(columns.units.size());
-    std::optional<std::int64_t> next;
     for (const Segment& segment : recording.segments) {
-        if (next && segment.first_index > *next) {
-            denoiser.skip(static_cast<std::size_t>(segment.first_index - *next));
-        }
-        next = segment.first_index + static_cast<std::int64_t>(segment.count);
         for (std::size_t i = 0; i < segment.count; ++i) {
             const std::size_t row = segment.first + i;
-            for (std::size_t unit = 0; unit < samples.size(); ++unit) {
-                samples[unit] = columns.units[unit]->value(row);
-            }
-            rate[row] = denoiser.step(samples);
+            const std::int64_t index = segment.first_index + static_cast<std::int64_t>(i);
+            rate[row] = denoiser.step(index, columns, row);
             if (log != nullptr) {
-                log->see(denoiser.states(), segment.first_index - recording.segments.front().first_index +
-                                                static_cast<std::int64_t>(i));
+                log->see(denoiser.states(), index - recording.segments.front().first_index);
             }
         }
     }
@@ -349,6 +335,25 @@ std::vector<AxisKnowledge> learn_units(const Recording& still, std::optional<dou
     std::vector<AxisKnowledge> axes;
     for (const ArrayAxis& axis : array_axes(still)) {
         axes.push_back(knowledge_of(axis, still, report, saturation));
+    }
+    return axes;
+}
+
+std::vector<AxisKnowledge> know_units(const Recording& recording, std::optional<double> saturation) {
+    std::vector<AxisKnowledge> axes;
+    for (const ArrayAxis& columns : array_axes(recording)) {
+        AxisKnowledge axis;
+        axis.axis = columns.name;
+        axis.noise.rate_hz = recording.rate_hz;
+        axis.offsets.assign(columns.units.size(), 0.0);
+        for (std::size_t i = 0; i < columns.units.size(); ++i) {
+            UnitKnowledge unit;
+            unit.name = columns.unit_names[i];
+            unit.limits = limits_of(*columns.units[i], {}, {}, saturation);
+            unit.limits.repeats_most = UnitLimits{}.repeats_most;
+            axis.units.push_back(std::move(unit));
+        }
+        axes.push_back(std::move(axis));
     }
     return axes;
 }

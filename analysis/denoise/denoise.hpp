@@ -52,6 +52,10 @@ struct AxisKnowledge {
 // `axis` names and columns of `still`; the saturation is that of counts (the ends of 16 bits), or given.
 std::vector<AxisKnowledge> learn_units(const Recording& still, std::optional<double> saturation);
 
+// Of units that were not seen at rest, as far as their columns tell: for use_models(). Nothing is known of
+// correlations and offsets, so that one unit an axis loses nothing by it.
+std::vector<AxisKnowledge> know_units(const Recording& recording, std::optional<double> saturation);
+
 // Puts the given models in place of the fitted ones: models[axis][unit].
 void use_models(std::vector<AxisKnowledge>& axes, const std::vector<std::vector<NoiseModel>>& models);
 

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "host/app/live_denoise.hpp"
 #include "host/base/result.hpp"
 #include "host/session/capture_session.hpp"
 
@@ -23,6 +24,7 @@ struct CaptureOptions {
     std::string rotate_size;
     std::string rotate_every;
     std::string min_free = "100M";
+    LiveDenoiseOptions denoise;  // of one board; not declared by declare()
 
     void declare(CLI::App& app);
     // Without the path. Error invalid_argument names the option.

@@ -1,6 +1,7 @@
 #include "host/app/capture_run.hpp"
 
 #include <algorithm>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -76,30 +77,66 @@ ExitCode exit_code_of(const CaptureOutcome& outcome) {
     return outcome.data_lost() ? ExitCode::data_lost : ExitCode::ok;
 }
 
+// Hands the samples on to several.
+class Observers final : public SampleObserver {
+public:
+    void add(SampleObserver* observer) {
+        if (observer != nullptr) { observers_.push_back(observer); }
+    }
+    void on_decoder(const StreamDecoder& decoder) override {
+        for (SampleObserver* observer : observers_) { observer->on_decoder(decoder); }
+    }
+    void on_start() override {
+        for (SampleObserver* observer : observers_) { observer->on_start(); }
+    }
+    void on_samples(const glp_frame& frame, const glp_samples& samples, const glp_config& config) override {
+        for (SampleObserver* observer : observers_) { observer->on_samples(frame, samples, config); }
+    }
+
+private:
+    std::vector<SampleObserver*> observers_;
+};
+
+// Says what a live denoiser has to say, below what the view has drawn.
+void tell_denoising(Console& console, LiveDenoise* denoise, LiveView* view) {
+    if (denoise == nullptr) { return; }
+    for (const std::string& notice : denoise->take_notices()) {
+        if (view != nullptr) { view->finish(); }
+        console.err << "  " << notice << '\n';
+    }
+}
+
 // On a terminal: with the live view and its keys.
-Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, CaptureRequest request) {
+Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, CaptureRequest request,
+                                     LiveDenoise* denoise) {
+    Observers observers;
+    observers.add(denoise);
+    request.observer = &observers;
     if (!console.progress) {
         ParkingNotice parking(console);
         StallNotice stall(console);
         return run_capture(source, request, [&](const CaptureProgress& progress) {
             stall.tell(progress);
             parking.tell(progress);
+            tell_denoising(console, denoise, nullptr);
             return !console.stop_wanted();
         });
     }
     CaptureControl control;
     LiveAllan allan;
+    observers.add(&allan);
     request.control = &control;
-    request.observer = &allan;
     LiveKeys keys(control);
     TerminalKeys terminal;
     LiveView view(console, allan, keys);
+    if (denoise != nullptr) { view.add(*denoise); }
     ParkingNotice parking(console, &view);
     StallNotice stall(console);
     auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
         keys.take(terminal.read());
         stall.tell(progress);
         parking.tell(progress);
+        tell_denoising(console, denoise, &view);
         if (!progress.parked) { view.show(progress); }
         const bool end = console.stop_wanted() || keys.end_wanted();
         if (end) { keys.finish(); }
@@ -108,6 +145,18 @@ Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, Captu
     view.finish();
     if (keys.note()) { console.err << "  the capture ended before the mark was finished: it is not kept\n"; }
     return outcome;
+}
+
+// After the capture, whose own success is said already.
+void sum_up_denoising(Console& console, const char* command, LiveDenoise& denoise, CaptureResult& result) {
+    const auto done = denoise.finish();
+    tell_denoising(console, &denoise, nullptr);
+    if (done.ok()) {
+        console.err << "  " << *done << '\n';
+        return;
+    }
+    const ExitCode code = report_error(console, command, done.error());
+    if (result.code == ExitCode::ok) { result.code = code; }
 }
 
 }  // namespace
@@ -127,12 +176,22 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
         result.code = exit_code_of_opening(opened.error());
         return result;
     }
+    std::unique_ptr<LiveDenoise> denoise;
+    if (options.denoise.wanted()) {
+        auto made = LiveDenoise::create({options.denoise, options.denoise.output_of(path), path,
+                                         options.force, opened->source->can_wait()});
+        if (!made.ok()) {
+            result.code = report_error(console, command, made.error());
+            return result;
+        }
+        denoise = std::move(made).value();
+    }
     return capture_source_to_file(console, command, std::move(opened).value(), std::move(request).value(),
-                                  real_time);
+                                  real_time, denoise.get());
 }
 
 CaptureResult capture_source_to_file(Console& console, const char* command, OpenedSource opened,
-                                     CaptureRequest request, bool real_time) {
+                                     CaptureRequest request, bool real_time, LiveDenoise* denoise) {
     if (opened.keeps_limit) {
         request.duration_s.reset();
         request.samples.reset();
@@ -140,8 +199,11 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
     ByteSource& source = *opened.source;
     console.err << "capturing from " << source.identity().uri << " to " << request.path
                 << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n" : "\n");
-    const auto outcome = watch_capture(console, source, request);
-    return tell_outcome(console, command, outcome, request.path);
+    if (denoise != nullptr) { console.err << "  " << denoise->announcement() << '\n'; }
+    const auto outcome = watch_capture(console, source, request, denoise);
+    CaptureResult result = tell_outcome(console, command, outcome, request.path);
+    if (denoise != nullptr && result.file_written) { sum_up_denoising(console, command, *denoise, result); }
+    return result;
 }
 
 CaptureResult tell_outcome(Console& console, const char* command, const Result<CaptureOutcome>& outcome,

@@ -21,9 +21,9 @@ struct CaptureResult {
 CaptureResult capture_to_file(Console& console, const char* command, const CaptureOptions& options,
                               const std::string& path, bool real_time);
 
-// The same from a source that is open already.
+// The same from a source that is open already; denoised, too, where `denoise` is given.
 CaptureResult capture_source_to_file(Console& console, const char* command, OpenedSource opened,
-                                     CaptureRequest request, bool real_time);
+                                     CaptureRequest request, bool real_time, LiveDenoise* denoise = nullptr);
 
 // What came of a capture to this path, said on `err`.
 CaptureResult tell_outcome(Console& console, const char* command, const Result<CaptureOutcome>& outcome,

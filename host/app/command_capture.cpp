@@ -7,6 +7,7 @@
 #include "host/app/capture_run.hpp"
 #include "host/app/command.hpp"
 #include "host/app/device_choice.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
 
 namespace gyrolog {
@@ -18,11 +19,30 @@ struct Options {
     std::string json;
 };
 
+Status check_denoise(const Options& options, std::size_t boards) {
+    const LiveDenoiseOptions& denoise = options.capture.denoise;
+    GYROLOG_CHECK(denoise.check(options.capture.rate_hz));
+    if (!denoise.wanted()) { return {}; }
+    if (boards > 1) {
+        return Error{ErrorCode::invalid_argument,
+                     "--denoise is of one board: capture several without it, and denoise their array "
+                     "afterwards, `gyrolog denoise A.pcapng B.pcapng C.pcapng -o FUSED.csv`"};
+    }
+    const std::string output = denoise.output_of(options.path);
+    const NamedPath read[] = {{"--denoise-model", denoise.model}};
+    const NamedPath written[] = {
+        {"--output", options.path}, {"--denoise-out", output}, {"--json", options.json}};
+    return check_output_paths(read, written);
+}
+
 ExitCode capture(Console& console, const Options& options) {
     const auto devices = choose_devices(options.capture.devices);
     if (!devices.ok()) {
         report_error(console, "capture", devices.error());
         return exit_code_of_opening(devices.error());
+    }
+    if (const Status fine = check_denoise(options, devices->size()); !fine.ok()) {
+        return report_error(console, "capture", fine.error());
     }
     if (devices->size() > 1) {
         if (!options.json.empty()) {
@@ -50,6 +70,7 @@ Action setup_capture(CLI::App& app) {
         ->type_name("FILE")
         ->required();
     options->capture.declare(app);
+    options->capture.denoise.declare(app);
     app.add_option("--json", options->json,
                    "Afterwards, write what `check` says as JSON (- for standard output)")
         ->type_name("FILE");

@@ -10,6 +10,8 @@
 #include "analysis/plot/denoise_figure.hpp"
 #include "host/app/array_input.hpp"
 #include "host/app/command.hpp"
+#include "host/app/denoise_choice.hpp"
+#include "host/app/denoise_knowledge.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
@@ -27,17 +29,12 @@ namespace {
 struct Request {
     ArrayInput input;
     std::string output;
-    std::string method = "joint";
-    std::string rate_model;
-    std::optional<double> bandwidth_hz;
-    std::string gain = "varying";
+    DenoiseChoice choice;
     std::string still;        // "FROM,TO" in seconds
     std::string calibration;  // another recording, at rest
     std::vector<std::string> models;
     std::string duration;
     std::optional<double> saturation_dps;
-    std::size_t window = 256;
-    bool watch_off = false;
     bool all_methods = false;
     std::string align = "clock";
     std::string json_path;  // "-" is standard output; empty: not wanted
@@ -159,38 +156,7 @@ private:
     }
 
     Result<std::vector<DenoiseDesign>> choose_designs() const {
-        DenoiseDesign chosen;
-        chosen.method = denoise_method(request_.method).value_or(DenoiseMethod::joint);
-        chosen.rate = default_rate_design(chosen.method, recording_.rate_hz);
-        if (chosen.method == DenoiseMethod::wavelet &&
-            (request_.bandwidth_hz || !request_.rate_model.empty())) {
-            return wrong(
-                "--bandwidth and --rate-model are of the Kalman filter: use them with kalman or joint");
-        }
-        if (!request_.rate_model.empty()) {
-            chosen.rate.model = rate_model(request_.rate_model).value_or(RateModel::free);
-        }
-        if (request_.bandwidth_hz) {
-            if (chosen.rate.model == RateModel::free) {
-                if (!request_.rate_model.empty()) {
-                    return wrong("a free rate has no bandwidth: use --rate-model walk or trend");
-                }
-                chosen.rate.model = RateModel::trend;
-            }
-            chosen.rate.bandwidth_hz = *request_.bandwidth_hz;
-        } else if (chosen.rate.model != RateModel::free && !(chosen.rate.bandwidth_hz > 0.0)) {
-            chosen.rate.bandwidth_hz =
-                default_rate_design(DenoiseMethod::joint, recording_.rate_hz).bandwidth_hz;
-        }
-        if (chosen.rate.model != RateModel::free && !(chosen.rate.bandwidth_hz < 0.45 * recording_.rate_hz)) {
-            return wrong(fmt::format(
-                "--bandwidth {:g} Hz: less than {:.4g} Hz, 0.45 of the rate, can be told apart from "
-                "noise; --rate-model free passes everything",
-                chosen.rate.bandwidth_hz, 0.45 * recording_.rate_hz));
-        }
-        chosen.gain = request_.gain == "steady" ? FilterGain::steady : FilterGain::varying;
-        chosen.window = request_.window;
-        chosen.watch = !request_.watch_off;
+        GYROLOG_TRY(const DenoiseDesign chosen, design_of(request_.choice, recording_.rate_hz));
         std::vector<DenoiseDesign> designs{chosen};
         if (!request_.all_methods) { return designs; }
         for (const DenoiseMethod method : all_denoise_methods) {
@@ -198,7 +164,7 @@ private:
             DenoiseDesign other = chosen;
             other.method = method;
             other.rate = default_rate_design(method, recording_.rate_hz);
-            const bool told = request_.bandwidth_hz || !request_.rate_model.empty();
+            const bool told = request_.choice.bandwidth_hz || !request_.choice.rate_model.empty();
             if (told && method != DenoiseMethod::wavelet) { other.rate = chosen.rate; }
             designs.push_back(other);
         }
@@ -215,22 +181,7 @@ private:
             still_.to_s = std::min(still_.to_s, recording_.duration_s());
             return {};
         }
-        std::vector<std::vector<double>> means;
-        for (const ArrayAxis& axis : array_axes(recording_)) {
-            std::vector<double> mean(recording_.rows(), 0.0);
-            for (std::size_t row = 0; row < mean.size(); ++row) {
-                double count = 0.0;
-                for (const Column* unit : axis.units) {
-                    const double value = unit->value(row);
-                    if (!(value == value)) { continue; }
-                    mean[row] += value;
-                    count += 1.0;
-                }
-                mean[row] /= std::max(1.0, count);
-            }
-            means.push_back(std::move(mean));
-        }
-        still_ = still_part(recording_, means);
+        still_ = still_part_of(recording_);
         return {};
     }
 
@@ -267,21 +218,7 @@ private:
                         "learned: name one with --still FROM,TO, or a recording at rest with "
                         "--calibration FILE"};
             }
-            std::vector<const Column*> gyros;
-            for (const ArrayAxis& axis : array_axes(recording_)) {
-                gyros.insert(gyros.end(), axis.units.begin(), axis.units.end());
-            }
-            const std::vector<Segment> parts =
-                segments_known(gyros, segments_within(recording_.segments, recording_.rate_hz, still_));
-            still = rows_of(recording_, gyros, parts);
-            constexpr std::size_t rows_least = 64;
-            if (still.rows() < rows_least) {
-                return Error{
-                    ErrorCode::failed,
-                    fmt::format("the part at rest, {:.6g} s to {:.6g} s, has {} samples of all units; "
-                                "{} are needed: name another with --still FROM,TO",
-                                still_.from_s, still_.to_s, still.rows(), rows_least)};
-            }
+            GYROLOG_TRY(still, rows_at_rest(recording_, still_));
             report_.learned_from =
                 fmt::format("of {:.6g} s to {:.6g} s, at rest{}", still_.from_s, still_.to_s,
                             request_.still.empty() ? " as it seems (--still says otherwise)" : "");
@@ -300,35 +237,7 @@ private:
 
     Status take_models(std::vector<AxisKnowledge>& knowledge) {
         if (request_.models.empty()) { return {}; }
-        std::vector<SensorModel> models;
-        for (const std::string& path : request_.models) {
-            GYROLOG_TRY(SensorModel model, read_model(path));
-            models.push_back(std::move(model));
-        }
-        std::vector<std::vector<NoiseModel>> given;
-        for (const AxisKnowledge& axis : knowledge) {
-            if (models.size() != 1 && models.size() != axis.units.size()) {
-                return wrong(
-                    fmt::format("{} models for {} units on axis {}: give one for all, or one for each, "
-                                "in the units' order",
-                                models.size(), axis.units.size(), axis.axis));
-            }
-            std::vector<NoiseModel> units;
-            for (std::size_t i = 0; i < axis.units.size(); ++i) {
-                const SensorModel& model = models[models.size() == 1 ? 0 : i];
-                const auto at = static_cast<std::size_t>(axis.axis.front() - 'x');
-                NoiseModel noise;
-                noise.coefficients = model.axes.at(at).noise;
-                noise.converter = {model.lsb_rad_s, recording_.rate_hz};
-                if (!(noise.coefficients.N_rad_per_sqrt_s > 0.0)) {
-                    return wrong("model '" + request_.models[models.size() == 1 ? 0 : i] +
-                                 "' has no N on axis " + axis.axis + ": nothing to weigh its unit by");
-                }
-                units.push_back(noise);
-            }
-            given.push_back(std::move(units));
-        }
-        use_models(knowledge, given);
+        GYROLOG_CHECK(use_model_files(knowledge, request_.models, recording_.rate_hz));
         report_.learned_from = "of " + fmt::format("{}", fmt::join(request_.models, ", ")) +
                                ", correlation " + report_.learned_from;
         return {};
@@ -444,30 +353,30 @@ ExitCode denoise_command(Console& console, const Request& request) {
 }
 
 void add_filter_options(CLI::App& app, Request& request) {
-    app.add_option("--method", request.method,
+    app.add_option("--method", request.choice.method,
                    "kalman: the units combined; wavelet: its threshold on what is combined; joint: both")
         ->check(CLI::IsMember({"kalman", "wavelet", "joint"}))
         ->capture_default_str();
     app.add_option(
-           "--bandwidth", request.bandwidth_hz,
+           "--bandwidth", request.choice.bandwidth_hz,
            "Of the rate that passes the Kalman filter; without it kalman passes all, joint a fourth of "
            "the sampling rate")
         ->type_name("HZ")
         ->check(number_from_to(1e-6, 1e7, "Hz"));
     app.add_option(
-           "--rate-model", request.rate_model,
+           "--rate-model", request.choice.rate_model,
            "How the rate moves: free (no smoothing), walk (first order), trend (second order, without "
            "lag at constant acceleration), adaptive (narrow when calm, the whole bandwidth in motion)")
         ->check(CLI::IsMember({"free", "walk", "trend", "adaptive"}));
-    app.add_option("--gain", request.gain,
+    app.add_option("--gain", request.choice.gain,
                    "varying: by what is known at each sample; steady: the settled gain from the first on")
         ->check(CLI::IsMember({"varying", "steady"}))
         ->capture_default_str();
-    app.add_option("--window", request.window, "Of the wavelet: samples it looks back")
+    app.add_option("--window", request.choice.window, "Of the wavelet: samples it looks back")
         ->check(CLI::Range(std::size_t{14}, std::size_t{65536}))
         ->type_name("N")
         ->capture_default_str();
-    app.add_flag("--no-watch", request.watch_off, "Do not leave units out that fail");
+    app.add_flag("--no-watch", request.choice.watch_off, "Do not leave units out that fail");
     app.add_option("--saturation", request.saturation_dps,
                    "Size of rate at which a unit is saturated; without it counts at the end of 16 bits are")
         ->type_name("DPS")

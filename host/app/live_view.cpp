@@ -73,6 +73,7 @@ void LiveView::show(const CaptureProgress& progress) {
     columns_drawn_ = terminal.columns;
     std::vector<std::string> lines{"  " + live_line(progress)};
     if (allan_ != nullptr) { add_allan(lines, terminal.columns, terminal.rows); }
+    if (denoise_ != nullptr) { lines.push_back("  " + denoise_->line()); }
     if (keys_ != nullptr) { lines.push_back(keys_line(progress)); }
     for (std::string& line : lines) { line = cut(line, terminal.columns - 1); }
     draw(lines);
@@ -82,7 +83,7 @@ void LiveView::show(const CaptureProgress& progress) {
 // says less and less that is new, once for every hundredth more of the capture.
 void LiveView::add_allan(std::vector<std::string>& lines, std::size_t columns, std::size_t rows) {
     constexpr std::chrono::seconds pause(1);
-    constexpr std::size_t other_lines = 8;  // of this view, and what stands above it
+    const std::size_t other_lines = denoise_ == nullptr ? 8 : 11;  // of this view, and what stands above it
     constexpr std::size_t chart_rows_max = 14;
     const std::uint64_t samples = allan_->samples();
     const bool grown = samples > axes_samples_ + axes_samples_ / 100 || samples < axes_samples_;

@@ -8,6 +8,7 @@
 
 #include "host/app/console.hpp"
 #include "host/app/live_allan.hpp"
+#include "host/app/live_denoise.hpp"
 #include "host/app/live_keys.hpp"
 #include "host/session/capture_session.hpp"
 
@@ -24,6 +25,8 @@ public:
     // Below it the Allan deviation, where the terminal is high enough, what is known of K, and the keys.
     LiveView(Console& console, const LiveAllan& allan, const LiveKeys& keys)
         : console_(console), allan_(&allan), keys_(&keys) {}
+    // And what becomes of the samples that are denoised.
+    void add(const LiveDenoise& denoise) { denoise_ = &denoise; }
     void show(const CaptureProgress& progress);
     // Leaves the last state standing and ends the line.
     void finish();
@@ -38,6 +41,7 @@ private:
     Console& console_;
     const LiveAllan* allan_ = nullptr;
     const LiveKeys* keys_ = nullptr;
+    const LiveDenoise* denoise_ = nullptr;
     bool announced_ = false;
     std::size_t lines_drawn_ = 0;
     std::size_t columns_drawn_ = 0;

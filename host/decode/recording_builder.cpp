@@ -15,15 +15,6 @@ constexpr double longest_pause_s = 1e9;
 constexpr double longest_pause_instants = 1e14;  // the same at 100 kHz: a broken clock may give any rate
 constexpr std::uint64_t most_rows_ahead = std::uint64_t{1} << 26U;  // a file's size may be a claim only
 
-bool same_setting(const glp_config& a, const glp_config& b) {
-    return a.layout == b.layout && a.rate_mHz == b.rate_mHz && a.decimation == b.decimation &&
-           a.gyro_full_scale_dps == b.gyro_full_scale_dps && a.accel_full_scale_g == b.accel_full_scale_g &&
-           a.dlpf_hz == b.dlpf_hz && a.gyro_ndps_per_lsb == b.gyro_ndps_per_lsb &&
-           a.accel_pg_per_lsb == b.accel_pg_per_lsb && a.temp_nC_per_lsb == b.temp_nC_per_lsb &&
-           a.temp_offset_mC == b.temp_offset_mC &&
-           std::memcmp(a.registers, b.registers, sizeof(a.registers)) == 0;
-}
-
 void append_field(std::vector<std::int16_t>& column, const std::uint8_t* bytes, std::size_t count,
                   std::size_t stride) {
     const std::size_t rows = column.size();
@@ -56,6 +47,35 @@ std::vector<Quantity> quantities(std::uint8_t layout, const glp_config& config) 
 }
 
 }  // namespace
+
+bool same_setting(const glp_config& a, const glp_config& b) {
+    return a.layout == b.layout && a.rate_mHz == b.rate_mHz && a.decimation == b.decimation &&
+           a.gyro_full_scale_dps == b.gyro_full_scale_dps && a.accel_full_scale_g == b.accel_full_scale_g &&
+           a.dlpf_hz == b.dlpf_hz && a.gyro_ndps_per_lsb == b.gyro_ndps_per_lsb &&
+           a.accel_pg_per_lsb == b.accel_pg_per_lsb && a.temp_nC_per_lsb == b.temp_nC_per_lsb &&
+           a.temp_offset_mC == b.temp_offset_mC &&
+           std::memcmp(a.registers, b.registers, sizeof(a.registers)) == 0;
+}
+
+std::vector<Column> sample_columns(std::uint8_t layout, const glp_config& config) {
+    std::vector<Column> columns;
+    for (const Quantity& quantity : quantities(layout, config)) {
+        columns.push_back(
+            {quantity.name, quantity.unit, std::vector<std::int16_t>(), quantity.scale, quantity.offset});
+    }
+    return columns;
+}
+
+void append_samples(std::vector<Column>& columns, const glp_samples& samples) {
+    const std::size_t stride = glp_sample_bytes(samples.layout);
+    for (std::size_t field = 0; field < stride / 2; ++field) {
+        append_field(std::get<std::vector<std::int16_t>>(columns[field].data), samples.samples + 2 * field,
+                     samples.count, stride);
+    }
+    if ((samples.layout & glp_layout_temperature) != 0) { return; }
+    auto& temperature = std::get<std::vector<std::int16_t>>(columns.back().data);
+    temperature.insert(temperature.end(), samples.count, samples.temperature);
+}
 
 void RecordingBuilder::take_config(std::uint32_t boot, const glp_config& config) {
     config_ = config;

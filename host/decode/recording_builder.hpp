@@ -21,6 +21,12 @@
 
 namespace gyrolog {
 
+// The columns of a recording of such samples, without rows; and rows of samples of that layout behind theirs.
+std::vector<Column> sample_columns(std::uint8_t layout, const glp_config& config);
+void append_samples(std::vector<Column>& columns, const glp_samples& samples);
+// Whether samples of both can stand in one column.
+bool same_setting(const glp_config& a, const glp_config& b);
+
 class RecordingBuilder {
 public:
     // Room is made at once for as many samples as so many bytes can hold: columns that grow are copied again

@@ -46,6 +46,8 @@ public:
     const SampleTimeline& timeline() const { return timeline_; }
     // As last told by the board, over whatever connection.
     const std::optional<glp_hello>& hello() const { return hello_; }
+    // Of the last samples, as the timeline numbers runs.
+    std::uint32_t run() const { return run_; }
     std::uint64_t intact_frames() const { return frames_.intact_frames(); }
     const std::optional<glp_config>& config() const { return config_; }
     const std::optional<glp_device_status>& device_status() const { return status_; }

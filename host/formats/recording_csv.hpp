@@ -42,6 +42,7 @@ struct CsvWriteOptions {
     // or finer, temperatures to 0.0001 degC, else 9 digits. All others are exact: the shortest number that
     // reads back as the same.
     std::vector<std::string> resolved{};
+    TextGrowth growth = TextGrowth::whole;
 };
 
 // Time stamps as they came, or index / rate where none did. Compressed by the name's ending. What was at
@@ -56,7 +57,9 @@ public:
 
     // The first piece decides the columns; the others have the same.
     Status append(const Recording& piece);
-    // Without close() nothing is left of the file.
+    // What was appended is in the file, if it is one that grows.
+    Status flush();
+    // Without close() nothing is left of a whole file.
     Status close();
 
 private:

@@ -153,7 +153,7 @@ void append_row(std::string& text, double t_s, std::size_t row, const std::vecto
 }  // namespace
 
 Result<RecordingCsvWriter> RecordingCsvWriter::create(const std::string& path, CsvWriteOptions options) {
-    auto file = TextWriter::create(path);
+    auto file = TextWriter::create(path, options.growth);
     if (!file.ok()) { return in_context("write '" + path + "'", std::move(file).error()); }
     return RecordingCsvWriter(path, std::move(options), std::move(file).value());
 }
@@ -184,10 +184,16 @@ Status RecordingCsvWriter::append(const Recording& piece) {
     return {};
 }
 
-Status RecordingCsvWriter::close() {
-    Status closed = file_.write(text_);
-    if (closed.ok()) { closed = file_.close(); }
+Status RecordingCsvWriter::flush() {
+    Status written = file_.write(text_);
     text_.clear();
+    if (!written.ok()) { return in_context("write '" + path_ + "'", std::move(written).error()); }
+    return {};
+}
+
+Status RecordingCsvWriter::close() {
+    GYROLOG_CHECK(flush());
+    Status closed = file_.close();
     if (!closed.ok()) { return in_context("write '" + path_ + "'", std::move(closed).error()); }
     return {};
 }

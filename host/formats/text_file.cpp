@@ -60,12 +60,13 @@ Result<std::string_view> TextReader::read() {
 
 void TextWriter::Close::operator()(void* archive) const { archive_write_free(handle(archive)); }
 
-Result<TextWriter> TextWriter::create(const std::string& path) {
+Result<TextWriter> TextWriter::create(const std::string& path, TextGrowth growth) {
     TextWriter writer;
     writer.path_ = path;
     std::error_code none;
     const std::filesystem::file_status there = std::filesystem::status(path, none);
-    const bool direct = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
+    const bool direct = growth == TextGrowth::growing ||
+                        (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there));
     if (std::filesystem::is_directory(there)) { return Error{ErrorCode::failed, "it is a folder"}; }
     const std::string written = direct ? path : path + ".part";
     archive* file = archive_write_new();
@@ -82,6 +83,7 @@ Result<TextWriter> TextWriter::create(const std::string& path) {
     }
     // Without this the file would be filled up to a multiple of a tape's block.
     archive_write_set_bytes_in_last_block(file, 1);
+    if (growth == TextGrowth::growing) { archive_write_set_bytes_per_block(file, 0); }
     if (archive_write_open_filename(file, written.c_str()) != ARCHIVE_OK) { return error_of(file); }
     if (!direct) { writer.beside_ = written; }
     archive_entry* entry = archive_entry_new();

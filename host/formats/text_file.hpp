@@ -26,14 +26,22 @@ private:
     std::string buffer_;
 };
 
-// Written beside the file that it shall be and put in its place by close(), so that a failure leaves what was
-// there. A path that is no regular file (a pipe, /dev/stdout) is written directly.
+// How a file comes to be.
+enum class TextGrowth {
+    // Written beside the file that it shall be and put in its place by close(), so that a failure leaves what
+    // was there. A path that is no regular file (a pipe, /dev/stdout) is written directly.
+    whole,
+    // Under its own name from the first byte, and handed to the system by every write(): whoever reads it
+    // sees it grow, and a failure leaves what came before.
+    growing,
+};
+
 class TextWriter {
 public:
-    static Result<TextWriter> create(const std::string& path);
+    static Result<TextWriter> create(const std::string& path, TextGrowth growth = TextGrowth::whole);
     TextWriter(TextWriter&&) = default;
     TextWriter& operator=(TextWriter&&) = delete;
-    // Without close() nothing is left.
+    // Without close() nothing is left of a whole file.
     ~TextWriter();
 
     Status write(std::string_view text);

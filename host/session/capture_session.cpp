@@ -153,6 +153,7 @@ public:
 
 private:
     void run() {
+        if (request_.observer != nullptr) { request_.observer->on_decoder(decoder_); }
         while (!queue_.finished()) {
             queue_.pop(progress_interval).for_each([&](const Transfer& transfer) { take(transfer); });
             write_marks();

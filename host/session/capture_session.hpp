@@ -29,6 +29,9 @@ public:
     virtual void on_start() = 0;
     // Once their configuration is known.
     virtual void on_samples(const glp_frame& frame, const glp_samples& samples, const glp_config& config) = 0;
+    // Before any of these: what decodes the stream. Within on_samples() it may be asked where these samples
+    // stand in time; at no other time.
+    virtual void on_decoder(const StreamDecoder& /*decoder*/) {}
 };
 
 struct CaptureRequest {
