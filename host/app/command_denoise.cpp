@@ -205,6 +205,13 @@ private:
     Result<std::vector<AxisKnowledge>> learn() {
         std::optional<double> saturation;
         if (request_.saturation_dps) { saturation = *request_.saturation_dps * rad_per_deg; }
+        if (!request_.models.empty() && request_.calibration.empty() && !(still_.to_s > still_.from_s) &&
+            is_single()) {
+            std::vector<AxisKnowledge> known = know_units(recording_, saturation);
+            GYROLOG_CHECK(use_model_files(known, request_.models, recording_.rate_hz));
+            report_.learned_from = "of " + request_.models.front();
+            return known;
+        }
         Recording still;
         if (!request_.calibration.empty()) {
             GYROLOG_TRY(still, calibration_recording());
@@ -233,6 +240,12 @@ private:
         }
         GYROLOG_CHECK(take_models(knowledge));
         return knowledge;
+    }
+
+    // A gyro with which no other can be correlated needs no part at rest besides its model.
+    bool is_single() const {
+        return std::ranges::all_of(array_axes(recording_),
+                                   [](const ArrayAxis& axis) { return axis.units.size() == 1; });
     }
 
     Status take_models(std::vector<AxisKnowledge>& knowledge) {

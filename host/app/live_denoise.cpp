@@ -351,7 +351,8 @@ Result<std::optional<TimeSpan>> LiveDenoise::find_rest(bool last) {
                 ErrorCode::failed,
                 fmt::format("the board did not rest for {:.3g} s in its first {:.3g} s, so its noise "
                             "could not be learned; nothing is denoised. Give --denoise-model, or run "
-                            "`gyrolog denoise {} -o {}` afterwards",
+                            "`gyrolog denoise {} -o {}` afterwards, with a recording at rest as "
+                            "--calibration",
                             wanted_s, patience * wanted_s, setup_.capture, setup_.output)};
         }
         next_look_ += std::max<std::size_t>(1, wanted / 10);
@@ -435,7 +436,9 @@ void LiveDenoise::fail(const Error& error) {
     const std::lock_guard lock(mutex_);
     failed_ = error;
     pending_ = {};
-    notices_.push_back("not denoised any further: " + error.message + "; the capture goes on");
+    if (!ended_) {
+        notices_.push_back("not denoised any further: " + error.message + "; the capture goes on");
+    }
     room_.notify_all();
 }
 

@@ -3,6 +3,10 @@
 // The samples are handed over on the capture's writer thread, which is not kept waiting, and are denoised and
 // written on a thread of its own. The first of them are kept until the gyros' noise is known, and then go
 // the same way: the text begins with the capture's first sample.
+//
+// The rate, and with it the time column, is what the stamps of that first part say. The pause before a board
+// that was reset or plugged in again is what the clocks say at its first frame; `denoise` knows it by later
+// ones, too.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -176,6 +177,135 @@ TEST_F(DenoiseCommand, LeavesAFailingUnitOutAndSaysSo) {
     ASSERT_TRUE(write_recording_csv(array, recording).ok());
     ASSERT_EQ(denoise({recording, "--method", "kalman"}), ExitCode::ok) << err.str();
     EXPECT_THAT(out.str(), HasSubstr("unit 2 stuck, left out from 20"));
+}
+
+class LiveDenoising : public DenoiseCommand {
+protected:
+    ExitCode capture(const std::string& device, std::vector<std::string> arguments) {
+        err.str("");
+        arguments.insert(arguments.begin(), {"capture", "--device", device, "-o", stored, "--force"});
+        return run_command_line(std::move(arguments), {out, err});
+    }
+    // What the summary says gives the same.
+    std::vector<std::string> said_arguments() const {
+        const std::string text = err.str();
+        const std::string before = "the same afterwards: gyrolog denoise ";
+        const std::size_t at = text.find(before);
+        if (at == std::string::npos) { return {}; }
+        std::istringstream words(text.substr(at + before.size(), text.find('\n', at) - at - before.size()));
+        return {std::istream_iterator<std::string>(words), {}};
+    }
+
+    std::string stored = folder.path("a.pcapng");
+    std::string live = folder.path("a.denoised.csv");
+};
+
+TEST_F(LiveDenoising, WritesWhatDenoiseWritesAfterwards) {
+    // Holes, one of them while the noise is learned.
+    const std::string device = "sim:rate=200,seed=7,fault=fifo_overflow@5+drop_packet@12+link_stall@15..17";
+    const std::vector<std::vector<std::string>> choices{
+        {"wavelet"}, {"joint"}, {"kalman", "--bandwidth", "5"}};
+    for (const std::vector<std::string>& choice : choices) {
+        std::vector<std::string> arguments{"--duration", "25s", "--denoise"};
+        arguments.insert(arguments.end(), choice.begin(), choice.end());
+        ASSERT_EQ(capture(device, arguments), ExitCode::data_lost) << err.str();
+        EXPECT_THAT(err.str(), HasSubstr("noise of 0 s to 10"));
+        std::vector<std::string> again = said_arguments();
+        EXPECT_THAT(again, testing::Contains("--still"));
+        again.insert(again.end(), {"-o", fused});
+        ASSERT_EQ(denoise(again), ExitCode::ok) << err.str();
+        EXPECT_GT(read(live).rows(), 4500U);
+        EXPECT_TRUE(read_whole_file(live) == read_whole_file(fused)) << choice.front();
+    }
+}
+
+TEST_F(LiveDenoising, OneGyroIsWhatItWasByKalmanAndQuieterByJoint) {
+    const std::string device = "sim:rate=200,seed=7";
+    ASSERT_EQ(capture(device, {"--duration", "12s", "--denoise", "kalman"}), ExitCode::ok) << err.str();
+    EXPECT_THAT(err.str(), HasSubstr("kalman has nothing to combine"));
+    const Recording same = read(live);
+    ASSERT_EQ(run_command_line({"export", stored, "-o", fused}, {out, err}), ExitCode::ok) << err.str();
+    const Recording raw = read(fused);
+    ASSERT_EQ(same.rows(), raw.rows());
+    for (std::size_t i = 0; i < raw.rows(); ++i) {
+        ASSERT_NEAR(same.find("gz")->value(i), raw.find("gz")->value(i), 1e-6) << i;
+    }
+    ASSERT_EQ(capture(device, {"--duration", "12s", "--denoise", "joint", "--denoise-out", fused}),
+              ExitCode::ok)
+        << err.str();
+    const auto change = [](const Recording& of) {
+        double sum = 0.0;
+        for (std::size_t i = 1; i < of.rows(); ++i) {
+            sum += std::abs(of.find("gz")->value(i) - of.find("gz")->value(i - 1));
+        }
+        return sum;
+    };
+    EXPECT_LT(change(read(fused)), 0.2 * change(raw));
+}
+
+TEST_F(LiveDenoising, TakesAModelWhereNothingRests) {
+    ASSERT_TRUE(write_model(typical_mpu9250(), folder.path("known.json")).ok());
+    json moving = json::parse(format_model(typical_mpu9250()));
+    moving["rate_hz"] = 100.0;
+    moving["effects"] = {
+        {{"effect", "gauss_markov"}, {"axes", json::array()}, {"params", {{"sigma_dps", 20}, {"tau_s", 1}}}}};
+    std::ofstream(folder.path("moving.json")) << moving;
+    const std::string device = "sim:model=" + folder.path("moving.json") + ",seed=3";
+
+    EXPECT_EQ(capture(device, {"--duration", "70s", "--denoise", "joint"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("did not rest for 10 s in its first 60 s"));
+    EXPECT_EQ(read_whole_file(live), "");
+    EXPECT_EQ(run_command_line({"check", stored}, {out, err}), ExitCode::ok);
+
+    const std::string model = folder.path("known.json");
+    ASSERT_EQ(capture(device, {"--duration", "70s", "--denoise", "joint", "--denoise-model", model}),
+              ExitCode::ok)
+        << err.str();
+    std::vector<std::string> again = said_arguments();
+    again.insert(again.end(), {"-o", fused});
+    ASSERT_EQ(denoise(again), ExitCode::ok) << err.str();
+    EXPECT_EQ(read(live).rows(), 7000U);
+    EXPECT_TRUE(read_whole_file(live) == read_whole_file(fused));
+}
+
+TEST_F(LiveDenoising, RefusesWhatItCannotDo) {
+    EXPECT_EQ(capture("sim:boards=2,rate=200", {"--duration", "1s", "--denoise", "joint"}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("gyrolog denoise A.pcapng B.pcapng"));
+    EXPECT_EQ(capture("sim:rate=200", {"--duration", "1s", "--bandwidth", "5"}), ExitCode::usage);
+    EXPECT_EQ(capture("sim:rate=200", {"--duration", "1s", "--denoise", "joint", "--denoise-out", stored}),
+              ExitCode::usage);
+    const std::string none = folder.path("none");
+    EXPECT_EQ(capture("sim:rate=200", {"--duration", "1s", "--denoise", "joint", "--denoise-model", none}),
+              ExitCode::failed);
+    EXPECT_EQ(read_whole_file(stored), "");
+    // Too short to learn from: the capture is there, and said is why the other is not.
+    EXPECT_EQ(capture("sim:rate=200", {"--duration", "4s", "--denoise", "joint"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("ended before the board had rested for 10 s"));
+    EXPECT_EQ(read_whole_file(live), "");
+    EXPECT_NE(read_whole_file(stored), "");
+}
+
+TEST_F(LiveDenoising, ATextThatCannotBeWrittenCostsTheCaptureNothing) {
+    EXPECT_EQ(
+        capture("sim:rate=200", {"--duration", "60s", "--denoise", "wavelet", "--denoise-out", "/dev/full"}),
+        ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("write '/dev/full'"));
+    out.str("");
+    EXPECT_EQ(run_command_line({"check", stored, "--json", "-"}, {out, err}), ExitCode::ok);
+    EXPECT_EQ(json::parse(out.str())["samples"]["good"], 12'000);
+}
+
+TEST_F(LiveDenoising, TextThatGrowsIsThereBeforeItsEnd) {
+    {
+        CsvWriteOptions options;
+        options.growth = TextGrowth::growing;
+        auto writer = RecordingCsvWriter::create(live, options);
+        ASSERT_TRUE(writer.ok());
+        ASSERT_TRUE(writer->append(array_of(1)).ok());
+        ASSERT_TRUE(writer->flush().ok());
+        EXPECT_EQ(read(live).rows(), rows);
+    }
+    EXPECT_EQ(read(live).rows(), rows);  // without close()
 }
 
 }  // namespace
