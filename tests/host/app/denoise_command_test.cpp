@@ -288,7 +288,7 @@ TEST_F(LiveDenoising, RefusesWhatItCannotDo) {
 TEST_F(LiveDenoising, ATextThatCannotBeWrittenCostsTheCaptureNothing) {
     EXPECT_EQ(
         capture("sim:rate=200", {"--duration", "60s", "--denoise", "wavelet", "--denoise-out", "/dev/full"}),
-        ExitCode::failed);
+        ExitCode::disk_full);
     EXPECT_THAT(err.str(), HasSubstr("write '/dev/full'"));
     out.str("");
     EXPECT_EQ(run_command_line({"check", stored, "--json", "-"}, {out, err}), ExitCode::ok);
