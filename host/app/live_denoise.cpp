@@ -23,7 +23,6 @@ constexpr double rest_s = 10.0;           // that noise is learned from
 constexpr double rest_rows_least = 80.0;  // of slow sensors
 constexpr double patience = 6.0;          // times that, until it is given up
 constexpr double rate_known_s = 2.0;      // of stamps, where nothing is learned
-constexpr std::size_t rows_waiting_most = 10'000'000;
 constexpr std::size_t batch_rows_most = std::size_t{1} << 16U;
 constexpr std::int64_t flush_interval_ns = 1'000'000'000;
 constexpr double longest_pause_s = 1e9;
@@ -189,6 +188,13 @@ void LiveDenoise::begin(const glp_samples& samples, const glp_config& config) {
     run_first_ = samples.first_index;
     run_grid_ = 0;
     grid_end_ = 0;
+    const auto design = design_of(setup_.options.choice, config.rate_mHz * 1e-3);
+    if (!design.ok()) { stop("nothing is denoised: " + design.error().message); }
+}
+
+void LiveDenoise::stop(std::string why) {
+    notices_.push_back(why + "; the capture goes on");
+    stopped_ = Error{ErrorCode::failed, std::move(why)};
 }
 
 // As RecordingBuilder lays the grid: within a run by the board's numbers, between runs by the clocks.
@@ -220,7 +226,7 @@ bool LiveDenoise::wait_for_room(std::unique_lock<std::mutex>& lock, std::size_t 
     const auto has_room = [&](std::size_t most) { return pending_.rows.rows() + samples <= most || failed_; };
     if (setup_.source_waits) {
         room_.wait(lock, [&] { return has_room(batch_rows_most); });
-    } else if (!has_room(rows_waiting_most)) {
+    } else if (!has_room(setup_.rows_waiting_most)) {
         samples_dropped_ += samples;
         return false;
     }
@@ -234,10 +240,9 @@ void LiveDenoise::on_samples(const glp_frame& /*frame*/, const glp_samples& samp
     std::unique_lock lock(mutex_);
     if (failed_ || stopped_) { return; }
     if (!config_) { begin(samples, config); }
+    if (stopped_) { return; }
     if (layout_ != samples.layout || !same_setting(*config_, config)) {
-        stopped_ = Error{ErrorCode::failed, "the board's configuration changed, and a text has one: '" +
-                                                setup_.output + "' ends there"};
-        notices_.push_back(stopped_->message);
+        stop("the board's configuration changed, and a text has one: '" + setup_.output + "' ends there");
         return;
     }
     const std::int64_t index = std::max(place(samples), grid_end_);

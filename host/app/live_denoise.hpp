@@ -67,9 +67,10 @@ public:
         std::string output;
         std::string capture;  // its path, for what is said
         bool overwrite = false;
-        // Whether the source loses nothing when it is kept waiting. From one that would, samples beyond some
-        // 10^7 that wait to be denoised are left out of the text, and told.
+        // Whether the source loses nothing when it is kept waiting. From one that would, samples beyond so
+        // many rows that wait to be denoised are left out of the text, and told.
         bool source_waits = false;
+        std::size_t rows_waiting_most = 10'000'000;
     };
     // Errors: the file is there already or cannot be made, the model cannot be read.
     static Result<std::unique_ptr<LiveDenoise>> create(Setup setup);
@@ -108,6 +109,7 @@ private:
     };
 
     void begin(const glp_samples& samples, const glp_config& config);
+    void stop(std::string why);
     std::int64_t place(const glp_samples& samples) const;
     void append(const glp_samples& samples, std::int64_t index);
     bool wait_for_room(std::unique_lock<std::mutex>& lock, std::size_t samples);

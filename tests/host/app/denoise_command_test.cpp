@@ -10,6 +10,7 @@
 
 #include "analysis/simulate/counter_random.hpp"
 #include "host/app/command_line.hpp"
+#include "host/app/live_denoise.hpp"
 #include "host/formats/model_json.hpp"
 #include "host/formats/recording_csv.hpp"
 #include "tests/support/program.hpp"
@@ -283,6 +284,10 @@ TEST_F(LiveDenoising, RefusesWhatItCannotDo) {
     EXPECT_THAT(err.str(), HasSubstr("ended before the board had rested for 10 s"));
     EXPECT_EQ(read_whole_file(live), "");
     EXPECT_NE(read_whole_file(stored), "");
+    // The board's rate is known only once it is there.
+    EXPECT_EQ(capture("sim:rate=200", {"--duration", "4s", "--denoise", "joint", "--bandwidth", "95"}),
+              ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("nothing is denoised: --bandwidth 95 Hz"));
 }
 
 TEST_F(LiveDenoising, ATextThatCannotBeWrittenCostsTheCaptureNothing) {
@@ -293,6 +298,35 @@ TEST_F(LiveDenoising, ATextThatCannotBeWrittenCostsTheCaptureNothing) {
     out.str("");
     EXPECT_EQ(run_command_line({"check", stored, "--json", "-"}, {out, err}), ExitCode::ok);
     EXPECT_EQ(json::parse(out.str())["samples"]["good"], 12'000);
+}
+
+TEST_F(LiveDenoising, SamplesThatFindNoRoomAreAHoleAndCounted) {
+    LiveDenoise::Setup setup;
+    setup.options.choice.method = "kalman";
+    setup.options.model = folder.path("known.json");
+    setup.output = live;
+    setup.rows_waiting_most = 150;
+    ASSERT_TRUE(write_model(typical_mpu9250(), setup.options.model).ok());
+    auto denoise = LiveDenoise::create(setup);
+    ASSERT_TRUE(denoise.ok()) << denoise.error().message;
+    const StreamDecoder decoder;
+    (*denoise)->on_decoder(decoder);
+    glp_config config{};
+    config.rate_mHz = 100'000;
+    config.gyro_ndps_per_lsb = 15'258'789;
+    const std::vector<std::uint8_t> zeros(6 * 200);
+    glp_samples samples{};
+    samples.layout = glp_layout_gyro;
+    samples.samples = zeros.data();
+    for (const std::uint8_t count : {std::uint8_t{100}, std::uint8_t{200}}) {
+        samples.count = count;
+        (*denoise)->on_samples({}, samples, config);
+        samples.first_index += count;
+    }
+    const auto done = (*denoise)->finish();
+    ASSERT_FALSE(done.ok());
+    EXPECT_THAT(done.error().message, HasSubstr("200 samples found no room"));
+    EXPECT_EQ(read(live).rows(), 100U);
 }
 
 TEST_F(LiveDenoising, TextThatGrowsIsThereBeforeItsEnd) {
