@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -36,8 +37,10 @@ constexpr double ceiling_bytes_per_s = 1'216'000.0;  // 19 packets of 64 bytes a
 constexpr std::chrono::milliseconds warm_up(1000);
 constexpr std::chrono::milliseconds measured(3000);
 
-std::unique_ptr<VirtualBoard> board_at(double rate_hz) {
+std::unique_ptr<VirtualBoard> board_at(double rate_hz, std::uint64_t seed = 1) {
     VirtualBoardOptions options;
+    options.seed = seed;
+    options.serial = "SIM" + std::to_string(seed);
     options.rate_hz = rate_hz;
     options.dlpf_hz = rate_hz > 1000.0 ? 250 : 184;
     options.ring_bytes = std::size_t{1} << 16U;
@@ -63,7 +66,8 @@ double bytes_per_board_second(double rate_hz) {
 // A pseudo-terminal with a board behind it, in a thread.
 class BoardLine {
 public:
-    BoardLine(double rate_hz, double hurry, bool started) : board_(board_at(rate_hz)), hurry_(hurry) {
+    BoardLine(double rate_hz, std::uint64_t seed, double hurry, bool started)
+        : board_(board_at(rate_hz, seed)), hurry_(hurry) {
         line_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
         if (line_ < 0 || grantpt(line_) != 0 || unlockpt(line_) != 0) { throw std::runtime_error("no pty"); }
         path_ = ptsname(line_);
@@ -152,50 +156,72 @@ pid_t start_reader(const std::vector<std::string>& command, const std::string& o
     return child;
 }
 
-void measure(benchmark::State& state, double rate_hz, double hurry, bool with_cat) {
+enum class Reader : std::uint8_t { cat, capture };
+
+std::vector<std::string> command_of(Reader kind, const std::deque<BoardLine>& lines,
+                                    const std::string& folder) {
+    if (kind == Reader::cat) { return {"cat", lines.front().path()}; }
+    const char* build = std::getenv("GYROLOG_BUILD_DIR");
+    std::vector<std::string> command = {std::string(build == nullptr ? "build" : build) + "/gyrolog",
+                                        "capture", "-o", folder + "/capture.pcapng"};
+    for (const BoardLine& line : lines) {
+        command.emplace_back("--device");
+        command.push_back("tty:" + line.path());
+    }
+    return command;
+}
+
+template <typename Count>
+double total(const std::deque<BoardLine>& lines, Count count) {
+    double sum = 0.0;
+    for (const BoardLine& line : lines) { sum += static_cast<double>((line.*count)()); }
+    return sum;
+}
+
+void measure(benchmark::State& state, double rate_hz, double hurry, Reader kind, std::uint64_t boards = 1) {
     std::string folder = (fs::temp_directory_path() / "gyrolog_benchmark_XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) { throw std::runtime_error("no temporary folder"); }
-    const char* build = std::getenv("GYROLOG_BUILD_DIR");
-    const std::string program = std::string(build == nullptr ? "build" : build) + "/gyrolog";
     for ([[maybe_unused]] const auto turn : state) {
-        BoardLine line(rate_hz, hurry, with_cat);
-        const pid_t reader = with_cat ? start_reader({"cat", line.path()}, folder + "/raw")
-                                      : start_reader({program, "capture", "--device", "tty:" + line.path(),
-                                                      "-o", folder + "/capture.pcapng"},
-                                                     folder + "/out");
+        std::deque<BoardLine> lines;
+        for (std::uint64_t board = 1; board <= boards; ++board) {
+            lines.emplace_back(rate_hz, board, hurry, kind == Reader::cat);
+        }
+        const pid_t reader = start_reader(command_of(kind, lines, folder), folder + "/out");
         std::this_thread::sleep_for(warm_up);
         const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
         const double used_before_ns = processor_ns(reader);
-        const std::uint64_t bytes_before = line.bytes();
-        const std::uint64_t samples_before = line.samples();
+        const double bytes_before = total(lines, &BoardLine::bytes);
+        const double samples_before = total(lines, &BoardLine::samples);
         std::this_thread::sleep_for(measured);
         const double used_ns = processor_ns(reader) - used_before_ns;
         const double elapsed_s = static_cast<double>(clock_ns(CLOCK_MONOTONIC) - begin_ns) * 1e-9;
-        const auto samples = static_cast<double>(line.samples() - samples_before);
         state.counters["cpu"] = used_ns * 1e-9 / elapsed_s;
-        state.counters["ns_per_sample"] = used_ns / samples;
-        state.counters["bytes_per_s"] = static_cast<double>(line.bytes() - bytes_before) / elapsed_s;
+        state.counters["ns_per_sample"] = used_ns / (total(lines, &BoardLine::samples) - samples_before);
+        state.counters["bytes_per_s"] = (total(lines, &BoardLine::bytes) - bytes_before) / elapsed_s;
         state.SetIterationTime(elapsed_s);
-        kill(reader, with_cat ? SIGTERM : SIGINT);
+        kill(reader, kind == Reader::cat ? SIGTERM : SIGINT);
         int status = 0;
         waitpid(reader, &status, 0);
-        if (!with_cat && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
+        if (kind == Reader::capture && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
             state.SkipWithError("the capture lost data or failed");
         }
     }
     fs::remove_all(folder);
 }
 
-void at_the_ceiling(benchmark::State& state, bool with_cat) {
+void at_the_ceiling(benchmark::State& state, Reader kind, std::uint64_t boards) {
     constexpr double rate_hz = 8000.0;
-    measure(state, rate_hz, ceiling_bytes_per_s / bytes_per_board_second(rate_hz), with_cat);
+    measure(state, rate_hz, ceiling_bytes_per_s / bytes_per_board_second(rate_hz), kind, boards);
 }
-void at_1_kHz(benchmark::State& state, bool with_cat) { measure(state, 1000.0, 1.0, with_cat); }
+void at_1_kHz(benchmark::State& state, Reader kind) { measure(state, 1000.0, 1.0, kind); }
 
-BENCHMARK_CAPTURE(at_the_ceiling, capture, false)->UseManualTime()->Iterations(1);
-BENCHMARK_CAPTURE(at_the_ceiling, cat, true)->UseManualTime()->Iterations(1);
-BENCHMARK_CAPTURE(at_1_kHz, capture, false)->UseManualTime()->Iterations(1);
-BENCHMARK_CAPTURE(at_1_kHz, cat, true)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_the_ceiling, capture, Reader::capture, 1)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_the_ceiling, cat, Reader::cat, 1)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_the_ceiling, capture_of_three_boards, Reader::capture, 3)
+    ->UseManualTime()
+    ->Iterations(1);
+BENCHMARK_CAPTURE(at_1_kHz, capture, Reader::capture)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_1_kHz, cat, Reader::cat)->UseManualTime()->Iterations(1);
 
 }  // namespace
 }  // namespace gyrolog

@@ -1,0 +1,114 @@
+#include "host/session/board_control.hpp"
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+
+namespace gyrolog {
+namespace {
+
+constexpr std::chrono::milliseconds reply_timeout(1000);
+constexpr std::chrono::milliseconds flush_time(
+    150);  // for the partial frame that a board sends when it is stopped
+
+}  // namespace
+
+Status BoardControl::quiet() {
+    Status lowered = source_.set_line_state(false);
+    if (lowered.ok()) { return {}; }
+    if (lowered.error().code != ErrorCode::unsupported) { return lowered; }
+    has_line_ = false;
+    const Status stopped = command(glp_frame_stop, {}, Answer::awaited);
+    if (!stopped.ok() && stopped.error().code == ErrorCode::unsupported) {
+        takes_commands_ = false;
+        return {};
+    }
+    // A board that was quiet already, or is still booting, may leave this one unanswered.
+    return stopped.ok() || stopped.error().code == ErrorCode::timeout ? Status() : stopped;
+}
+
+Status BoardControl::configure(const glp_configure& wanted) {
+    const bool asked = wanted.rate_mHz != 0 || wanted.dlpf_hz != 0 || wanted.gyro_full_scale_dps != 0 ||
+                       wanted.accel_full_scale_g != 0 || wanted.layout != 0 || wanted.samples_per_frame != 0;
+    if (!asked) { return {}; }
+    if (!takes_commands_) {
+        return Error{
+            ErrorCode::invalid_argument,
+            source_.identity().uri + " cannot be configured: leave --rate, --full-scale and --dlpf out"};
+    }
+    std::array<std::uint8_t, GLP_FRAME_PAYLOAD_MAX> payload{};
+    const std::size_t size = glp_configure_write(&wanted, payload.data(), payload.size());
+    return command(glp_frame_configure, ByteView(payload).first(size), Answer::awaited);
+}
+
+Status BoardControl::start() {
+    start_asked_ = true;
+    streaming_ = true;
+    if (has_line_) { return source_.set_line_state(true); }
+    if (!takes_commands_) { return {}; }
+    GYROLOG_CHECK(command(glp_frame_start, {}, Answer::awaited));
+    return command(glp_frame_get_hello, {}, Answer::not_awaited);
+}
+
+void BoardControl::stop() {
+    if (!start_asked_) { return; }
+    if (has_line_) {
+        static_cast<void>(source_.set_line_state(false));
+    } else if (takes_commands_) {
+        static_cast<void>(command(glp_frame_stop, {}, Answer::not_awaited));
+    }
+    if (!source_.can_wait()) { std::this_thread::sleep_for(flush_time); }
+}
+
+Status BoardControl::set_streaming(bool wanted) {
+    if (wanted == streaming_ || !(has_line_ || takes_commands_)) { return {}; }
+    streaming_ = wanted;
+    if (wanted) { return start(); }
+    stop();
+    return {};
+}
+
+Status BoardControl::command(glp_frame_type type, ByteView payload, Answer answer) {
+    const glp_frame frame{static_cast<std::uint8_t>(type), 0, ++sequence_, payload.data(), payload.size()};
+    std::array<std::uint8_t, GLP_FRAME_WIRE_MAX> wire{};
+    const glp_cobs_result encoded = glp_frame_encode(&frame, wire.data(), wire.size());
+    writer_.expect_reply(sequence_, frame.type);
+    GYROLOG_CHECK(source_.write(ByteView(wire).first(encoded.size)));
+    if (answer == Answer::not_awaited) { return {}; }
+    std::optional<std::uint8_t> result;
+    writer_.wait(reply_timeout, [&] {
+        if (writer_.reply()) { result = writer_.reply()->result; }
+        return result.has_value() || sink_.end().has_value();
+    });
+    if (!result) {
+        if (const auto error = sink_.error()) { return *error; }
+        return Error{ErrorCode::timeout,
+                     "the board on " + source_.identity().uri + " did not answer a command"};
+    }
+    return refusal(*result);
+}
+
+Status BoardControl::refusal(std::uint8_t result) const {
+    switch (result) {
+        case glp_result_ok:
+            return {};
+        case glp_result_bad_value:
+            return Error{ErrorCode::invalid_argument, "the board on " + source_.identity().uri +
+                                                          " does not have this rate, full scale or "
+                                                          "low-pass (an MPU-9250 has 4 Hz to 1000 Hz in "
+                                                          "whole divisions of 1 kHz, or 8000 Hz; 250, "
+                                                          "500, 1000 or 2000 °/s; 5, 10, 20, 41, 92, "
+                                                          "184, 250 or 3600 Hz or off)"};
+        case glp_result_sensor_fault:
+            return Error{ErrorCode::failed,
+                         "the board on " + source_.identity().uri + " cannot talk to its sensor"};
+        default:
+            return Error{ErrorCode::unsupported, fmt::format("the board on {} refused a command (result {})",
+                                                             source_.identity().uri, result)};
+    }
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,47 @@
+// What a capture asks of its board.
+#pragma once
+
+#include <cstdint>
+
+#include "host/session/queueing_sink.hpp"
+#include "host/session/writer_thread.hpp"
+#include "host/transport/byte_source.hpp"
+
+namespace gyrolog {
+
+// The conversation with the board: quiet, configured, started; and stopped again at the end. A line without
+// control signals (a pty, a bare UART) is started and stopped by commands instead. A source that takes
+// neither (a replayed capture) plays whatever it has.
+class BoardControl {
+public:
+    BoardControl(ByteSource& source, WriterThread& writer, const QueueingSink& sink)
+        : source_(source), writer_(writer), sink_(sink) {}
+
+    Status quiet();
+    Status configure(const glp_configure& wanted);
+    bool has_line() const { return has_line_; }
+    Status start();
+    // Quiets a board that was asked to start. Whatever goes wrong here, the capture is over anyway.
+    void stop();
+
+    // As the user asks in the middle of a capture. A source that takes neither line nor commands goes on.
+    Status set_streaming(bool wanted);
+    bool streaming() const { return streaming_; }
+
+private:
+    enum class Answer { awaited, not_awaited };
+
+    Status command(glp_frame_type type, ByteView payload, Answer answer);
+    Status refusal(std::uint8_t result) const;
+
+    ByteSource& source_;
+    WriterThread& writer_;
+    const QueueingSink& sink_;
+    bool has_line_ = true;
+    bool takes_commands_ = true;
+    bool start_asked_ = false;
+    bool streaming_ = true;
+    std::uint32_t sequence_ = 0;
+};
+
+}  // namespace gyrolog

@@ -1,0 +1,179 @@
+#include "host/session/writer_thread.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace gyrolog {
+namespace {
+
+constexpr std::chrono::milliseconds progress_interval(100);
+constexpr std::int64_t sync_interval_ns = 1'000'000'000;
+constexpr std::uint64_t checkpoint_bytes = std::uint64_t{1} << 20U;
+constexpr double fastest_hz = 33'000.0;  // of an MPU-9250, with its clock's error
+constexpr double clock_error_max = 0.25;
+constexpr double slack_s = 10.0;  // of what had waited on its way
+
+}  // namespace
+
+void WriterThread::resume() {
+    decoder_.begin_connection();
+    started_ = false;
+    hello_came_ = false;
+    config_came_ = false;
+    next_index_.reset();
+    last_frame_ns_.reset();
+    frameless_s_ = 0.0;
+    publish();
+    thread_ = std::thread([this] { run(); });
+}
+
+void WriterThread::expect_reply(std::uint32_t sequence, std::uint8_t type) {
+    const std::lock_guard lock(mutex_);
+    expected_ = {sequence, type, 0};
+    reply_.reset();
+}
+
+CaptureProgress WriterThread::progress() const {
+    const std::lock_guard lock(mutex_);
+    return progress_;
+}
+
+void WriterThread::run() {
+    if (request_.observer != nullptr) { request_.observer->on_decoder(decoder_); }
+    while (!queue_.finished()) {
+        queue_.pop(progress_interval).for_each([&](const Transfer& transfer) { take(transfer); });
+        write_marks();
+        if (clock_ns(CLOCK_MONOTONIC) - last_sync_ns_ >= sync_interval_ns) { checkpoint(false); }
+        publish();
+    }
+    write_marks();
+    checkpoint(true);
+    publish();
+}
+
+void WriterThread::write_marks() {
+    if (request_.control == nullptr) { return; }
+    for (CaptureMark& mark : request_.control->take_marks()) {
+        if (storage_error_) { return; }
+        if (Status written = writer_.mark(std::move(mark)); !written.ok()) {
+            fail(std::move(written).error());
+        } else {
+            ++marks_;
+        }
+    }
+}
+
+void WriterThread::take(const Transfer& transfer) {
+    if (!storage_error_) {
+        if (Status appended = writer_.append(transfer); !appended.ok()) { fail(std::move(appended).error()); }
+    }
+    if (transfer.carries_stream()) { bytes_since_checkpoint_ += transfer.data.size(); }
+    const std::uint64_t frames_before = decoder_.intact_frames();
+    const bool begins_anew = decoder_.take(transfer);
+    if (decoder_.intact_frames() != frames_before || begins_anew) {
+        last_frame_ns_ = transfer.time.monotonic_ns;
+    }
+    if (transfer.carries_stream() && !transfer.data.empty()) { last_data_ns_ = transfer.time.monotonic_ns; }
+    if (begins_anew) {
+        started_ = true;
+        hello_came_ = false;
+        config_came_ = false;
+        if (!any_start_) {
+            instants_ = 0;
+            if (request_.observer != nullptr) { request_.observer->on_start(); }
+        }
+        any_start_ = true;
+        next_index_.reset();
+        latest_.reset();
+    }
+    if (bytes_since_checkpoint_ >= checkpoint_bytes) { checkpoint(false); }
+}
+
+void WriterThread::checkpoint(bool last) {
+    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+    const bool sync_due = last || now_ns - last_sync_ns_ >= sync_interval_ns;
+    bytes_since_checkpoint_ = 0;
+    if (storage_error_) { return; }
+    Status written = writer_.checkpoint(counters());
+    if (written.ok() && sync_due) { written = last ? writer_.sync() : writer_.sync_soon(); }
+    if (sync_due) { last_sync_ns_ = now_ns; }
+    if (!written.ok()) { fail(std::move(written).error()); }
+}
+
+CaptureCounters WriterThread::counters() const {
+    const LinkReport link = decoder_.report();
+    return {.stream_bytes = link.bytes.total,
+            .frames = link.frames.good,
+            .samples = link.samples.good,
+            .frames_missing = link.frames.missing,
+            .samples_missing = link.samples.missing,
+            .transfers_dropped = sink_.transfers_dropped(),
+            .bytes_dropped = sink_.bytes_dropped()};
+}
+
+void WriterThread::fail(Error error) {
+    const std::lock_guard lock(mutex_);
+    storage_error_ = std::move(error);
+}
+
+void WriterThread::publish() {
+    const LinkReport link = decoder_.report();
+    const std::lock_guard lock(mutex_);
+    progress_.samples = link.samples.good;
+    progress_.samples_missing = link.samples.missing;
+    progress_.dropouts = link.dropouts.size() + link.dropouts_unlisted;
+    progress_.frames_corrupted = link.frames.corrupted;
+    progress_.file_bytes = writer_.bytes_written();
+    progress_.path = writer_.paths().back();
+    progress_.marks = marks_;
+    progress_.rate_hz = plausible_rate_hz();
+    progress_.hello = decoder_.hello();
+    progress_.config = decoder_.config();
+    if (latest_ && progress_.config) {
+        progress_.temperature_C = progress_.config->temp_offset_mC * 1e-3 +
+                                  latest_->temperature * 1e-9 * progress_.config->temp_nC_per_lsb;
+    }
+    const std::uint64_t instants = instants_ + link.samples_in_joins;
+    if (progress_.rate_hz) { progress_.device_s = static_cast<double>(instants) / *progress_.rate_hz; }
+    line_was_raised_ = started_;
+    has_hello_ = hello_came_;
+    has_config_ = config_came_;
+    if (last_frame_ns_) { frameless_s_ = static_cast<double>(last_data_ns_ - *last_frame_ns_) * 1e-9; }
+    enough_ = (request_.samples && instants >= *request_.samples) ||
+              (request_.duration_s && progress_.rate_hz &&
+               static_cast<double>(instants) >= *request_.duration_s * *progress_.rate_hz);
+    changed_.notify_all();
+}
+
+std::optional<double> WriterThread::plausible_rate_hz() const {
+    const std::optional<double> rate_hz = decoder_.rate_hz();
+    if (!rate_hz || !decoder_.config()) { return rate_hz; }
+    const double nominal_hz = decoder_.config()->rate_mHz * 1e-3;
+    return std::fabs(*rate_hz / nominal_hz - 1.0) <= clock_error_max ? *rate_hz : nominal_hz;
+}
+
+void WriterThread::on_samples(const ReceivedFrame& received, const glp_samples& samples) {
+    latest_ = samples;
+    latest_->samples = nullptr;
+    const bool first = (received.frame.flags & glp_flag_first_after_start) != 0;
+    const bool goes_on = next_index_ && !first && samples.first_index >= *next_index_;
+    const std::uint64_t gap = goes_on ? samples.first_index - *next_index_ : 0;
+    // A gap that no board can have passed since its last samples is an index gone wrong, not time.
+    const double since_s = static_cast<double>(received.arrival.monotonic_ns - last_samples_ns_) * 1e-9;
+    instants_ += samples.count + (static_cast<double>(gap) <= fastest_hz * (since_s + slack_s) ? gap : 0);
+    next_index_ = samples.first_index + samples.count;
+    if (request_.observer != nullptr && decoder_.config()) {
+        request_.observer->on_samples(received.frame, samples, *decoder_.config());
+    }
+    last_samples_ns_ = received.arrival.monotonic_ns;
+}
+
+void WriterThread::on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) {
+    const std::lock_guard lock(mutex_);
+    if (reply.command_sequence == expected_.command_sequence &&
+        reply.command_type == expected_.command_type) {
+        reply_ = reply;
+    }
+}
+
+}  // namespace gyrolog

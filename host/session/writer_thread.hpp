@@ -1,0 +1,124 @@
+// What a capture does with its transfers, in a thread of its own.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "host/base/clock.hpp"
+#include "host/capture/segment_writer.hpp"
+#include "host/decode/stream_decoder.hpp"
+#include "host/session/capture_session.hpp"
+#include "host/session/queueing_sink.hpp"
+#include "host/session/transfer_queue.hpp"
+
+namespace gyrolog {
+
+// The writer's thread: drains the queue into the file and into the decoder, and tells the caller's thread
+// what came.
+class WriterThread final : private MessageHandler {
+public:
+    WriterThread(TransferQueue& queue, const QueueingSink& sink, SegmentWriter& writer,
+                 const CaptureRequest& request)
+        : queue_(queue),
+          sink_(sink),
+          writer_(writer),
+          request_(request),
+          decoder_({.keep_samples = false, .observer = this}),
+          thread_([this] { run(); }) {}
+    ~WriterThread() override { join(); }
+    WriterThread(const WriterThread&) = delete;
+    WriterThread& operator=(const WriterThread&) = delete;
+
+    // After the queue was closed: waits until everything in it is on disk.
+    void join() {
+        if (thread_.joinable()) { thread_.join(); }
+    }
+
+    // After join(), with the queue open again: what comes next comes over another connection.
+    void resume();
+    // Before the command is sent. Other replies are not kept: a device may send any number of them.
+    void expect_reply(std::uint32_t sequence, std::uint8_t type);
+
+    // Waits until `wanted(*this)` holds or the time is over; the lock is held while it looks.
+    template <typename Wanted>
+    bool wait(std::chrono::milliseconds time, Wanted&& wanted) {
+        std::unique_lock lock(mutex_);
+        return changed_.wait_for(lock, time, [&] { return wanted(); });
+    }
+    // The ones below: inside wait(), or after join().
+    bool line_was_raised() const { return line_was_raised_; }
+    bool has_hello() const { return has_hello_; }  // in the present connection
+    bool has_config() const { return has_config_; }
+    bool enough() const { return enough_; }
+    const std::optional<Error>& storage_error() const { return storage_error_; }
+    const std::optional<glp_reply>& reply() const { return reply_; }  // to what expect_reply() named
+    // How long bytes have been coming that are no frames, by the times of their arrival.
+    double frameless_s() const { return frameless_s_; }
+
+    CaptureProgress progress() const;
+    LinkReport link() const { return decoder_.report(); }  // after join()
+
+private:
+    void run();
+    void write_marks();
+    void take(const Transfer& transfer);
+    void checkpoint(bool last);
+    CaptureCounters counters() const;
+    void fail(Error error);
+    void publish();
+
+    void on_hello(const ReceivedFrame& /*frame*/, const glp_hello& /*hello*/) override { hello_came_ = true; }
+    void on_config(const ReceivedFrame& /*frame*/, const glp_config& /*config*/) override {
+        config_came_ = true;
+    }
+    // By the stamps, unless they say what no sensor's clock is off by: an index or a tick has gone wrong
+    // then.
+    std::optional<double> plausible_rate_hz() const;
+
+    void on_samples(const ReceivedFrame& received, const glp_samples& samples) override;
+    void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override;
+
+    TransferQueue& queue_;
+    const QueueingSink& sink_;
+    SegmentWriter& writer_;
+    const CaptureRequest& request_;
+
+    // The writer thread's own.
+    StreamDecoder decoder_;
+    std::uint64_t bytes_since_checkpoint_ = 0;
+    std::uint64_t marks_ = 0;
+    std::int64_t last_sync_ns_ = clock_ns(CLOCK_MONOTONIC);
+    bool started_ = false;  // by DTR, in the present connection
+    bool any_start_ = false;
+    bool hello_came_ = false;
+    bool config_came_ = false;
+    std::optional<glp_samples> latest_;
+    // Sampling instants that this capture covers, gaps within a run included. A sample's index alone would
+    // not do: it counts from the board's start, and a board may have been streaming for hours before the
+    // capture.
+    std::uint64_t instants_ = 0;
+    std::optional<std::uint64_t> next_index_;
+    std::int64_t last_samples_ns_ = 0;
+    std::optional<std::int64_t> last_frame_ns_;
+    std::int64_t last_data_ns_ = 0;
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    CaptureProgress progress_;
+    glp_reply expected_{};
+    std::optional<glp_reply> reply_;
+    double frameless_s_ = 0.0;
+    std::optional<Error> storage_error_;
+    bool enough_ = false;
+    bool line_was_raised_ = false;
+    bool has_hello_ = false;
+    bool has_config_ = false;
+
+    std::thread thread_;  // last: starts when everything else is there
+};
+
+}  // namespace gyrolog
