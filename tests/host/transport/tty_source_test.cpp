@@ -209,6 +209,7 @@ TEST_F(TtySourceTest, APortThatHungUpIsOpenedAgainOnceItIsThere) {
     send(sent);
     EXPECT_TRUE(sink.wait_for_bytes(sent.size()));
     EXPECT_EQ(sink.stream(), sent);
+    source_->stop();
     unlink(name.c_str());
 }
 
