@@ -124,11 +124,11 @@ Result<int> open_terminal(const std::string& path) {
 // Where the port of this identity is now: under its old name, or another one with the same serial number.
 // Empty when there is none.
 std::string port_of(const SourceIdentity& identity) {
-    const std::string old_path = identity.uri.substr(std::string("tty:").size());
+    std::string old_path = identity.uri.substr(std::string("tty:").size());
     if (identity.serial.empty() || identity_of(old_path).serial == identity.serial) { return old_path; }
     std::error_code none;
     for (const auto& port : std::filesystem::directory_iterator("/sys/class/tty", none)) {
-        const std::string path = "/dev/" + port.path().filename().string();
+        std::string path = "/dev/" + port.path().filename().string();
         if (identity_of(path).serial == identity.serial) { return path; }
     }
     return {};
