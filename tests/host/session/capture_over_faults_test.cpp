@@ -36,6 +36,7 @@ public:
     std::atomic<bool> sync_breaks{false};
     std::atomic<std::uint64_t> told_free_bytes{~std::uint64_t{0}};
     std::atomic<int> syncs{0};
+    std::atomic<std::uint64_t> written_bytes{0};
 
     Result<std::unique_ptr<AppendFile>> create(const std::string& path, IfExists if_exists) override {
         GYROLOG_TRY(std::unique_ptr<AppendFile> file, create_append_file(path, if_exists));
@@ -56,6 +57,7 @@ private:
             const auto size = static_cast<std::size_t>(
                 std::min({std::uint64_t{bytes.size()}, room, disk_.bytes_per_write.load()}));
             if (room != ~std::uint64_t{0}) { disk_.room_bytes -= size; }
+            disk_.written_bytes += size;
             return file_->write(bytes.first(size));
         }
         Status truncate(std::uint64_t size_bytes) override { return file_->truncate(size_bytes); }
@@ -248,8 +250,9 @@ TEST_F(CaptureOverFaults, FullOrBrokenDiskEndsTheCaptureWithAReadableFile) {
         request_.duration_s = 600.0;
         request_.overwrite = true;
         disk_.room_bytes = fault == 0 ? 100'000 : ~std::uint64_t{0};
-        const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& progress) {
-            const bool enough = progress.samples > 2'000;
+        disk_.written_bytes = 0;
+        const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& /*progress*/) {
+            const bool enough = disk_.written_bytes > 50'000;
             if (fault == 1 && enough) { disk_.breaks = true; }
             if (fault == 2 && enough) { disk_.sync_breaks = true; }
             return true;
