@@ -5,11 +5,11 @@
 // cpu: share of one processor; ns_per_sample; bytes_per_s as they were written. Beginning and end are left
 // out.
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <filesystem>
 #include <fstream>
@@ -27,6 +27,7 @@
 
 #include "host/base/clock.hpp"
 #include "host/virtual_board/virtual_board.hpp"
+#include "tests/support/program.hpp"
 
 namespace gyrolog {
 namespace {
@@ -95,7 +96,9 @@ public:
 
 private:
     void run() {
+        constexpr std::int64_t turn_most_ns = 100'000'000;
         const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+        std::int64_t now_ns = 0;
         std::vector<std::uint8_t> buffer(1U << 16U);
         while (!stop_) {
             pollfd line{line_, POLLIN, 0};
@@ -103,8 +106,11 @@ private:
                 const ssize_t count = read(line_, buffer.data(), buffer.size());
                 if (count > 0) { board_->on_receive({buffer.data(), static_cast<std::size_t>(count)}); }
             }
+            // A board whose thread did not run has not overflowed: it catches up, and what it sends tells how
+            // fast the reader is.
             const auto elapsed_ns = static_cast<double>(clock_ns(CLOCK_MONOTONIC) - begin_ns);
-            board_->advance_to(static_cast<std::int64_t>(elapsed_ns * hurry_));
+            now_ns = std::min(static_cast<std::int64_t>(elapsed_ns * hurry_), now_ns + turn_most_ns);
+            board_->advance_to(now_ns);
             send({buffer.data(), board_->in_endpoint().take_bytes(buffer)});
             samples_ = board_->sampling_instants();
         }
@@ -140,30 +146,12 @@ double processor_ns(pid_t process) {
     return sum;
 }
 
-pid_t start_reader(const std::vector<std::string>& command, const std::string& out_path) {
-    std::vector<char*> argv;
-    argv.reserve(command.size() + 1);
-    for (const std::string& word : command) { argv.push_back(const_cast<char*>(word.c_str())); }
-    argv.push_back(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-        dup2(open("/dev/null", O_RDWR | O_CLOEXEC), STDIN_FILENO);
-        dup2(open(out_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600), STDOUT_FILENO);
-        dup2(STDIN_FILENO, STDERR_FILENO);
-        execvp(argv[0], argv.data());
-        _exit(127);
-    }
-    return child;
-}
-
 enum class Reader : std::uint8_t { cat, capture };
 
 std::vector<std::string> command_of(Reader kind, const std::deque<BoardLine>& lines,
-                                    const std::string& folder) {
+                                    const std::string& capture_path) {
     if (kind == Reader::cat) { return {"cat", lines.front().path()}; }
-    const char* build = std::getenv("GYROLOG_BUILD_DIR");
-    std::vector<std::string> command = {std::string(build == nullptr ? "build" : build) + "/gyrolog",
-                                        "capture", "-o", folder + "/capture.pcapng"};
+    std::vector<std::string> command = {gyrolog_path(), "capture", "-o", capture_path};
     for (const BoardLine& line : lines) {
         command.emplace_back("--device");
         command.push_back("tty:" + line.path());
@@ -179,14 +167,18 @@ double total(const std::deque<BoardLine>& lines, Count count) {
 }
 
 void measure(benchmark::State& state, double rate_hz, double hurry, Reader kind, std::uint64_t boards = 1) {
-    std::string folder = (fs::temp_directory_path() / "gyrolog_benchmark_XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr) { throw std::runtime_error("no temporary folder"); }
     for ([[maybe_unused]] const auto turn : state) {
+        const TemporaryFolder folder;
         std::deque<BoardLine> lines;
         for (std::uint64_t board = 1; board <= boards; ++board) {
             lines.emplace_back(rate_hz, board, hurry, kind == Reader::cat);
         }
-        const pid_t reader = start_reader(command_of(kind, lines, folder), folder + "/out");
+        constexpr int new_file = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+        const int out = open(folder.path("out").c_str(), new_file, 0600);
+        const int err = open(folder.path("err").c_str(), new_file, 0600);
+        const pid_t reader = start_program(command_of(kind, lines, folder.path("capture.pcapng")), out, err);
+        close(out);
+        close(err);
         std::this_thread::sleep_for(warm_up);
         const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
         const double used_before_ns = processor_ns(reader);
@@ -203,10 +195,9 @@ void measure(benchmark::State& state, double rate_hz, double hurry, Reader kind,
         int status = 0;
         waitpid(reader, &status, 0);
         if (kind == Reader::capture && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
-            state.SkipWithError("the capture lost data or failed");
+            state.SkipWithError(read_whole_file(folder.path("err")).c_str());
         }
     }
-    fs::remove_all(folder);
 }
 
 void at_the_ceiling(benchmark::State& state, Reader kind, std::uint64_t boards) {

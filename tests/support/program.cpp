@@ -27,28 +27,10 @@ struct SignalPlan {
     std::chrono::milliseconds held{0};  // SIGCONT follows after so long; 0: none
 };
 
-std::string program_path() {
-    const char* build = std::getenv("GYROLOG_BUILD_DIR");
-    return (build == nullptr ? std::string(".") : std::string(build)) + "/gyrolog";
-}
-
 std::array<int, 2> make_pipe() {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) { throw std::runtime_error("pipe failed"); }
     return ends;
-}
-
-[[noreturn]] void become_program(const std::vector<std::string>& arguments, int out, int err) {
-    dup2(open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
-    dup2(out, STDOUT_FILENO);
-    dup2(err, STDERR_FILENO);
-    const std::string path = program_path();
-    std::vector<char*> argv;
-    argv.push_back(const_cast<char*>(path.c_str()));
-    for (const std::string& argument : arguments) { argv.push_back(const_cast<char*>(argument.c_str())); }
-    argv.push_back(nullptr);
-    execv(path.c_str(), argv.data());
-    _exit(127);
 }
 
 // Reads both pipes to their ends, sending the signal on the way.
@@ -94,8 +76,9 @@ void collect(pid_t child, int out, int err, std::optional<SignalPlan> plan, Prog
 ProgramResult run(const std::vector<std::string>& arguments, std::optional<SignalPlan> plan) {
     const auto out = make_pipe();
     const auto err = make_pipe();
-    const pid_t child = fork();
-    if (child == 0) { become_program(arguments, out[1], err[1]); }
+    std::vector<std::string> command = {gyrolog_path()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const pid_t child = start_program(command, out[1], err[1]);
     close(out[1]);
     close(err[1]);
     ProgramResult result;
@@ -109,6 +92,31 @@ ProgramResult run(const std::vector<std::string>& arguments, std::optional<Signa
 }
 
 }  // namespace
+
+std::string gyrolog_path() {
+    const char* build = std::getenv("GYROLOG_BUILD_DIR");
+    const std::filesystem::path folder =
+        build == nullptr ? std::filesystem::read_symlink("/proc/self/exe").parent_path() : build;
+    return (folder / "gyrolog").string();
+}
+
+pid_t start_program(const std::vector<std::string>& command, int out, int err) {
+    std::vector<char*> argv;
+    argv.reserve(command.size() + 1);
+    for (const std::string& word : command) { argv.push_back(const_cast<char*>(word.c_str())); }
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child < 0) { throw std::runtime_error("fork failed"); }
+    if (child == 0) {
+        const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
+        dup2(nothing, STDIN_FILENO);
+        dup2(out < 0 ? nothing : out, STDOUT_FILENO);
+        dup2(err < 0 ? nothing : err, STDERR_FILENO);
+        execvp(argv[0], argv.data());
+        _exit(127);
+    }
+    return child;
+}
 
 ProgramResult run_gyrolog(const std::vector<std::string>& arguments) { return run(arguments, std::nullopt); }
 

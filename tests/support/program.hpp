@@ -16,7 +16,12 @@ struct ProgramResult {
     std::string err;
 };
 
-// The program under test: build/gyrolog by GYROLOG_BUILD_DIR.
+// The program under test: in GYROLOG_BUILD_DIR, or beside the one that asks.
+std::string gyrolog_path();
+
+// Starts a command without input. Its output goes to these descriptors, with -1 nowhere.
+pid_t start_program(const std::vector<std::string>& command, int out, int err);
+
 ProgramResult run_gyrolog(const std::vector<std::string>& arguments);
 // The same, but `signal` is sent after a while: from the start, or from when the file `once_there` exists.
 ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -14,6 +13,8 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "tests/support/program.hpp"
 
 namespace gyrolog {
 
@@ -47,18 +48,9 @@ inline std::size_t status_kB(pid_t process, const std::string& name) {
 // Standard error goes to the file, standard output nowhere.
 inline WatchedRun run_watched(const std::vector<std::string>& command, const std::string& err_path) {
     const auto start = std::chrono::steady_clock::now();
-    std::vector<char*> argv;
-    argv.reserve(command.size() + 1);
-    for (const std::string& word : command) { argv.push_back(const_cast<char*>(word.c_str())); }
-    argv.push_back(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-        dup2(open("/dev/null", O_RDWR | O_CLOEXEC), STDIN_FILENO);
-        dup2(STDIN_FILENO, STDOUT_FILENO);
-        dup2(open(err_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600), STDERR_FILENO);
-        execvp(argv[0], argv.data());
-        _exit(127);
-    }
+    const int err = open(err_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const pid_t child = start_program(command, -1, err);
+    close(err);
     WatchedRun run;
     int status = 0;
     rusage used{};
@@ -76,11 +68,6 @@ inline WatchedRun run_watched(const std::vector<std::string>& command, const std
     };
     run.processor_s = seconds(used.ru_utime) + seconds(used.ru_stime);
     return run;
-}
-
-inline std::string gyrolog_path() {
-    const char* build = std::getenv("GYROLOG_BUILD_DIR");
-    return std::string(build == nullptr ? "." : build) + "/gyrolog";
 }
 
 }  // namespace gyrolog
