@@ -23,9 +23,10 @@ namespace {
 // A gap is called where chance would have it in no more than one recording of a hundred.
 constexpr double none_above_p = 0.01;
 // What the causes leave is called unexplained below this,
-constexpr double unexplained_below_p = 0.003;
-// unless it is so little of the gap that the approximations of a fit may leave it, and chance nearly.
-constexpr double tolerated_share = 0.02;
+constexpr double unexplained_below_p = 0.005;
+// unless it is so little of the gap, 2 % of its size, that the approximations of a fit may leave it, and chance
+// nearly.
+constexpr double tolerated_share = 4e-4;
 constexpr double tolerated_above_p = 1e-6;
 // How often a cause is right that does not explain the gap: something else is there that it may stand for.
 constexpr double part_of_unexplained = 0.2;

@@ -21,18 +21,31 @@ constexpr std::size_t beginnings_most = 4;
 class Search {
 public:
     Search(const Hypotheses& first, std::shared_ptr<const Recording> recording, const SearchOptions& options)
-        : first_(first), recording_(std::move(recording)), options_(options) {}
+        : first_(first),
+          model_(first.baseline->model()),
+          recording_(std::move(recording)),
+          options_(options) {}
 
     std::optional<EffectSearchResult> run() {
         std::optional<Hypotheses> latest = with_first_cause();
-        while (latest && causes_.size() < options_.causes_most) {
+        while (latest) {
+            const bool freed = free_swallowed_noise(*latest->observation);
             const Finding* next = further(*latest);
-            if (next == nullptr) { break; }
-            causes_.push_back({*next, findings_of(*latest)});
+            if (!freed && (next == nullptr || causes_.size() == options_.causes_most)) { break; }
+            // What is next is not known before the noise is.
+            if (!freed) { causes_.push_back({*next, findings_of(*latest)}); }
             if (!told() || !refit()) { return std::nullopt; }
             latest = with_causes();
         }
         EffectSearchResult result;
+        if (!free_axes_.empty()) {
+            model_ = first_.baseline->model();
+            if (!causes_.empty()) {
+                result.swallowed = fitted_noise(*latest->observation, free_axes_);
+                model_ = with_noise(std::move(model_), result.swallowed);
+            }
+            latest = with_causes();
+        }
         result.corrected = model_with_all_but(causes_.size());
         result.causes = std::move(causes_);
         std::ranges::sort(result.causes, std::greater{},
@@ -148,11 +161,25 @@ private:
     }
 
     SensorModel model_with_all_but(std::size_t left_out) const {
-        SensorModel model = first_.baseline->model();
+        SensorModel model = model_;
         for (std::size_t i = 0; i < causes_.size(); ++i) {
             if (i != left_out) { model = with_cause(std::move(model), causes_[i].finding); }
         }
         return model;
+    }
+
+    // With the causes in the model, noise that a fit took for them is in it twice. Whether another axis has
+    // such noise.
+    bool free_swallowed_noise(const Observation& with_causes) {
+        if (causes_.empty()) { return false; }
+        bool more = false;
+        for (const std::size_t axis : axes_with_swallowed_noise(with_causes)) {
+            if (std::ranges::count(free_axes_, axis) != 0) { continue; }
+            free_axes_.push_back(axis);
+            more = true;
+        }
+        if (more) { model_ = with_free_noise(std::move(model_), free_axes_); }
+        return more;
     }
 
     // Every cause with the others in the model; one that another effect does better by now gives way to it.
@@ -185,9 +212,11 @@ private:
     }
 
     const Hypotheses& first_;
+    SensorModel model_;  // without causes
     std::shared_ptr<const Recording> recording_;
     SearchOptions options_;
     std::vector<FoundCause> causes_;
+    std::vector<std::size_t> free_axes_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/diagnose/catalogue.hpp"
+#include "analysis/diagnose/swallowed_noise.hpp"
 
 namespace gyrolog {
 
@@ -32,6 +33,7 @@ struct FoundCause {
 
 struct EffectSearchResult {
     std::vector<FoundCause> causes;  // by evidence
+    std::vector<SwallowedNoise> swallowed;  // where the model that was given held part of the causes
     SensorModel corrected;
     Hypotheses last;  // under the corrected model
 };

@@ -227,6 +227,7 @@ std::vector<GapCurve> gap_curves(const Observation& observation) {
         curves.push_back(repeats_curve(observation, axis));
         curves.push_back(memory_curve(observation, axis));
         curves.push_back(period_curve(observation, axis));
+        curves.push_back(codes_curve(observation, axis));
         if (varies(baseline.temperature_C())) {
             curves.push_back(mean_curve(GapDomainKind::temperature, axis, axis,
                                         by_value(observation, axis, baseline.temperature_C())));

@@ -24,7 +24,8 @@ enum class GapDomainKind {
     acceleration,
     repeats,
     memory,
-    period
+    period,
+    codes
 };
 
 // `value` is on a scale on which chance is nearly normal; x is SI.
@@ -47,7 +48,7 @@ struct GapCurve {
 //   rate         mean of the whitened samples by reference rate
 //   rate_noise   ln of the whitened samples' variance by reference rate
 //   acceleration mean of the whitened samples by change of the rate
-//   narrow, repeats, memory, period: structure_curves.hpp
+//   narrow, repeats, memory, period, codes: structure_curves.hpp
 std::vector<GapCurve> gap_curves(const Observation& observation);
 
 }  // namespace gyrolog

@@ -72,6 +72,9 @@ DomainLook look_of(GapDomainKind kind) {
                     as_it_is,          variance_ratio_dB, true};
         case GapDomainKind::period:
             return {"what comes back", "period (s)", "excess (its sd)", as_it_is, as_it_is, true};
+        case GapDomainKind::codes:
+            return {"converter's codes", "1 each code, 2 even and odd", "excess (its sd)", as_it_is,
+                    as_it_is};
         case GapDomainKind::acceleration:
             return {"change of the rate", "change of the rate (deg/s^2)", standard_deviations, in_degrees,
                     as_it_is};

@@ -13,6 +13,8 @@ namespace gyrolog {
 struct GapReference {
     std::vector<std::vector<double>> mean;  // by curve, by point
     std::vector<std::vector<double>> sd;
+    // By curve, by window over neighbouring points: of the sum of their z.
+    std::vector<std::vector<double>> window_sd;
     std::vector<double> rms_scale;  // by curve: root mean square, over simulations, of their own rms z
     // By curve: mean and variance of the sum of z^2 over the simulations.
     std::vector<double> square_mean, square_variance;
@@ -29,13 +31,16 @@ GapReference gap_reference(const SimulatedCurves& simulations,
 struct CurveDistance {
     std::vector<double> z;
     double distance = 0.0;  // rms of z in units of a simulation's: 1 is the floor
-    // -ln of the probability that a simulation's curve is as far off in sum, or at one point; the larger.
+    std::vector<double> window_z;
+    double squares = 0.0;  // sum of z^2
+    // -ln of the probability that a simulation's curve is as far off in sum, or at one point, or over some
+    // neighbouring points together; the largest.
     double surprise_nats = 0.0;
 };
 
 CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
 
-// The largest surprise of all curves of one observation.
+// The largest surprise of all curves of one observation, and of the axes' curves of one kind together.
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
 // Of every simulation against all the others: a new recording is not in its own reference either.
 std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations);

@@ -53,6 +53,9 @@ void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
         case GapDomainKind::repeats:
             where.structure = "duplicated_samples";
             break;
+        case GapDomainKind::codes:
+            where.structure = "code_grid";
+            break;
         case GapDomainKind::rate_noise:
         case GapDomainKind::rate:
             where.rate_rad_s = span;

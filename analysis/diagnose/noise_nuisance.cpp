@@ -96,7 +96,8 @@ NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralPar
         now = next;
         if (gained < 1e-4) { break; }
     }
-    return {{z[0], z[1], z[2]}, now.log_likelihood_nats};
+    const Eigen::Vector3d sd = now.information.inverse().diagonal().cwiseSqrt();
+    return {{z[0], z[1], z[2]}, {sd[0], sd[1], sd[2]}, now.log_likelihood_nats};
 }
 
 }  // namespace gyrolog

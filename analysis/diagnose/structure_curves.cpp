@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -27,6 +28,10 @@ constexpr double power_most = 8.0;
 
 // In coefficients, half a line's natural width each.
 constexpr std::array<std::size_t, 4> narrow_widths = {4, 16, 64, 256};
+// Below the bands that hold the broadest of them.
+constexpr std::array<std::size_t, 3> slow_widths = {2, 4, 16};
+
+constexpr double code_count_least = 20.0;
 
 double square(double value) { return value * value; }
 
@@ -157,47 +162,118 @@ GapCurve period_curve(const Observation& observation, std::size_t axis) {
     return curve;
 }
 
+namespace {
+
+struct Window {
+    double surprise_nats = 0.0;
+    double place = 0.0;  // its middle, in coefficients from the first
+};
+
+// `sums`: of the whitened power, from 0. `level`: what is expected of one coefficient.
+Window most_surprising(const std::vector<double>& sums, std::span<const std::size_t> widths, double level) {
+    const auto all = static_cast<double>(sums.size() - 1);
+    Window best{0.0, 0.5 * all};
+    for (const std::size_t width : widths) {
+        double most = 0.0;
+        std::size_t at = 0;
+        for (std::size_t from = 0; from + width < sums.size(); from += width / 2) {
+            const double sum = sums[from + width] - sums[from];
+            if (sum > most) { most = sum, at = from; }
+        }
+        // Windows that overlap by half are nearly as good as independent.
+        const double tries = 2.0 * all / static_cast<double>(width) * static_cast<double>(widths.size());
+        const double surprise = surprise_of_largest(most / level, static_cast<double>(width), tries);
+        if (surprise > best.surprise_nats) {
+            best = {surprise, static_cast<double>(at) + 0.5 * static_cast<double>(width)};
+        }
+    }
+    return best;
+}
+
+std::vector<double> whitened_sums(const Observation& observation, std::size_t axis, std::size_t from_bin,
+                                  std::size_t end_bin) {
+    const Baseline& baseline = observation.baseline();
+    const AxisObservation& seen = observation.axis(axis);
+    std::vector<double> sums(1, 0.0);
+    for (std::size_t i = from_bin; i < end_bin; ++i) {
+        const double expected = seen.density[i] * baseline.rate_hz();
+        for (std::size_t k = baseline.bins()[i].first; k < baseline.bins()[i].end; ++k) {
+            sums.push_back(sums.back() + square(static_cast<double>(seen.cosines[k])) / expected);
+        }
+    }
+    return sums;
+}
+
+}  // namespace
+
 GapCurve narrow_curve(const Observation& observation, std::size_t axis,
                       const std::vector<std::size_t>& edges) {
     const Baseline& baseline = observation.baseline();
-    const AxisObservation& seen = observation.axis(axis);
     GapCurve curve{GapDomainKind::narrow, axis, axis, {}, {}};
-    std::vector<double> sums;  // of the whitened power
-    for (std::size_t band = 0; band + 1 < edges.size(); ++band) {
-        const std::size_t first = baseline.bins()[edges[band]].first;
-        const std::size_t end = baseline.bins()[edges[band + 1] - 1].end;
-        if (end - first < narrow_widths.back()) { continue; }
-        sums.assign(1, 0.0);
-        for (std::size_t i = edges[band]; i < edges[band + 1]; ++i) {
-            const double expected = seen.density[i] * baseline.rate_hz();
-            for (std::size_t k = baseline.bins()[i].first; k < baseline.bins()[i].end; ++k) {
-                sums.push_back(sums.back() + square(static_cast<double>(seen.cosines[k])) / expected);
-            }
-        }
-        // Of a broad excess, what stands out of it.
-        const auto all = static_cast<double>(sums.size() - 1);
-        const double level = std::max(1.0, sums.back() / all);
-        double surprise = 0.0;
-        double place = 0.5 * static_cast<double>(first + end);
-        for (const std::size_t width : narrow_widths) {
-            double most = 0.0;
-            std::size_t at = 0;
-            for (std::size_t from = 0; from + width < sums.size(); from += width / 2) {
-                const double sum = sums[from + width] - sums[from];
-                if (sum > most) { most = sum, at = from; }
-            }
-            // Windows that overlap by half are nearly as good as independent.
-            const double tries =
-                2.0 * all / static_cast<double>(width) * static_cast<double>(narrow_widths.size());
-            const double of_width = surprise_of_largest(most / level, static_cast<double>(width), tries);
-            if (of_width > surprise) {
-                surprise = of_width;
-                place = static_cast<double>(first + at) + 0.5 * static_cast<double>(width);
-            }
-        }
-        curve.x.push_back(0.5 * place / baseline.duration_s());
-        curve.value.push_back(deviate_of(surprise));
+    const auto add = [&](std::size_t first, const Window& window) {
+        curve.x.push_back(0.5 * (static_cast<double>(first) + window.place) / baseline.duration_s());
+        curve.value.push_back(deviate_of(window.surprise_nats));
+    };
+    std::size_t band = 0;
+    const auto coefficients = [&](std::size_t of) {
+        return baseline.bins()[edges[of + 1] - 1].end - baseline.bins()[edges[of]].first;
+    };
+    while (band + 1 < edges.size() && coefficients(band) < narrow_widths.back()) { ++band; }
+    const std::vector<double> slow = whitened_sums(observation, axis, 0, edges[band]);
+    if (slow.size() > slow_widths.back()) {
+        add(baseline.bins()[0].first, most_surprising(slow, slow_widths, 1.0));
     }
+    for (; band + 1 < edges.size(); ++band) {
+        const std::vector<double> sums = whitened_sums(observation, axis, edges[band], edges[band + 1]);
+        // Of a broad excess, what stands out of it.
+        const double level = std::max(1.0, sums.back() / static_cast<double>(sums.size() - 1));
+        add(baseline.bins()[edges[band]].first, most_surprising(sums, narrow_widths, level));
+    }
+    return curve;
+}
+
+namespace {
+
+// How often each code of the converter was shown, from the least on.
+std::vector<double> count_codes(const Recording& recording, std::size_t axis, double lsb_rad_s) {
+    constexpr double codes_most = 1 << 20;
+    const Column& column = *recording.find(gyro_columns.at(axis));
+    std::vector<double> codes(recording.rows());
+    for (std::size_t row = 0; row < codes.size(); ++row) {
+        codes[row] = std::round(column.value(row) / lsb_rad_s);
+    }
+    const auto [least, most] = std::ranges::minmax_element(codes);
+    if (codes.empty() || *most - *least > codes_most) { return {}; }
+    std::vector<double> counts(static_cast<std::size_t>(*most - *least) + 1, 0.0);
+    for (const double code : codes) { counts[static_cast<std::size_t>(code - *least)] += 1.0; }
+    return counts;
+}
+
+}  // namespace
+
+GapCurve codes_curve(const Observation& observation, std::size_t axis) {
+    const double lsb_rad_s = observation.baseline().model().lsb_rad_s;
+    GapCurve curve{GapDomainKind::codes, axis, axis, {1.0, 2.0}, {0.0, 0.0}};
+    if (!(lsb_rad_s > 0.0)) { return curve; }
+    const std::vector<double> counts = count_codes(observation.recording(), axis, lsb_rad_s);
+    double most = 0.0;
+    double tries = 0.0;
+    double balance = 0.0;
+    double all = 0.0;
+    for (std::size_t code = 0; code < counts.size(); ++code) {
+        balance += code % 2 == 0 ? counts[code] : -counts[code];
+        all += counts[code];
+        if (code < 2 || code + 2 >= counts.size()) { continue; }
+        const double near = counts[code - 1] + counts[code + 1];
+        const double far = counts[code - 2] + counts[code + 2];
+        const double expected = (4.0 * near - far) / 6.0;  // a cubic through the four
+        if (expected < code_count_least) { continue; }
+        const double variance = expected + (16.0 * near + far) / 36.0;
+        most = std::max(most, square(counts[code] - expected) / variance);
+        tries += 1.0;
+    }
+    if (tries > 0.0) { curve.value[0] = deviate_of(surprise_of_largest(most, 1.0, tries)); }
+    curve.value[1] = std::fabs(balance) / std::sqrt(std::max(all, 1.0));
     return curve;
 }
 

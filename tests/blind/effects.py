@@ -290,14 +290,12 @@ class Lowpass(Acting):
         gain = np.interp(f, grid, np.sqrt(power))
         return np.fft.irfft(np.fft.rfft(white) * gain, length)
 
-    def _lag(self, axis, W, rate):
-        return filtered(W[axis], lambda f: self._response(f, axis), rate) - W[axis]
-
     def added(self, axis, around):
-        """What the filter takes off the motion, which has nothing near half the rate."""
+        """What the filter takes off the motion, which has nothing near half the rate, as the other effects left it."""
         if around.W is None:
             return 0.0
-        return self._lag(axis, around.W, self.context.rate_hz)
+        shown = around.S[axis] if around.shown is None else around.shown
+        return filtered(shown, lambda f: self._response(f, axis), self.context.rate_hz) - shown
 
     def describe(self, d):
         for axis in self.acting_axes():

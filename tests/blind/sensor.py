@@ -83,6 +83,7 @@ class Surroundings:
         self.t = t
         self.T = context.temperature(t)
         self.W = self.S = self.f = None
+        self.shown = None  # by the axis that is being made, so far
         if context.motion and turning:
             self.W = context.motion(t)
             self.S = context.sensor.M @ self.W  # what turns about the sensing axes, as they lie
@@ -226,6 +227,7 @@ def record(context, effects, noise_name="noise"):
         white = rng.standard_normal(n)
         for e in effects:
             if e.on(axis):
+                around.shown = value
                 value = value + e.added(axis, around)
         for e in effects:
             if e.on(axis):

@@ -95,7 +95,14 @@ TEST_P(Lowpass, WhiteNoiseIsStationaryFromTheFirstSample) {
     }
 }
 
-// The filter as a differential equation with straight lines for input, by Runge and Kutta's classical method.
+// Lagrange's cubic through four samples a unit apart, at `s` from the third.
+double cubic_at(const std::array<double, 4>& samples, double s) {
+    return -samples[0] * (s + 1.0) * s * (s - 1.0) / 6.0 + samples[1] * (s + 2.0) * s * (s - 1.0) / 2.0 -
+           samples[2] * (s + 2.0) * (s + 1.0) * (s - 1.0) / 2.0 +
+           samples[3] * (s + 2.0) * (s + 1.0) * s / 6.0;
+}
+
+// The filter as a differential equation with such cubics for input, by Runge and Kutta's classical method.
 std::vector<double> filter_numerically(const Filter& filter, const std::vector<double>& input) {
     constexpr int steps = 400;
     const double w = 2.0 * pi * filter.fc_per_rate;
@@ -111,13 +118,14 @@ std::vector<double> filter_numerically(const Filter& filter, const std::vector<d
     std::vector<double> output = {input.front()};
     for (std::size_t k = 1; k < input.size(); ++k) {
         const double h = 1.0 / steps;
-        const double rise = input[k] - input[k - 1];
+        std::array<double, 4> around{};
+        for (std::size_t i = 0; i < 4; ++i) { around[i] = input[k + i < 3 ? 0 : k + i - 3]; }
         for (int step = 0; step < steps; ++step) {
-            const double begin = input[k - 1] + rise * step * h;
-            const State k1 = slope(y, begin);
-            const State k2 = slope(moved(y, k1, h / 2.0), begin + rise * h / 2.0);
-            const State k3 = slope(moved(y, k2, h / 2.0), begin + rise * h / 2.0);
-            const State k4 = slope(moved(y, k3, h), begin + rise * h);
+            const double begin = step * h;
+            const State k1 = slope(y, cubic_at(around, begin));
+            const State k2 = slope(moved(y, k1, h / 2.0), cubic_at(around, begin + h / 2.0));
+            const State k3 = slope(moved(y, k2, h / 2.0), cubic_at(around, begin + h / 2.0));
+            const State k4 = slope(moved(y, k3, h), cubic_at(around, begin + h));
             for (std::size_t i = 0; i < 2; ++i) {
                 y[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
             }
@@ -127,7 +135,7 @@ std::vector<double> filter_numerically(const Filter& filter, const std::vector<d
     return output;
 }
 
-TEST_P(Lowpass, MotionPassesItAsStraightLinesBetweenTheSamples) {
+TEST_P(Lowpass, MotionPassesItAsCubicsThroughTheSamples) {
     const Filter filter = GetParam();
     const Simulated run =
         simulate(filtered(ideal_model(), filter, rate_hz), rate_hz, 1, 1, tumbling_world(5.0));
@@ -145,8 +153,8 @@ TEST_P(Lowpass, AStepRisesToItsFullHeightAndStaysThere) {
     EXPECT_NEAR(run.rate_rad_s[0][99], 1.0, 1e-12);
     EXPECT_LT(run.rate_rad_s[0][100], 3.0);
     const double overshoot = *std::max_element(run.rate_rad_s[0].begin(), run.rate_rad_s[0].end()) - 3.0;
-    // Butterworth's second order overshoots by exp(-pi) of a step; a line of one period's length by less.
-    EXPECT_LT(overshoot, filter.order == 1 ? 1e-12 : 2.0 * std::exp(-pi));
+    // Butterworth's second order overshoots by exp(-pi) of a step; the cubic beside it by an eighth.
+    EXPECT_LT(overshoot, 2.0 * (0.125 + (filter.order == 1 ? 0.0 : std::exp(-pi))));
     EXPECT_NEAR(run.rate_rad_s[0].back(), 3.0, 1e-12);
 }
 
@@ -173,8 +181,8 @@ TEST_P(Lowpass, ASlowSwingHasTheFiltersGainAndPhase) {
     }
     const std::complex<double> s(0.0, nu / filter.fc_per_rate);
     const auto response = filter.order == 1 ? 1.0 / (1.0 + s) : 1.0 / (1.0 + std::sqrt(2.0) * s + s * s);
-    // Straight lines between the samples lack (2 pi nu)^2 / 12 of a sine.
-    EXPECT_LT(std::abs(line - response * std::complex<double>(0.0, -1.0)), std::pow(2.0 * pi * nu, 2) / 10.0);
+    // The cubics miss at most (2 pi nu)^4 / 24 of a sine.
+    EXPECT_LT(std::abs(line - response * std::complex<double>(0.0, -1.0)), std::pow(2.0 * pi * nu, 4) / 24.0);
 }
 
 TEST(LowpassLevel, FollowsWhatOtherEffectsMadeOfTheWhiteNoise) {
