@@ -139,7 +139,7 @@ private:
         std::optional<NullSimulations> null = simulate_null(baseline_, &first_.catalogue, options);
         if (!null) { return false; }
         before_ = gap_reference(null->curves);
-        evidence_tail_.emplace(std::move(null->evidence_nats));
+        evidence_tail_.emplace(best_evidence_nats(*null));
         surprise_tail_.emplace(simulated_surprises_nats(null->curves));
         const std::vector<GapCurve> curves = gap_curves(*first_.observation);
         answer_.p_none = probability_of_none(curves);
@@ -178,6 +178,7 @@ private:
         std::optional<EffectSearchResult> result = search_effects(first_, recording_, options);
         if (!result) { return false; }
         answer_.corrected = result->corrected;
+        answer_.swallowed = result->swallowed;
         found_ = std::move(*result);
         return true;
     }

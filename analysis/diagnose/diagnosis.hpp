@@ -78,6 +78,8 @@ struct Diagnosis {
     double p_none = 1.0;
     double p_left = 1.0;  // of what the causes leave
     std::vector<Cause> causes;
+    // Noise of the model that held part of the causes, and what it is with them in the model.
+    std::vector<SwallowedNoise> swallowed;
     Place where;  // the gap; of a known one, its first cause
     Place left;   // with Verdict::unexplained and causes: what they leave
     Gap gap_before, gap_after;
@@ -87,7 +89,7 @@ struct Diagnosis {
     std::vector<Untestable> untestable;
     std::vector<std::string> next_recordings;  // what would settle what is open, in sentences
     std::vector<std::string> warnings;
-    SensorModel corrected;  // the model with the causes added
+    SensorModel corrected;  // the model with the causes added and the swallowed noise taken off
 };
 
 struct DiagnosisOptions {

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "analysis/diagnose/null_simulations.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
@@ -17,6 +18,8 @@ constexpr double margin_nats = 3.0;
 constexpr double far_better_nats = 8.0;
 // How many causes are tried as the first.
 constexpr std::size_t beginnings_most = 4;
+constexpr std::size_t simulations_of_codes = 16;
+constexpr double apparent_sds = 4.0;
 
 class Search {
 public:
@@ -28,7 +31,10 @@ public:
 
     std::optional<EffectSearchResult> run() {
         std::optional<Hypotheses> latest = with_first_cause();
-        while (latest) {
+        if (latest && !learn_apparent_evidence(*latest)) { return std::nullopt; }
+        // A cause that others make needless may come back for ever.
+        const std::size_t rounds_most = 2 * options_.causes_most;
+        for (std::size_t round = 0; latest && round < rounds_most; ++round) {
             const bool freed = free_swallowed_noise(*latest->observation);
             const Finding* next = further(*latest);
             if (!freed && (next == nullptr || causes_.size() == options_.causes_most)) { break; }
@@ -70,6 +76,7 @@ private:
         std::map<EvidenceMethod, Finding> best;
         for (const Finding& finding : findings_of(first_)) {
             if (finding.evidence_nats < options_.evidence_min_nats) { break; }
+            if (is_of_codes(finding)) { return {finding}; }
             best.try_emplace(find_effect(finding.effect)->signature->method, finding);
         }
         std::vector<Finding> found;
@@ -78,6 +85,41 @@ private:
         std::ranges::sort(found, std::greater{}, &Finding::evidence_nats);
         if (found.size() > beginnings_most) { found.resize(beginnings_most); }
         return found;
+    }
+
+    // What the converter does to the numbers, likelihoods of a continuous signal take for something else, in
+    // a simulation of it as well: it comes before all other causes, and stays.
+    static bool is_of_codes(const Finding& finding) {
+        return find_effect(finding.effect)->signature->method == EvidenceMethod::code_grid;
+    }
+
+    // How much evidence effects seem to have in simulations of a model whose step is coarse. False when ended
+    // early.
+    bool learn_apparent_evidence(const Hypotheses& with_first) {
+        if (causes_.empty() || !is_of_codes(causes_.front().finding)) { return true; }
+        const NullSimulationOptions options{
+            simulations_of_codes, options_.seed, options_.threads, [&](double) { return told(); }};
+        const std::optional<NullSimulations> null =
+            simulate_null(with_first.baseline, &with_first.catalogue, options);
+        if (!null) { return false; }
+        const auto count = static_cast<double>(null->evidence_nats.size());
+        for (std::size_t entry = 0; entry < with_first.catalogue.size(); ++entry) {
+            double mean = 0.0;
+            double square = 0.0;
+            for (const std::vector<double>& of_effects : null->evidence_nats) {
+                mean += of_effects[entry] / count;
+                square += of_effects[entry] * of_effects[entry] / count;
+            }
+            const double sd = std::sqrt(std::max(square - mean * mean, 0.0));
+            apparent_nats_[std::string(with_first.catalogue[entry].effect->name)] =
+                std::max(0.0, mean + apparent_sds * sd);
+        }
+        return true;
+    }
+
+    double evidence_beyond_apparent_nats(const Finding& finding) const {
+        const auto apparent = apparent_nats_.find(finding.effect);
+        return finding.evidence_nats - (apparent == apparent_nats_.end() ? 0.0 : apparent->second);
     }
 
     static bool is_noise(const Finding& finding) {
@@ -93,7 +135,7 @@ private:
         std::vector<FoundCause> best_causes;
         double best_nats = 0.0;
         for (const Finding& finding : beginnings()) {
-            causes_ = {{finding, findings_of(first_)}};
+            causes_ = {{finding, is_of_codes(finding) ? std::vector{finding} : findings_of(first_)}};
             Hypotheses with_it = with_causes();
             const Finding* next = further(with_it);
             const double nats = finding.evidence_nats + (next != nullptr ? next->evidence_nats : 0.0);
@@ -136,10 +178,12 @@ private:
     // where none has evidence enough.
     const Finding* further(const Hypotheses& hypotheses) const {
         const Finding* best = nullptr;
+        double best_nats = 0.0;
         for (const std::optional<Finding>& finding : hypotheses.findings) {
-            if (!finding || finding->evidence_nats < options_.evidence_min_nats) { continue; }
-            if (!is_new(*finding)) { continue; }
-            if (best == nullptr || finding->evidence_nats > best->evidence_nats) { best = &*finding; }
+            if (!finding || !is_new(*finding)) { continue; }
+            const double evidence_nats = evidence_beyond_apparent_nats(*finding);
+            if (evidence_nats < options_.evidence_min_nats) { continue; }
+            if (best == nullptr || evidence_nats > best_nats) { best = &*finding, best_nats = evidence_nats; }
         }
         return best;
     }
@@ -171,7 +215,8 @@ private:
     // With the causes in the model, noise that a fit took for them is in it twice. Whether another axis has
     // such noise.
     bool free_swallowed_noise(const Observation& with_causes) {
-        if (causes_.empty()) { return false; }
+        // A coarse step leaves less noise than its spectrum has, too.
+        if (causes_.empty() || is_of_codes(causes_.front().finding)) { return false; }
         bool more = false;
         for (const std::size_t axis : axes_with_swallowed_noise(with_causes)) {
             if (std::ranges::count(free_axes_, axis) != 0) { continue; }
@@ -191,7 +236,9 @@ private:
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
             const double own_nats = same == findings.end() ? 0.0 : same->evidence_nats;
             const auto rival = std::ranges::find_if(findings, [&](const Finding& f) { return is_new(f); });
-            if (rival != findings.end() && rival->evidence_nats > own_nats + margin_nats &&
+            if (is_of_codes(causes_[i].finding)) {
+                if (same != findings.end()) { causes_[i].finding = *same; }
+            } else if (rival != findings.end() && rival->evidence_nats > own_nats + margin_nats &&
                 rival->evidence_nats >= options_.evidence_min_nats) {
                 causes_[i].finding = *rival;
             } else if (own_nats >= options_.evidence_min_nats) {
@@ -203,7 +250,8 @@ private:
             // What is a cause already is no rival of another.
             causes_[i].rivals.clear();
             std::ranges::copy_if(findings, std::back_inserter(causes_[i].rivals), [&](const Finding& f) {
-                return f.effect == causes_[i].finding.effect || is_new(f);
+                return f.effect == causes_[i].finding.effect ||
+                       (is_new(f) && !is_of_codes(causes_[i].finding));
             });
             ++i;
             if (!told()) { return false; }
@@ -217,6 +265,7 @@ private:
     SearchOptions options_;
     std::vector<FoundCause> causes_;
     std::vector<std::size_t> free_axes_;
+    std::map<std::string, double> apparent_nats_;  // by effect
 };
 
 }  // namespace

@@ -45,6 +45,16 @@ struct Finding {
     Place where;
 };
 
+// A noise coefficient of the model that the recording has otherwise, now that the causes are in the model. In
+// SI units of the two-sided convention.
+struct SwallowedNoise {
+    std::size_t axis = 0;
+    char coefficient = 'N';  // 'N', 'B', 'K'
+    double stated = 0.0;
+    double fitted = 0.0;
+    double fitted_sd = 0.0;
+};
+
 // ln of the Occam factor of one parameter known to +-sd a posteriori, uniform over `range` a priori: what it
 // costs, at least half a nat.
 double parameter_cost_nats(double range, double sd);

@@ -118,6 +118,9 @@ Band band_of(const MeasuredGap& gap, std::size_t index, const std::vector<double
 std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap* after,
                                    double band_probability) {
     const double width_sd = boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + band_probability));
+    const std::vector<double> surprises_before = surprises_nats(before.curves, before.reference);
+    const std::vector<double> surprises_after =
+        after != nullptr ? surprises_nats(after->curves, after->reference) : std::vector<double>();
     std::vector<GapDomain> domains;
     for (std::size_t c = 0; c < before.curves.size(); ++c) {
         const GapCurve& curve = before.curves[c];
@@ -140,9 +143,8 @@ std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap*
         domain.before_lo = std::move(band.lo);
         domain.before_hi = std::move(band.hi);
         domain.outside_before = std::move(band.outside);
-        const CurveDistance gap_before = gap_of(curve, before.reference, c);
-        domain.gap_before = gap_before.distance;
-        domain.surprise_before_nats = gap_before.surprise_nats;
+        domain.gap_before = gap_of(curve, before.reference, c).distance;
+        domain.surprise_before_nats = surprises_before[c];
         if (after != nullptr && c < after->curves.size() &&
             after->curves[c].value.size() == curve.value.size()) {
             for (std::size_t i = 0; i < points; ++i) {
@@ -152,9 +154,8 @@ std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap*
             domain.after_lo = std::move(band.lo);
             domain.after_hi = std::move(band.hi);
             domain.outside_after = std::move(band.outside);
-            const CurveDistance gap_after = gap_of(after->curves[c], after->reference, c);
-            domain.gap_after = gap_after.distance;
-            domain.surprise_after_nats = gap_after.surprise_nats;
+            domain.gap_after = gap_of(after->curves[c], after->reference, c).distance;
+            domain.surprise_after_nats = surprises_after[c];
         }
         domains.push_back(std::move(domain));
     }

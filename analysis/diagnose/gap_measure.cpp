@@ -187,21 +187,27 @@ CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::
     return gap;
 }
 
-double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
-    double worst = 0.0;
+std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
+    std::vector<double> surprises;
     std::vector<CurveDistance> gaps;
     std::map<GapDomainKind, std::vector<std::size_t>> of_kind;  // those of one axis alone
     for (std::size_t c = 0; c < curves.size(); ++c) {
         gaps.push_back(gap_of(curves[c], reference, c));
-        worst = std::max(worst, gaps.back().surprise_nats);
+        surprises.push_back(gaps.back().surprise_nats);
         std::vector<std::size_t>& same = of_kind[curves[c].kind];
         const bool as_long = same.empty() || gaps[same.front()].z.size() == gaps[c].z.size();
         if (curves[c].axis == curves[c].other && as_long) { same.push_back(c); }
     }
     for (const auto& [kind, same] : of_kind) {
-        if (same.size() > 1) { worst = std::max(worst, surprise_of_axes(gaps, same, reference)); }
+        if (same.size() < 2) { continue; }
+        const double together = surprise_of_axes(gaps, same, reference);
+        for (const std::size_t c : same) { surprises[c] = std::max(surprises[c], together); }
     }
-    return worst;
+    return surprises;
+}
+
+double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
+    return std::ranges::max(surprises_nats(curves, reference));
 }
 
 std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gyrolog {
 
@@ -70,11 +71,13 @@ void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
 
 GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& reference) {
     GapSummary summary;
+    const std::vector<double> surprises = surprises_nats(curves, reference);
     std::vector<CurveDistance> gaps;
     std::size_t worst = 0;
     for (std::size_t c = 0; c < curves.size(); ++c) {
         gaps.push_back(gap_of(curves[c], reference, c));
-        if (gaps[c].surprise_nats > gaps[worst].surprise_nats) { worst = c; }
+        const auto rank = [&](std::size_t i) { return std::pair(surprises[i], gaps[i].surprise_nats); };
+        if (rank(c) > rank(worst)) { worst = c; }
     }
     const double value = gaps[worst].distance;
     const auto points = static_cast<double>(std::max<std::size_t>(gaps[worst].z.size(), 1));
@@ -83,7 +86,7 @@ GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& re
                                 (2.0 * points * value * value + 1e-12));
     summary.gap = {value, 1.0, std::max(0.0, value - 1.96 * sd), value + 1.96 * sd};
     for (std::size_t c = 0; c < curves.size(); ++c) {
-        if (curves[c].kind != curves[worst].kind || gaps[c].surprise_nats < 7.0) { continue; }
+        if (curves[c].kind != curves[worst].kind || surprises[c] < 7.0) { continue; }
         summary.where.axes.push_back(curves[c].axis);
     }
     if (summary.where.axes.empty()) { summary.where.axes.push_back(curves[worst].axis); }

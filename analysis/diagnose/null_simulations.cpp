@@ -1,7 +1,6 @@
 #include "analysis/diagnose/null_simulations.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <mutex>
 
 #include "analysis/compare/model_draw.hpp"
@@ -15,18 +14,27 @@ namespace {
 
 constexpr std::uint32_t seed_stream = 0x04000000;
 
-double best_evidence(const std::vector<CatalogueEntry>& catalogue, const Observation& observation) {
-    double best = -std::numeric_limits<double>::max();
-    for (const CatalogueEntry& entry : catalogue) {
-        if (!entry.test) { continue; }
-        const std::optional<Finding> finding = entry.test->find(observation);
-        if (finding) { best = std::max(best, finding->evidence_nats); }
+std::vector<double> evidence_of_all(const std::vector<CatalogueEntry>& catalogue,
+                                    const Observation& observation) {
+    std::vector<double> evidence_nats(catalogue.size(), no_evidence_nats);
+    for (std::size_t i = 0; i < catalogue.size(); ++i) {
+        if (!catalogue[i].test) { continue; }
+        const std::optional<Finding> finding = catalogue[i].test->find(observation);
+        if (finding) { evidence_nats[i] = std::max(finding->evidence_nats, no_evidence_nats); }
     }
-    // Where no effect has any trace, no evidence at all: as little as can be.
-    return std::max(best, -50.0);
+    return evidence_nats;
 }
 
 }  // namespace
+
+std::vector<double> best_evidence_nats(const NullSimulations& null) {
+    std::vector<double> best;
+    best.reserve(null.evidence_nats.size());
+    for (const std::vector<double>& of_effects : null.evidence_nats) {
+        best.push_back(std::ranges::max(of_effects));
+    }
+    return best;
+}
 
 std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Baseline>& baseline,
                                              const std::vector<CatalogueEntry>* catalogue,
@@ -52,7 +60,7 @@ std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Baselin
         const auto recording = std::make_shared<const Recording>(simulate_recording(model, request));
         const Observation observation(baseline, recording, seed, Observation::ReferenceNoise::drawn);
         null.curves[i] = gap_curves(observation);
-        if (catalogue != nullptr) { null.evidence_nats[i] = best_evidence(*catalogue, observation); }
+        if (catalogue != nullptr) { null.evidence_nats[i] = evidence_of_all(*catalogue, observation); }
         const std::lock_guard lock(mutex);
         ++done;
         const double share = static_cast<double>(done) / static_cast<double>(options.simulations);

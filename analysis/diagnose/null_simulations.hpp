@@ -14,8 +14,15 @@ namespace gyrolog {
 
 struct NullSimulations {
     std::vector<std::vector<GapCurve>> curves;  // by simulation
-    std::vector<double> evidence_nats;  // by simulation: the best of all effects; empty unless asked for
+    // By simulation, by entry of the catalogue; empty unless asked for. Where an effect has no trace,
+    // no_evidence_nats.
+    std::vector<std::vector<double>> evidence_nats;
 };
+
+inline constexpr double no_evidence_nats = -50.0;
+
+// By simulation: of the effect that has the most.
+std::vector<double> best_evidence_nats(const NullSimulations& null);
 
 struct NullSimulationOptions {
     std::size_t simulations = 200;

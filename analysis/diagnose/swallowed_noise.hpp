@@ -5,19 +5,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "analysis/diagnose/finding.hpp"
 #include "analysis/diagnose/observation.hpp"
 
 namespace gyrolog {
-
-// A noise coefficient of the model that the recording has otherwise, now that the causes are in the model. In
-// SI units of the two-sided convention.
-struct SwallowedNoise {
-    std::size_t axis = 0;
-    char coefficient = 'N';  // 'N', 'B', 'K'
-    double stated = 0.0;
-    double fitted = 0.0;
-    double fitted_sd = 0.0;
-};
 
 // The axes on which less B or K than the model states, beyond its uncertainty, is called for.
 std::vector<std::size_t> axes_with_swallowed_noise(const Observation& observation);

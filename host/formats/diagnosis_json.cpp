@@ -129,6 +129,19 @@ Json domain_json(const GapDomain& domain) {
     return json;
 }
 
+// In the model file's units.
+Json swallowed_json(const std::vector<SwallowedNoise>& swallowed) {
+    Json json = Json::array();
+    for (const SwallowedNoise& one : swallowed) {
+        json.push_back({{"axis", axis_names.at(one.axis)},
+                        {"coefficient", std::string(1, one.coefficient)},
+                        {"stated", one.stated * deg_per_rad},
+                        {"fitted", one.fitted * deg_per_rad},
+                        {"sd", one.fitted_sd * deg_per_rad}});
+    }
+    return json;
+}
+
 void put_circumstances(Json& json, const Diagnosis& diagnosis) {
     json["recording"] = diagnosis.recording_name;
     json["model"] = diagnosis.model_name;
@@ -165,6 +178,7 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
     json["p_left"] = diagnosis.p_left;
     json["causes"] = Json::array();
     for (const Cause& cause : diagnosis.causes) { json["causes"].push_back(cause_json(cause)); }
+    if (!diagnosis.swallowed.empty()) { json["noise_refitted"] = swallowed_json(diagnosis.swallowed); }
     json["where"] = whole_place_json(diagnosis.where);
     const Json left = whole_place_json(diagnosis.left);
     if (!left.empty()) { json["left"] = left; }

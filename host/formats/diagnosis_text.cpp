@@ -113,6 +113,21 @@ std::string with_full_stop(std::string sentence) {
     return sentence;
 }
 
+// Empty where the model's noise stays as it is.
+std::string swallowed_sentence(const Diagnosis& diagnosis) {
+    if (diagnosis.swallowed.empty()) { return {}; }
+    std::vector<std::string> changes;
+    for (const SwallowedNoise& one : diagnosis.swallowed) {
+        changes.push_back(fmt::format("{} of {} {:.3g} ± {:.1g} instead of {:.3g}", one.coefficient,
+                                      axis_names.at(one.axis), one.fitted * deg_per_rad,
+                                      one.fitted_sd * deg_per_rad, one.stated * deg_per_rad));
+    }
+    return fmt::format(
+        "The model's noise held part of this, as that of a model does which was fitted to a recording with the "
+        "same effect; with the effect in the model it is {} (N in deg/s/√Hz, B in deg/s, K in deg/s·√Hz).",
+        fmt::join(changes, ", "));
+}
+
 // How likely the gap is by chance, where it lies, what makes it and how far it closes.
 std::string summary_text(const Diagnosis& diagnosis) {
     std::vector<std::string> sentences{chance_sentence(diagnosis)};
@@ -124,6 +139,8 @@ std::string summary_text(const Diagnosis& diagnosis) {
         const bool says_axes = diagnosis.causes.size() > 1 && !axes.empty();
         sentences.push_back(says_axes ? fmt::format("On {}: {}", axes, words) : words);
     }
+    const std::string swallowed = swallowed_sentence(diagnosis);
+    if (!swallowed.empty()) { sentences.push_back(swallowed); }
     if (!diagnosis.causes.empty()) { sentences.push_back(gap_after_sentence(diagnosis)); }
     if (diagnosis.verdict == Verdict::unexplained && !diagnosis.causes.empty()) {
         const std::string place = place_text(diagnosis.left);
