@@ -24,8 +24,8 @@ namespace {
 constexpr double none_above_p = 0.01;
 // What the causes leave is called unexplained below this,
 constexpr double unexplained_below_p = 0.005;
-// unless it is so little of the gap, 2 % of its size, that the approximations of a fit may leave it, and chance
-// nearly.
+// unless it is so little of the gap, 2 % of its size, that the approximations of a fit may leave it, and
+// chance nearly.
 constexpr double tolerated_share = 4e-4;
 constexpr double tolerated_above_p = 1e-6;
 // How often a cause is right that does not explain the gap: something else is there that it may stand for.
@@ -234,7 +234,9 @@ private:
             close_by_causes();
         } else {
             const double shrink = excess_before > 0.0 ? 1.0 - excess_after / excess_before : 0.0;
-            answer_.shrink = answer_.shrink_lo = answer_.shrink_hi = std::clamp(shrink, 0.0, 1.0);
+            // What is not right may look right where it was fitted, and close nothing.
+            answer_.shrink = answer_.shrink_hi = std::clamp(shrink, 0.0, 1.0);
+            answer_.shrink_lo = 0.0;
         }
         propose_recordings();
         answer_.where = explained ? answer_.causes.front().finding.where : before.where;

@@ -97,8 +97,8 @@ private:
     // early.
     bool learn_apparent_evidence(const Hypotheses& with_first) {
         if (causes_.empty() || !is_of_codes(causes_.front().finding)) { return true; }
-        const NullSimulationOptions options{
-            simulations_of_codes, options_.seed, options_.threads, [&](double) { return told(); }};
+        const NullSimulationOptions options{simulations_of_codes, options_.seed, options_.threads,
+                                            [&](double) { return told(); }};
         const std::optional<NullSimulations> null =
             simulate_null(with_first.baseline, &with_first.catalogue, options);
         if (!null) { return false; }
@@ -239,7 +239,7 @@ private:
             if (is_of_codes(causes_[i].finding)) {
                 if (same != findings.end()) { causes_[i].finding = *same; }
             } else if (rival != findings.end() && rival->evidence_nats > own_nats + margin_nats &&
-                rival->evidence_nats >= options_.evidence_min_nats) {
+                       rival->evidence_nats >= options_.evidence_min_nats) {
                 causes_[i].finding = *rival;
             } else if (own_nats >= options_.evidence_min_nats) {
                 causes_[i].finding = *same;

@@ -32,7 +32,7 @@ struct FoundCause {
 };
 
 struct EffectSearchResult {
-    std::vector<FoundCause> causes;  // by evidence
+    std::vector<FoundCause> causes;         // by evidence
     std::vector<SwallowedNoise> swallowed;  // where the model that was given held part of the causes
     SensorModel corrected;
     Hypotheses last;  // under the corrected model

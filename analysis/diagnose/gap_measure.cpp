@@ -113,8 +113,7 @@ void add_sums(const UsedSimulations& used, std::size_t c, GapReference& referenc
     reference.window_sd.push_back(std::move(window_sd));
     reference.square_mean.push_back(average);
     reference.square_variance.push_back(std::max(squares / count - average * average, 0.0));
-    reference.rms_scale.push_back(
-        std::sqrt(average / static_cast<double>(std::max<std::size_t>(points, 1))));
+    reference.rms_scale.push_back(std::sqrt(average / static_cast<double>(std::max<std::size_t>(points, 1))));
 }
 
 // Of the axes' curves of one kind: at one point or window of all of them, or in all.
@@ -133,8 +132,8 @@ double surprise_of_axes(const std::vector<CurveDistance>& gaps, const std::vecto
         return worst;
     };
     const double worst = std::max(worst_of(&CurveDistance::z), worst_of(&CurveDistance::window_z));
-    const auto looks = static_cast<double>(gaps[same_kind.front()].z.size() +
-                                           gaps[same_kind.front()].window_z.size());
+    const auto looks =
+        static_cast<double>(gaps[same_kind.front()].z.size() + gaps[same_kind.front()].window_z.size());
     double squares = 0.0;
     double mean = 0.0;
     double variance = 0.0;

@@ -40,8 +40,8 @@ struct CurveDistance {
 
 CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
 
-// By curve of one observation: its own surprise, or that of all axes' curves of its kind together where that is
-// larger.
+// By curve of one observation: its own surprise, or that of all axes' curves of its kind together where that
+// is larger.
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
 // Of every simulation against all the others: a new recording is not in its own reference either.

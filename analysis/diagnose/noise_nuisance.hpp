@@ -17,7 +17,7 @@ namespace gyrolog {
 struct NoiseNuisance {
     // By how many stated standard deviations N, B and K differ from the model's.
     std::array<double, 3> z{};
-    std::array<double, 3> sd_z{};        // by the likelihood's curvature, the prior's included
+    std::array<double, 3> sd_z{};      // by the likelihood's curvature, the prior's included
     double log_likelihood_nats = 0.0;  // with the prior's -z^2 / 2, without constants
 };
 

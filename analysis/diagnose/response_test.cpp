@@ -427,8 +427,16 @@ private:
         finding.where.tau_s = {0.37 / band.to, std::min(0.37 / band.from, 0.5 * baseline_->duration_s())};
     }
 
-    // The rates, by size, over which the response is strong.
+    // Up to the rate that the effect says, or the upper half of all by size.
     void locate_rates(Finding& finding) const {
+        if (!signature_.rates_up_to.empty()) {
+            double most_dps = 0.0;
+            for (const EffectModel& entry : finding.entries) {
+                most_dps = std::max(most_dps, entry.params.at(std::string(signature_.rates_up_to)));
+            }
+            finding.where.rate_rad_s = {0.0, most_dps * rad_per_deg};
+            return;
+        }
         std::vector<float> sizes;
         for (const std::size_t axis : finding.where.axes) {
             for (const float rate : baseline_->true_rate_rad_s(axis)) { sizes.push_back(std::fabs(rate)); }

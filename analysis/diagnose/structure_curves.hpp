@@ -27,14 +27,14 @@ GapCurve period_curve(const Observation& observation, std::size_t axis);
 // By frequency: the largest sum of whitened power over neighbouring coefficients, in windows of several
 // widths within a band, over the band's own level where that is above the model's; as the normal deviate that
 // is as rare among as many windows. A line that wanders is too weak for its band and too broad for a steady
-// line. `edges`: first bin of every band, and the end; bands too low to hold the broadest window are one. x is
-// where the window lies.
+// line. `edges`: first bin of every band, and the end; bands too low to hold the broadest window are one. x
+// is where the window lies.
 GapCurve narrow_curve(const Observation& observation, std::size_t axis,
                       const std::vector<std::size_t>& edges);
 
-// The converter's histogram (IEEE Std 1241, code density): 1, the code that is most at odds with a cubic through
-// the four beside it, as the normal deviate that is as rare among as many codes; 2, even codes against odd
-// ones, in standard deviations of a count. 0 where the model has no step.
+// The converter's histogram (IEEE Std 1241, code density): 1, the code that is most at odds with a cubic
+// through the four beside it, as the normal deviate that is as rare among as many codes; 2, even codes
+// against odd ones, in standard deviations of a count. 0 where the model has no step.
 GapCurve codes_curve(const Observation& observation, std::size_t axis);
 
 }  // namespace gyrolog

@@ -24,9 +24,7 @@ bool has_swallowed_noise(const Observation& observation, std::size_t axis) {
     const AxisObservation& seen = observation.axis(axis);
     const std::array<double, 3> stated = noise_uncertainty(baseline.model(), axis);
     std::array<double, 3> sd_rel = {stated[0], free_sd_rel, free_sd_rel};
-    const auto fit = [&] {
-        return fit_nuisance(baseline.bins(), baseline.parts(axis), seen.power, sd_rel);
-    };
+    const auto fit = [&] { return fit_nuisance(baseline.bins(), baseline.parts(axis), seen.power, sd_rel); };
     NoiseNuisance freed = fit();
     for (const std::size_t index : {std::size_t{1}, std::size_t{2}}) {
         // More noise than stated has names of its own among the effects.
@@ -70,7 +68,8 @@ std::vector<SwallowedNoise> fitted_noise(const Observation& observation,
 
 SensorModel with_noise(SensorModel model, const std::vector<SwallowedNoise>& noise) {
     for (const SwallowedNoise& one : noise) {
-        const auto index = static_cast<std::size_t>(std::ranges::find(names, one.coefficient) - names.begin());
+        const auto index =
+            static_cast<std::size_t>(std::ranges::find(names, one.coefficient) - names.begin());
         AxisModel& axis = model.axes[one.axis];
         coefficient_of(axis.noise, index) = one.fitted;
         axis.sd_rel[std::string(1, one.coefficient)] = one.fitted_sd / one.fitted;

@@ -74,7 +74,8 @@ enum class PlaceKind { spectrum, time, instant, temperature, acceleration, rate,
 struct EffectSignature {
     EvidenceMethod method = EvidenceMethod::spectrum;
     PlaceKind place = PlaceKind::spectrum;
-    std::string_view structure{};  // with PlaceKind::structure
+    std::string_view structure{};    // with PlaceKind::structure
+    std::string_view rates_up_to{};  // with PlaceKind::rate: the parameter, in deg/s, that ends the place
 
     bool needs_temperature = false;
     bool needs_reference = false;

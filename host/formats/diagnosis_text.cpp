@@ -123,7 +123,8 @@ std::string swallowed_sentence(const Diagnosis& diagnosis) {
                                       one.fitted_sd * deg_per_rad, one.stated * deg_per_rad));
     }
     return fmt::format(
-        "The model's noise held part of this, as that of a model does which was fitted to a recording with the "
+        "The model's noise held part of this, as that of a model does which was fitted to a recording with "
+        "the "
         "same effect; with the effect in the model it is {} (N in deg/s/√Hz, B in deg/s, K in deg/s·√Hz).",
         fmt::join(changes, ", "));
 }

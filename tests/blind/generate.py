@@ -223,8 +223,8 @@ def draw_pair(rng, motion):
             return [(str(a), str(rng.choice(["moderate", "clear"]))), (str(b), str(rng.choice(["moderate", "clear"])))]
 
 
-def full_panel(rng, count, minutes, motion_minutes):
-    """`count` cases of each effect and class, and in proportion none, foreign, pairs and refitted models."""
+def full_panel(rng, count, minutes, motion_minutes, none):
+    """`count` cases of each effect and class, and in proportion foreign, pairs and refitted models."""
     out = []
 
     def add(effects, motion, **more):
@@ -245,7 +245,7 @@ def full_panel(rng, count, minutes, motion_minutes):
         name = str(rng.choice(REFITTED))
         c = str(rng.choice([k for k in CATALOGUE[name].classes if k != "marginal"]))
         add([(name, c)], False, refitted=True)
-    for i in range(25 * count):
+    for i in range(none):
         add([], i % 5 == 4)
     return out
 
@@ -259,7 +259,7 @@ SMALL = [  # effect, class, motion
 ]
 
 
-def panel(kind, count, seed, minutes, motion_minutes, only_effects=None, only_classes=None):
+def panel(kind, count, seed, minutes, motion_minutes, only_effects=None, only_classes=None, none=None):
     rng = np.random.default_rng(seed)
     if kind == "small":
         minutes, motion_minutes = minutes or 20.0, motion_minutes or 8.0
@@ -270,7 +270,9 @@ def panel(kind, count, seed, minutes, motion_minutes, only_effects=None, only_cl
         out = [spec(rng.integers(1, 2**31), [], i % 5 == 4, motion_minutes if i % 5 == 4 else minutes)
                for i in range(count or 200)]
     else:
-        out = full_panel(rng, count or 1, minutes or 120.0, motion_minutes or 18.0)
+        count = count or 1
+        none = 25 * count if none is None else none
+        out = full_panel(rng, count, minutes or 120.0, motion_minutes or 18.0, none)
         if kind in ("still", "motion"):
             out = [s for s in out if s["motion"] == (kind == "motion")]
     if only_effects:
@@ -299,6 +301,7 @@ def write_case(case_id, case_spec, directory, sealed):
 def panel_arguments(parser):
     parser.add_argument("--panel", default="small", choices=["small", "full", "none", "still", "motion"])
     parser.add_argument("--count", type=int, help="cases of each effect and class (full), or of all (none)")
+    parser.add_argument("--none", type=int, help="cases without a gap (full); 25 times the count")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, help="of a recording at rest")
     parser.add_argument("--motion-minutes", type=float)
@@ -308,7 +311,7 @@ def panel_arguments(parser):
 
 def panel_from(arguments):
     return panel(arguments.panel, arguments.count, arguments.seed, arguments.minutes, arguments.motion_minutes,
-                 arguments.effect, arguments.classes)
+                 arguments.effect, arguments.classes, arguments.none)
 
 
 def main():

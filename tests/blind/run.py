@@ -110,7 +110,7 @@ def main():
         about = {"panel": "existing"}
     else:
         cases = panel_from(arguments)
-        about = {"panel": arguments.panel, "seed": arguments.seed, "count": arguments.count,
+        about = {"panel": arguments.panel, "seed": arguments.seed, "count": arguments.count, "none": arguments.none,
                  "minutes": arguments.minutes, "motion_minutes": arguments.motion_minutes,
                  "effect": arguments.effect, "class": arguments.classes}
     run(os.path.abspath(arguments.program), arguments.directory, cases, arguments.jobs, arguments.keep, about,

@@ -3,7 +3,8 @@
 
 It can be stopped and started again; DIR keeps what was answered. The table goes to DIR/table.md and DIR/table.json.
 
-Usage: table.py PROGRAM DIR [--count 8] [--seed 1] [--jobs 2]
+Usage: table.py PROGRAM DIR [--count 8] [--none 200] [--minutes 120] [--motion-minutes 18] [--simulations 200]
+                [--seed 1] [--jobs 2]
 """
 
 import argparse
@@ -20,13 +21,20 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program")
     parser.add_argument("directory")
-    parser.add_argument("--count", type=int, default=8, help="cases of each effect and class; 8: 200 without a gap")
+    parser.add_argument("--count", type=int, default=8, help="cases of each effect and class")
+    parser.add_argument("--none", type=int, default=200, help="cases without a gap")
+    parser.add_argument("--minutes", type=float, default=120.0, help="of a recording at rest")
+    parser.add_argument("--motion-minutes", type=float, default=18.0)
+    parser.add_argument("--simulations", type=int, help="in place of the program's own number")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
     directory = arguments.directory
-    sys.argv = ["run.py", arguments.program, directory, "--panel", "full", "--count", str(arguments.count), "--seed",
-                str(arguments.seed), "--jobs", str(arguments.jobs)]
+    sys.argv = ["run.py", arguments.program, directory, "--panel", "full"]
+    for name in ("count", "none", "minutes", "motion_minutes", "simulations", "seed", "jobs"):
+        value = getattr(arguments, name)
+        if value is not None:
+            sys.argv += ["--" + name.replace("_", "-"), str(value)]
     run.main()
     sys.argv = ["score.py", directory, "--json", os.path.join(directory, "table.json"), "--markdown",
                 os.path.join(directory, "table.md")]

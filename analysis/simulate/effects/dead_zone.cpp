@@ -39,6 +39,7 @@ constexpr std::span<const TrialValues> trials[] = {with_offset, with_jump};
 constexpr EffectSignature signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::rate,
+    .rates_up_to = "width_dps",
     .needs_reference = true,
     .trials = trials,
     .words = "Rates up to {width_dps} have no answer",

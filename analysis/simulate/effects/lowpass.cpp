@@ -135,10 +135,10 @@ private:
     double white_before_ = 0.0;
 };
 
-// One axis of all else: the filter's response to a cubic through the last four samples, over the last interval.
-// A polynomial u is answered by sum c_n u^(n) / a^n for ever (c = 1, -1, 1, -1 of order 1 with a = w; 1, -1,
-// 1/2, 0 of order 2 with a = w / sqrt 2); what the state differs from that rings off. State: output and its
-// slope (per sample).
+// One axis of all else: the filter's response to a cubic through the last four samples, over the last
+// interval. A polynomial u is answered by sum c_n u^(n) / a^n for ever (c = 1, -1, 1, -1 of order 1 with a =
+// w; 1, -1, 1/2, 0 of order 2 with a = w / sqrt 2); what the state differs from that rings off. State: output
+// and its slope (per sample).
 class FilteredSignal {
 public:
     FilteredSignal(int order, double w_T) : order_(order), a_T_(order == 1 ? w_T : w_T / std::sqrt(2.0)) {
