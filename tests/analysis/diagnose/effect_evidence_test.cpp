@@ -178,6 +178,25 @@ TEST(EffectSearch, TakesALineThatSwellsOnce) {
     }
 }
 
+// Numbers on a coarse grid look heavy-tailed to a likelihood that knows no grid, more than they look coarse.
+TEST(EffectSearch, TakesACoarseStepForNothingElse) {
+    SensorModel model = calibrated_sensor(0.0033);
+    // The next code is rarely reached.
+    model.axes[0].bias_rad_s = 1.2 * model.lsb_rad_s;
+    SensorModel coarse = model;
+    coarse.effects.push_back({"quantization", {"x"}, {{"lsb_dps", 8.0 * model.lsb_rad_s * deg_per_rad}}, ""});
+    const auto recording = recorded(coarse, 60'000, 27);
+    const Hypotheses first = examined(recording, model);
+    EXPECT_GT(of(first, "heavy_tail").evidence_nats, of(first, "quantization").evidence_nats)
+        << "the trap is not set";
+    const std::optional<EffectSearchResult> found = search_effects(first, recording, {});
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->causes.size(), 1U);
+    EXPECT_EQ(found->causes.front().finding.effect, "quantization");
+    EXPECT_EQ(found->causes.front().rivals.size(), 1U) << "itself";
+    EXPECT_TRUE(found->swallowed.empty());
+}
+
 TEST(OccamCost, RisesSmoothlyBeyondWhatIsPlausible) {
     const EffectParam size{.name = "a", .meaning = "", .plausible_from = -3.0, .plausible_to = 3.0};
     const double sd = 0.01;

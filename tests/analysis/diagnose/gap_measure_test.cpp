@@ -63,5 +63,66 @@ TEST(GapMeasure, LeavesTheOneOutThatItIsAskedTo) {
     EXPECT_EQ(without.degrees_of_freedom, 10.0);
 }
 
+// Curves of three axes, independent points.
+std::vector<GapCurve> flat_curves(std::mt19937_64& random, double offset, std::size_t from, std::size_t end) {
+    std::normal_distribution<double> normal(0.0, 1.0);
+    std::vector<GapCurve> curves;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        GapCurve curve{GapDomainKind::course, axis, axis, {}, {}};
+        for (std::size_t i = 0; i < 32; ++i) {
+            curve.x.push_back(static_cast<double>(i));
+            curve.value.push_back(normal(random) + (i >= from && i < end ? offset : 0.0));
+        }
+        curves.push_back(std::move(curve));
+    }
+    return curves;
+}
+
+TEST(GapMeasure, SeesABroadFrontThatIsLittleAtEveryPoint) {
+    std::mt19937_64 random(9);
+    SimulatedCurves simulated;
+    for (int i = 0; i < 200; ++i) { simulated.push_back(flat_curves(random, 0.0, 0, 0)); }
+    const GapReference reference = gap_reference(simulated);
+    const std::vector<GapCurve> curves = flat_curves(random, 3.0, 8, 16);
+    const CurveDistance gap = gap_of(curves[0], reference, 0);
+    // Eight points, three sigma each: sqrt(8) x 3 together.
+    EXPECT_GT(std::ranges::max(gap.window_z), 3.0 * std::sqrt(8.0) - 3.0);
+    EXPECT_GT(std::ranges::max(gap.window_z), std::ranges::max(gap.z));
+    EXPECT_GT(gap.surprise_nats, 6.0);
+}
+
+TEST(GapMeasure, AddsUpWhatAllAxesShowAtOnePlace) {
+    std::mt19937_64 random(10);
+    SimulatedCurves simulated;
+    for (int i = 0; i < 200; ++i) { simulated.push_back(flat_curves(random, 0.0, 0, 0)); }
+    const GapReference reference = gap_reference(simulated);
+    const std::vector<GapCurve> curves = flat_curves(random, 3.5, 20, 21);
+    const std::vector<double> together = surprises_nats(curves, reference);
+    double worst_alone = 0.0;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        worst_alone = std::max(worst_alone, gap_of(curves[c], reference, c).surprise_nats);
+    }
+    // Three squares of 3.5 and their noise: chi-square of three degrees, 40 and 14 nats less the looks.
+    EXPECT_GT(together[0], worst_alone + 2.0);
+    EXPECT_EQ(together[0], together[1]);
+    EXPECT_EQ(together[0], together[2]);
+    EXPECT_EQ(worst_surprise_nats(curves, reference), together[0]);
+}
+
+TEST(GapMeasure, OfThreeAxesHoldsThemToTheSameStandard) {
+    constexpr int records = 300;
+    std::mt19937_64 random(11);
+    int above_all = 0;
+    for (int record = 0; record < records; ++record) {
+        SimulatedCurves simulated;
+        for (int i = 0; i < 30; ++i) { simulated.push_back(flat_curves(random, 0.0, 0, 0)); }
+        const double most = std::ranges::max(simulated_surprises_nats(simulated));
+        const GapReference reference = gap_reference(simulated);
+        above_all += worst_surprise_nats(flat_curves(random, 0.0, 0, 0), reference) > most;
+    }
+    // 1 of 31, as above.
+    EXPECT_NEAR(above_all, records / 31.0, 4.0 * std::sqrt(records / 31.0));
+}
+
 }  // namespace
 }  // namespace gyrolog

@@ -53,7 +53,7 @@ TEST(StructureCurves, OfOrdinaryNoiseAreRarelyLarge) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         const std::vector<GapCurve> curves = curves_of(seed, {});
         for (const GapDomainKind kind :
-             {GapDomainKind::repeats, GapDomainKind::period, GapDomainKind::narrow}) {
+             {GapDomainKind::repeats, GapDomainKind::period, GapDomainKind::narrow, GapDomainKind::codes}) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 for (const double value : curve_of(curves, kind, axis).value) {
                     EXPECT_LT(value, 4.9) << "seed " << seed;  // 1 of two millions
@@ -158,6 +158,43 @@ TEST(StructureCurves, ShowALineThatWandersAndWhere) {
     EXPECT_GT(most(narrow), 6.0);
     EXPECT_NEAR(narrow.x[static_cast<std::size_t>(peak)], f_hz, 0.3);
     EXPECT_LT(most(curve_of(curves, GapDomainKind::narrow, 1)), 4.5);
+}
+
+TEST(StructureCurves, ShowASlowSwingBelowTheBandsOfLines) {
+    constexpr double f_hz = 1.0 / 80.0;  // 15 turns
+    const std::vector<GapCurve> curves = curves_of(7, [](std::vector<double>& codes) {
+        const double height = 0.08 * white_sd_codes(codes);
+        for (std::size_t i = 0; i < codes.size(); ++i) {
+            codes[i] += height * std::sin(2.0 * 3.14159265358979 * f_hz * static_cast<double>(i) / 100.0);
+        }
+    });
+    const GapCurve& narrow = curve_of(curves, GapDomainKind::narrow, changed_axis);
+    EXPECT_GT(narrow.value.front(), 6.0);
+    EXPECT_NEAR(narrow.x.front(), f_hz, 0.2 * f_hz);
+    EXPECT_LT(curve_of(curves, GapDomainKind::narrow, 1).value.front(), 4.5);
+}
+
+TEST(StructureCurves, ShowACodeThatIsNeverShown) {
+    const std::vector<GapCurve> curves = curves_of(8, [](std::vector<double>& codes) {
+        const double level = std::round(codes.front()) + 4.0;
+        for (double& code : codes) { code += code == level ? 1.0 : 0.0; }
+    });
+    const GapCurve& changed = curve_of(curves, GapDomainKind::codes, changed_axis);
+    const GapCurve& ordinary = curve_of(curves, GapDomainKind::codes, 1);
+    EXPECT_GT(changed.value[0], 10.0);
+    EXPECT_LT(ordinary.value[0], 4.5);
+    EXPECT_LT(ordinary.value[1], 4.5);
+}
+
+TEST(StructureCurves, ShowAConverterWhoseLowestBitIsWeak) {
+    const std::vector<GapCurve> curves = curves_of(9, [](std::vector<double>& codes) {
+        std::mt19937_64 random(4);
+        std::bernoulli_distribution misses(0.05);
+        for (double& code : codes) {
+            if (std::fmod(code, 2.0) != 0.0 && misses(random)) { code -= 1.0; }
+        }
+    });
+    EXPECT_GT(curve_of(curves, GapDomainKind::codes, changed_axis).value[1], 10.0);
 }
 
 }  // namespace

@@ -1,0 +1,110 @@
+#include "analysis/diagnose/swallowed_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/effect_search.hpp"
+#include "tests/analysis/diagnose/observed.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint64_t samples = 180'000;
+
+Observation observed(const std::shared_ptr<const Recording>& recording, const SensorModel& model) {
+    return {baseline_of(recording, model), recording, 1};
+}
+
+// As a fit to a recording states it that had telegraph noise: B for the most part, and sure of it.
+SensorModel fitted_to_telegraph_noise() {
+    SensorModel model = calibrated_sensor();
+    for (AxisModel& axis : model.axes) { axis.noise.B_rad_per_s = 0.0084 * rad_per_deg; }
+    model.sd_rel["B"] = 0.02;
+    return model;
+}
+
+SensorModel telegraph_sensor() {
+    SensorModel sensor = calibrated_sensor();
+    sensor.effects.push_back(
+        {"rtn", {}, {{"amplitude_dps", 0.02}, {"dwell_high_s", 1.6}, {"dwell_low_s", 2.6}}, ""});
+    return sensor;
+}
+
+TEST(SwallowedNoise, IsRareInASensorThatIsAsItsModelSays) {
+    constexpr std::uint64_t seeds = 20;
+    const SensorModel model = calibrated_sensor();
+    std::size_t axes = 0;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        axes += axes_with_swallowed_noise(observed(recorded(model, 30'000, seed), model)).size();
+    }
+    EXPECT_LE(axes, 2U) << "of " << 3 * seeds << ", five nats each";
+}
+
+TEST(SwallowedNoise, IsOnTheAxesThatTheModelHasTooNoisy) {
+    const auto recording = recorded(calibrated_sensor(), samples, 31);
+    SensorModel model = calibrated_sensor();
+    model.axes[1].noise.B_rad_per_s *= 4.0;
+    EXPECT_EQ(axes_with_swallowed_noise(observed(recording, model)), std::vector<std::size_t>{1});
+    // More noise than the model has is no such case.
+    model.axes[1].noise.B_rad_per_s /= 16.0;
+    EXPECT_TRUE(axes_with_swallowed_noise(observed(recording, model)).empty());
+}
+
+TEST(SwallowedNoise, SetFreeComesToWhatTheSensorHas) {
+    const SensorModel sensor = calibrated_sensor();
+    const auto recording = recorded(sensor, samples, 32);
+    SensorModel model = sensor;
+    model.axes[2].noise.B_rad_per_s *= 4.0;
+    const std::vector<std::size_t> axes = {2};
+    const std::vector<SwallowedNoise> fitted =
+        fitted_noise(observed(recording, with_free_noise(model, axes)), axes);
+    ASSERT_EQ(fitted.size(), 3U);
+    const NoiseCoefficients& truth = sensor.axes[2].noise;
+    const std::vector<double> true_values = {truth.N_rad_per_sqrt_s, truth.B_rad_per_s,
+                                             truth.K_rad_per_s_sqrt_s};
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+        EXPECT_EQ(fitted[i].coefficient, "NBK"[i]);
+        EXPECT_NEAR(fitted[i].fitted, true_values[i], 4.0 * fitted[i].fitted_sd) << "NBK"[i];
+    }
+    EXPECT_LT(fitted[1].fitted_sd, 0.5 * true_values[1]);
+    const SensorModel restated = with_noise(model, fitted);
+    EXPECT_EQ(restated.axes[2].noise.B_rad_per_s, fitted[1].fitted);
+    EXPECT_EQ(restated.axes[2].sd_rel.at("B"), fitted[1].fitted_sd / fitted[1].fitted);
+    EXPECT_EQ(restated.axes[0].noise.B_rad_per_s, model.axes[0].noise.B_rad_per_s);
+    EXPECT_TRUE(axes_with_swallowed_noise(observed(recording, restated)).empty());
+}
+
+// Held to the model's B, telegraph noise comes out too small, and what is simulated with it too noisy.
+TEST(EffectSearch, TakesOffTheModelWhatItsFitMadeOfTheCause) {
+    const auto recording = recorded(telegraph_sensor(), samples, 33);
+    const SensorModel model = fitted_to_telegraph_noise();
+    const auto baseline = baseline_of(recording, model);
+    const Hypotheses first = examine(baseline, recording, 1, 1);
+    const std::optional<EffectSearchResult> found = search_effects(first, recording, {});
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->causes.size(), 1U);
+    const Finding& cause = found->causes.front().finding;
+    EXPECT_EQ(cause.effect, "rtn");
+    EXPECT_NEAR(cause.entries.front().params.at("amplitude_dps"), 0.02,
+                4.0 * cause.sd.front().at("amplitude_dps"));
+    EXPECT_EQ(found->swallowed.size(), 9U) << "N, B and K of three axes";
+    for (const AxisModel& axis : found->corrected.axes) {
+        EXPECT_LT(axis.noise.B_rad_per_s, 0.5 * model.axes[0].noise.B_rad_per_s);
+    }
+}
+
+TEST(EffectSearch, LeavesTheNoiseOfAModelThatIsRight) {
+    const auto recording = recorded(telegraph_sensor(), samples, 34);
+    const Hypotheses first = examine(baseline_of(recording, calibrated_sensor()), recording, 1, 1);
+    const std::optional<EffectSearchResult> found = search_effects(first, recording, {});
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->causes.size(), 1U);
+    EXPECT_TRUE(found->swallowed.empty());
+}
+
+}  // namespace
+}  // namespace gyrolog
