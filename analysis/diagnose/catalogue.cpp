@@ -47,11 +47,6 @@ constexpr MethodMaker makers[] = {
     {EvidenceMethod::stamp_spread, make_stamp_spread_test},
 };
 
-// In a moving world the mean answer tells far more than the noise does.
-EvidenceMethod method_of(const EffectSignature& signature, const Baseline& baseline) {
-    return signature.changes_mean && baseline.moves() ? EvidenceMethod::response : signature.method;
-}
-
 std::string lacking(const EffectSignature& signature, const Baseline& baseline) {
     if (signature.needs_temperature && baseline.temperature_C().empty()) {
         return "the recording has no temperature";
@@ -65,6 +60,10 @@ std::string lacking(const EffectSignature& signature, const Baseline& baseline) 
 
 }  // namespace
 
+EvidenceMethod evidence_method(const EffectSignature& signature, const Baseline& baseline) {
+    return signature.changes_mean && baseline.moves() ? EvidenceMethod::response : signature.method;
+}
+
 std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline,
                                            unsigned threads) {
     std::vector<CatalogueEntry> catalogue;
@@ -74,7 +73,7 @@ std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>
     }
     parallel_for(catalogue.size(), threads, [&](std::size_t i) {
         CatalogueEntry& entry = catalogue[i];
-        const EvidenceMethod method = method_of(*entry.effect->signature, *baseline);
+        const EvidenceMethod method = evidence_method(*entry.effect->signature, *baseline);
         for (const MethodMaker& maker : makers) {
             if (!entry.untestable.empty() || maker.method != method) { continue; }
             MadeTest made = maker.make(*entry.effect, baseline);

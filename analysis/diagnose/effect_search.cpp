@@ -18,7 +18,9 @@ constexpr double margin_nats = 3.0;
 constexpr double far_better_nats = 8.0;
 // How many causes are tried as the first.
 constexpr std::size_t beginnings_most = 4;
-constexpr std::size_t simulations_of_codes = 16;
+// A cause of such evidence changes everything that others are judged by.
+constexpr double huge_nats = 1e4;
+constexpr std::size_t apparent_simulations = 16;
 constexpr double apparent_sds = 4.0;
 
 class Search {
@@ -31,7 +33,11 @@ public:
 
     std::optional<EffectSearchResult> run() {
         std::optional<Hypotheses> latest = with_first_cause();
-        if (latest && !learn_apparent_evidence(*latest)) { return std::nullopt; }
+        const bool changes_much = !causes_.empty() && (is_of_codes(causes_.front().finding) ||
+                                                       causes_.front().finding.evidence_nats > huge_nats);
+        if (latest && changes_much && further(*latest) != nullptr && !learn_apparent_evidence(*latest)) {
+            return std::nullopt;
+        }
         // A cause that others make needless may come back for ever.
         const std::size_t rounds_most = 2 * options_.causes_most;
         for (std::size_t round = 0; latest && round < rounds_most; ++round) {
@@ -77,7 +83,7 @@ private:
         for (const Finding& finding : findings_of(first_)) {
             if (finding.evidence_nats < options_.evidence_min_nats) { break; }
             if (is_of_codes(finding)) { return {finding}; }
-            best.try_emplace(find_effect(finding.effect)->signature->method, finding);
+            best.try_emplace(method_of(finding), finding);
         }
         std::vector<Finding> found;
         found.reserve(best.size());
@@ -93,11 +99,11 @@ private:
         return find_effect(finding.effect)->signature->method == EvidenceMethod::code_grid;
     }
 
-    // How much evidence effects seem to have in simulations of a model whose step is coarse. False when ended
-    // early.
+    // How much evidence effects seem to have in simulations of a model whose step is coarse, or that is far
+    // from the given one otherwise. False when ended early.
     bool learn_apparent_evidence(const Hypotheses& with_first) {
         if (causes_.empty() || !is_of_codes(causes_.front().finding)) { return true; }
-        const NullSimulationOptions options{simulations_of_codes, options_.seed, options_.threads,
+        const NullSimulationOptions options{apparent_simulations, options_.seed, options_.threads,
                                             [&](double) { return told(); }};
         const std::optional<NullSimulations> null =
             simulate_null(with_first.baseline, &with_first.catalogue, options);
@@ -122,8 +128,12 @@ private:
         return finding.evidence_nats - (apparent == apparent_nats_.end() ? 0.0 : apparent->second);
     }
 
-    static bool is_noise(const Finding& finding) {
-        const EvidenceMethod method = find_effect(finding.effect)->signature->method;
+    EvidenceMethod method_of(const Finding& finding) const {
+        return evidence_method(*find_effect(finding.effect)->signature, *first_.baseline);
+    }
+
+    bool is_noise(const Finding& finding) const {
+        const EvidenceMethod method = method_of(finding);
         return method == EvidenceMethod::spectrum || method == EvidenceMethod::two_levels ||
                method == EvidenceMethod::tails;
     }

@@ -17,6 +17,11 @@ namespace {
 
 // Beyond this evidence trial values are refined, which takes a simulation.
 constexpr double worth_refining_nats = 3.0;
+// In steps of the trial values.
+constexpr double simplex_width = 0.05;
+// Where the evidence falls by more than this over the simplex' width, its answer is not good enough.
+constexpr double fall_polished_nats = 0.25;
+constexpr std::size_t polishing_passes = 2;
 constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 struct Trial {
@@ -268,8 +273,48 @@ private:
         constexpr int simulations_most = 18;
         const SimplexMaximum maximum = simplex_maximum(
             [&](const std::vector<double>& steps) { return evidence_at(observation, start.point, steps); },
-            std::vector<double>(count, 0.0), 0.4, 0.05, simulations_most);
-        return simulated(moved(start.point, maximum.at));
+            std::vector<double>(count, 0.0), 0.4, simplex_width, simulations_most);
+        return polished(observation, simulated(moved(start.point, maximum.at)));
+    }
+
+    // Parameters that are known far better than the simplex is fine: by parabolas about as wide as they are
+    // known.
+    Trial polished(const Observation& observation, Trial trial) const {
+        const std::size_t count = free_parameters(trial.point);
+        double here = evidence_at(observation, trial);
+        for (std::size_t pass = 0; pass < polishing_passes; ++pass) {
+            for (std::size_t i = 0; i < count; ++i) {
+                std::optional<double> vertex = parabola_vertex(observation, trial, here, i, simplex_width);
+                if (!vertex) { continue; }
+                std::vector<double> steps(count, 0.0);
+                steps[i] = *vertex;
+                Trial better = simulated(moved(trial.point, steps));
+                const double there = evidence_at(observation, better);
+                if (!(there > here)) { continue; }
+                trial = std::move(better);
+                here = there;
+            }
+        }
+        return trial;
+    }
+
+    // Of the evidence along one free parameter; none where the simplex is fine enough.
+    std::optional<double> parabola_vertex(const Observation& observation, const Trial& trial, double here,
+                                          std::size_t free, double width) const {
+        for (int narrowing = 0; narrowing < 4; ++narrowing) {
+            std::vector<double> less(free_parameters(trial.point), 0.0);
+            less[free] = -width;
+            std::vector<double> more = less;
+            more[free] = width;
+            const double below = evidence_at(observation, trial.point, less);
+            const double above = evidence_at(observation, trial.point, more);
+            const double fall = 2.0 * here - below - above;
+            if (!(fall > 2.0 * fall_polished_nats) || !(fall < 1e300)) { return std::nullopt; }
+            const double vertex = 0.5 * width * (above - below) / fall;
+            if (std::fabs(vertex) < 0.5 * width || fall < 32.0 * fall_polished_nats) { return vertex; }
+            width *= 2.0;
+        }
+        return std::nullopt;
     }
 
     // From the curvature of the evidence about a point between the trials.
