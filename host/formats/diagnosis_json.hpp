@@ -9,6 +9,8 @@
 //                            params_by_axis, sd_by_axis (by "x", "y", "z") hold all. Where others tie:
 //                            tie {effect: by how many nats of evidence it is behind}, decided_by (the
 //                            recording that would decide)
+//   noise_refitted           where the model's noise held part of the causes: [{axis, coefficient "N", "B" or
+//                            "K", stated, fitted, sd}] in the model file's units
 //   where                    axes, freq_hz, tau_s, time_s, temperature, acceleration, rate_dps,
 //                            amplitude_sigma, structure: those that apply
 //   gap_before, gap_after    {value, floor, lo, hi}: in units of the distance between two simulations

@@ -356,6 +356,21 @@ TEST(DiagnosisText, SaysWhereWhatIsLeftLies) {
     EXPECT_EQ(left, json::parse(R"({"axes": ["y"], "freq_hz": [37.9, 38.1]})"));
 }
 
+TEST(DiagnosisText, SaysWhatTheModelsNoiseIsWithoutTheCauses) {
+    Diagnosis diagnosis = known();
+    EXPECT_THAT(diagnosis_text(diagnosis), Not(HasSubstr("held part")));
+    EXPECT_FALSE(json::parse(diagnosis_json(diagnosis)).contains("noise_refitted"));
+    diagnosis.swallowed.push_back(
+        {1, 'B', 0.0084 * rad_per_deg, 0.00152 * rad_per_deg, 0.0002 * rad_per_deg});
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)), HasSubstr("B of y 0.00152 ± 0.0002 instead of 0.0084"));
+    const json entry = json::parse(diagnosis_json(diagnosis)).at("noise_refitted").at(0);
+    EXPECT_EQ(entry.at("axis"), "y");
+    EXPECT_EQ(entry.at("coefficient"), "B");
+    EXPECT_NEAR(entry.at("stated").get<double>(), 0.0084, 1e-12);
+    EXPECT_NEAR(entry.at("fitted").get<double>(), 0.00152, 1e-12);
+    EXPECT_NEAR(entry.at("sd").get<double>(), 0.0002, 1e-12);
+}
+
 TEST(DiagnosisText, OfManyPlacesListsThoseThatStandOut) {
     Diagnosis diagnosis = known();
     diagnosis.domains.assign(9, allan_domain());
