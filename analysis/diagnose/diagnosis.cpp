@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -36,7 +37,8 @@ constexpr std::size_t tie_most = 4;
 constexpr double decided_nats = 8.0;
 constexpr std::size_t simulations_after_most = 100;
 constexpr double faint_line_share = 0.5;
-// Of the mean square of noise; no noise that a model is used for is thirty times as strong as it says.
+// Of the Allan variance at a second, which is the white noise's density: none is thirty times as strong
+// as its model.
 constexpr double square_of_motion = 1000.0;
 
 bool judged_by_stamps(const Finding& finding) {
@@ -104,15 +106,29 @@ private:
         answer_.warnings.emplace_back(text.data());
     }
 
+    // Allan variance at a second: no drift is so fast, no vibration so slow.
+    double second_to_second_variance(std::size_t axis) const {
+        const std::vector<float>& residual = first_.observation->axis(axis).residual_rad_s;
+        const auto second = static_cast<std::size_t>(std::max(1.0, std::round(baseline_->rate_hz())));
+        double before = 0.0;
+        double squares = 0.0;
+        std::size_t seconds = 0;
+        for (; (seconds + 1) * second <= residual.size(); ++seconds) {
+            const auto from = residual.begin() + static_cast<std::ptrdiff_t>(seconds * second);
+            const double mean = std::accumulate(from, from + static_cast<std::ptrdiff_t>(second), 0.0) /
+                                static_cast<double>(second);
+            if (seconds > 0) { squares += 0.5 * (mean - before) * (mean - before); }
+            before = mean;
+        }
+        return seconds > 1 ? squares / static_cast<double>(seconds - 1) : 0.0;
+    }
+
     // Without a reference, what turned is all noise.
     void warn_of_motion() {
         if (baseline_->moves()) { return; }
         for (const std::size_t axis : baseline_->axes()) {
-            double squares = 0.0;
-            for (const float white : first_.observation->axis(axis).whitened) {
-                squares += static_cast<double>(white) * static_cast<double>(white);
-            }
-            if (squares < square_of_motion * static_cast<double>(baseline_->length())) { continue; }
+            const double white = baseline_->parts(axis).back().sum();
+            if (!(second_to_second_variance(axis) > square_of_motion * white)) { continue; }
             answer_.warnings.emplace_back(
                 "the rates stray far more than noise does: the sensor seems to have been turned, and without "
                 "a reference rate (columns ref_x_dps ... or ref_qw ...) nothing of that can be judged; use a "

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "analysis/diagnose/null_simulations.hpp"
+#include "analysis/diagnose/apparent_evidence.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
@@ -20,8 +20,6 @@ constexpr double far_better_nats = 8.0;
 constexpr std::size_t beginnings_most = 4;
 // A cause of such evidence changes everything that others are judged by.
 constexpr double huge_nats = 1e4;
-constexpr std::size_t apparent_simulations = 16;
-constexpr double apparent_sds = 4.0;
 
 class Search {
 public:
@@ -33,11 +31,7 @@ public:
 
     std::optional<EffectSearchResult> run() {
         std::optional<Hypotheses> latest = with_first_cause();
-        const bool changes_much = !causes_.empty() && (is_of_codes(causes_.front().finding) ||
-                                                       causes_.front().finding.evidence_nats > huge_nats);
-        if (latest && changes_much && further(*latest) != nullptr && !learn_apparent_evidence(*latest)) {
-            return std::nullopt;
-        }
+        if (latest && !learn_apparent_evidence(*latest)) { return std::nullopt; }
         // A cause that others make needless may come back for ever.
         const std::size_t rounds_most = 2 * options_.causes_most;
         for (std::size_t round = 0; latest && round < rounds_most; ++round) {
@@ -49,6 +43,11 @@ public:
             if (!told() || !refit()) { return std::nullopt; }
             latest = with_causes();
         }
+        return result_of(std::move(latest));
+    }
+
+private:
+    EffectSearchResult result_of(std::optional<Hypotheses> latest) {
         EffectSearchResult result;
         if (!free_axes_.empty()) {
             model_ = first_.baseline->model();
@@ -70,7 +69,6 @@ public:
         return result;
     }
 
-private:
     Hypotheses with_causes() const {
         return examine(first_.baseline->with(model_with_all_but(causes_.size())), recording_, options_.seed,
                        options_.threads);
@@ -99,27 +97,15 @@ private:
         return find_effect(finding.effect)->signature->method == EvidenceMethod::code_grid;
     }
 
-    // How much evidence effects seem to have in simulations of a model whose step is coarse, or that is far
-    // from the given one otherwise. False when ended early.
+    // False when ended early.
     bool learn_apparent_evidence(const Hypotheses& with_first) {
-        if (causes_.empty() || !is_of_codes(causes_.front().finding)) { return true; }
-        const NullSimulationOptions options{apparent_simulations, options_.seed, options_.threads,
-                                            [&](double) { return told(); }};
-        const std::optional<NullSimulations> null =
-            simulate_null(with_first.baseline, &with_first.catalogue, options);
-        if (!null) { return false; }
-        const auto count = static_cast<double>(null->evidence_nats.size());
-        for (std::size_t entry = 0; entry < with_first.catalogue.size(); ++entry) {
-            double mean = 0.0;
-            double square = 0.0;
-            for (const std::vector<double>& of_effects : null->evidence_nats) {
-                mean += of_effects[entry] / count;
-                square += of_effects[entry] * of_effects[entry] / count;
-            }
-            const double sd = std::sqrt(std::max(square - mean * mean, 0.0));
-            apparent_nats_[std::string(with_first.catalogue[entry].effect->name)] =
-                std::max(0.0, mean + apparent_sds * sd);
-        }
+        if (causes_.empty() || further(with_first) == nullptr) { return true; }
+        const Finding& first = causes_.front().finding;
+        if (!is_of_codes(first) && first.evidence_nats < huge_nats) { return true; }
+        auto apparent_nats =
+            apparent_evidence_nats(with_first, options_.seed, options_.threads, [&] { return told(); });
+        if (!apparent_nats) { return false; }
+        apparent_nats_ = *std::move(apparent_nats);
         return true;
     }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/counter_random.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-constexpr double standard_gravity_m_s2 = 9.80665;
 constexpr double percent = 0.01;
 
 // The order is part of what a seed means: new ones go to the end.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
@@ -11,7 +12,6 @@ namespace gyrolog {
 
 namespace {
 
-constexpr double standard_gravity_m_s2 = 9.80665;
 constexpr double window_half_s = 5.0;
 constexpr double window_rows = 30.0;
 constexpr double moment_s = 0.1;

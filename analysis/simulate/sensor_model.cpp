@@ -1,5 +1,7 @@
 #include "analysis/simulate/sensor_model.hpp"
 
+#include "analysis/recording/standard_gravity.hpp"
+
 namespace gyrolog {
 
 SensorModel typical_mpu9250() {
@@ -19,7 +21,7 @@ SensorModel typical_mpu9250() {
     model.sd_rel = {{"N", 0.005}, {"B", 0.08}, {"K", 0.20}, {"timestamp_jitter", 0.05}};
     model.sd_abs = {{"M", 2.0e-4}, {"latency_s", 1.0e-4}, {"rate_rel", 5.0e-5}};
     model.ref_noise_rad_s = 0.02 * rad_per_deg;
-    model.acc_noise_m_s2 = 0.003 * 9.80665;
+    model.acc_noise_m_s2 = 0.003 * standard_gravity_m_s2;
     model.temp_noise_C = 0.03;
     return model;
 }

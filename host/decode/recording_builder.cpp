@@ -6,11 +6,12 @@
 #include <numbers>
 #include <utility>
 
+#include "analysis/recording/standard_gravity.hpp"
+
 namespace gyrolog {
 namespace {
 
-constexpr double standard_gravity = 9.80665;  // m/s^2, 3rd CGPM 1901
-constexpr double rate_tolerance = 0.03;       // the sensor's clock is good to 1 %
+constexpr double rate_tolerance = 0.03;  // the sensor's clock is good to 1 %
 constexpr double longest_pause_s = 1e9;
 constexpr double longest_pause_instants = 1e14;  // the same at 100 kHz: a broken clock may give any rate
 constexpr std::uint64_t most_rows_ahead = std::uint64_t{1} << 26U;  // a file's size may be a claim only
@@ -34,7 +35,7 @@ struct Quantity {
 
 std::vector<Quantity> quantities(std::uint8_t layout, const glp_config& config) {
     const double rad_s = config.gyro_ndps_per_lsb * 1e-9 * std::numbers::pi / 180.0;
-    const double m_s2 = config.accel_pg_per_lsb * 1e-12 * standard_gravity;
+    const double m_s2 = config.accel_pg_per_lsb * 1e-12 * standard_gravity_m_s2;
     std::vector<Quantity> all;
     if ((layout & glp_layout_gyro) != 0) {
         for (const char* name : {"gx", "gy", "gz"}) { all.push_back({name, "rad/s", rad_s, 0.0}); }

@@ -4,13 +4,12 @@
 #include <array>
 
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/recording/standard_gravity.hpp"
 
 namespace gyrolog {
 namespace {
 
 using Kind = CsvColumn::Kind;
-
-constexpr double standard_gravity_m_s2 = 9.80665;
 
 struct Unit {
     Kind kind;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "host/formats/json_keys.hpp"
 
 namespace gyrolog {
@@ -11,7 +12,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Range = JsonKeys::Range;
 
-constexpr double standard_gravity_m_s2 = 9.80665;
 constexpr double percent = 0.01;
 constexpr double rad_per_s_per_deg_per_h = rad_per_deg / 3600.0;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "host/formats/json_keys.hpp"
 
 namespace gyrolog {
@@ -12,7 +13,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Range = JsonKeys::Range;
 
-constexpr double standard_gravity_m_s2 = 9.80665;
 constexpr double percent = 0.01;
 // Stands for MathWorks' Inf, which JSON lacks.
 constexpr double no_range_rad_s = 1e9 * rad_per_deg;

@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "host/base/file_output.hpp"
 #include "host/formats/datasheet_json.hpp"
 #include "host/formats/gyroparams_json.hpp"
@@ -28,7 +29,6 @@ using Range = JsonKeys::Range;
 using Keys = JsonKeys;
 
 constexpr const char* schema_name = "gyrolog-model/1";
-constexpr double standard_gravity_m_s2 = 9.80665;
 constexpr double percent = 0.01;
 
 void carry(Json& carried, const std::string& key, Json rest) {

@@ -8,13 +8,12 @@
 
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/recording/grid.hpp"
+#include "analysis/recording/standard_gravity.hpp"
 #include "host/formats/csv_column.hpp"
 #include "host/formats/csv_table.hpp"
 
 namespace gyrolog {
 namespace {
-
-constexpr double standard_gravity_m_s2 = 9.80665;
 
 Error malformed(std::string message) { return {ErrorCode::malformed, std::move(message)}; }
 

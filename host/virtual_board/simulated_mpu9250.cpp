@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/converter.hpp"
 #include "firmware_protocol/device/mpu9250.h"
 
@@ -11,7 +12,6 @@ namespace gyrolog {
 namespace {
 
 constexpr std::uint8_t pwr_mgmt_1_sleep = 0x40;
-constexpr double standard_gravity_m_s2 = 9.80665;
 // TEMP_degC = TEMP_OUT / 333.87 + 21 (register 65 and PS-MPU-9250A-01, 3.4.2)
 constexpr double temperature_lsb_C = 1.0 / 333.87;
 constexpr double temperature_zero_C = 21.0;

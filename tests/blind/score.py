@@ -240,9 +240,10 @@ def tables(s):
     out.append(("First cause's score", ["score", "number", "mean score", "right"],
                 [[f"{r['from']:g} to {r['to']:g}", str(r["of"]), f"{r['said']:.2f}", f"{r['right']:.2f}"]
                  for r in s["brier"]["reliability"]]))
-    out.append(("Each effect", ["effect", "evidence", "detected", "right first", "or in a tie of 3", "place"],
-                [[r["effect"], r["class"]] + [f"{r[k]['hits']}/{r[k]['of']}" for k in
-                                             ("detected", "first", "named", "place")] for r in s["by_effect"]]))
+    cells = {(r["effect"], r["class"]): effect_cell(r) for r in s["by_effect"]}
+    out.append(("Each effect: right first or in a tie of 3, and what went wrong", ["effect", *CLASSES],
+                [[effect] + [cells.get((effect, c), "") for c in CLASSES]
+                 for effect in sorted({r["effect"] for r in s["by_effect"]})]))
     out.append(("Each foreign effect", ["effect", "detected", "unexplained", "misnamed"],
                 [[r["effect"]] + [f"{r[k]['hits']}/{r[k]['of']}" for k in ("detected", "unexplained", "misnamed")]
                  for r in s["foreign_by_effect"]]))
@@ -252,6 +253,14 @@ def tables(s):
     out.append(("Taken for something else", ["truth", "said"],
                 [[t, ", ".join(said)] for t, said in sorted(wrong.items())]))
     return out
+
+
+def effect_cell(row):
+    """1/2 (1 not seen), say."""
+    unseen = row["detected"]["of"] - row["detected"]["hits"]
+    misplaced = row["place"]["of"] - row["place"]["hits"]
+    wrong = [f"{n} {what}" for n, what in ((unseen, "not seen"), (misplaced, "misplaced")) if n]
+    return f"{row['named']['hits']}/{row['named']['of']}" + (f" ({', '.join(wrong)})" if wrong else "")
 
 
 def as_text(title, header, rows):

@@ -1,10 +1,9 @@
+#include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-constexpr double standard_gravity_m_s2 = 9.80665;
 
 class GSensitivity final : public Stage {
 public:

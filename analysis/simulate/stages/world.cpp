@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/portable_math.hpp"
 #include "analysis/simulate/stages/stages.hpp"
 
@@ -12,8 +13,6 @@ namespace {
 constexpr double wander_sd_C = 0.5;
 constexpr double wander_tau_s = 1800.0;
 constexpr double wander_knot_s = 16.0;
-constexpr double standard_gravity_m_s2 = 9.80665;
-
 // A first-order Gauss-Markov process at knots a fixed time apart, exact at the knots; between them the cubic
 // whose slope at each knot is that from the one before to the one after (Catmull and Rom 1974). No sampling
 // rate is in it: a slow one reads the same curve as a fast one.

@@ -8,11 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 
 namespace gyrolog {
-
-inline constexpr double standard_gravity_m_s2 = 9.80665;
 
 class FormulaWorld final : public World {
 public:

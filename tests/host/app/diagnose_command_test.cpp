@@ -19,6 +19,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class DiagnoseCommand : public testing::Test {
@@ -32,13 +33,17 @@ protected:
         return run_command_line(std::move(arguments), {out, err});
     }
 
-    // A recording of a sensor whose white noise is `factor` times the model's.
-    void write_noisy_recording(double factor) const {
-        SensorModel sensor = typical_mpu9250();
-        for (AxisModel& axis : sensor.axes) { axis.noise.N_rad_per_sqrt_s *= factor; }
+    void write_recording_of(const SensorModel& sensor) const {
         SimulationRequest request;
         request.samples = 6000;
         ASSERT_TRUE(write_recording_csv(simulate_recording(sensor, request), recording).ok());
+    }
+
+    // Of a sensor whose white noise is `factor` times the model's.
+    void write_noisy_recording(double factor) const {
+        SensorModel sensor = typical_mpu9250();
+        for (AxisModel& axis : sensor.axes) { axis.noise.N_rad_per_sqrt_s *= factor; }
+        write_recording_of(sensor);
     }
 
     // The model's own curve of x but for N.
@@ -85,6 +90,29 @@ TEST_F(DiagnoseCommand, FindsTheCauseAndWritesTextJsonFigureAndModel) {
               ExitCode::ok)
         << err.str();
     EXPECT_EQ(read_model(corrected)->effects.size(), 1U);
+}
+
+TEST_F(DiagnoseCommand, WarnsOfASensorThatWasTurnedWithoutAReference) {
+    SensorModel swung = typical_mpu9250();
+    write_recording_of(swung);
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-"}), ExitCode::ok);
+    EXPECT_THAT(err.str(), Not(HasSubstr("seems to have been turned")));
+    swung.effects.push_back({"tone", {}, {{"f_hz", 0.7}, {"amplitude_dps", 20.0}}, ""});
+    write_recording_of(swung);
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-"}), ExitCode::ok);
+    EXPECT_THAT(err.str(), HasSubstr("the sensor seems to have been turned"));
+}
+
+TEST_F(DiagnoseCommand, SaysThatALineOfTheModelIsNotInTheRecording) {
+    SensorModel humming = typical_mpu9250();
+    humming.effects.push_back({"tone", {}, {{"f_hz", 31.0}, {"amplitude_dps", 0.05}}, ""});
+    ASSERT_TRUE(write_model(humming, model).ok());
+    write_recording_of(humming);
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-"}), ExitCode::ok);
+    EXPECT_THAT(err.str(), Not(HasSubstr("of its amplitude")));
+    write_recording_of(typical_mpu9250());
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-"}), ExitCode::ok);
+    EXPECT_THAT(err.str(), HasSubstr("the model's tone at 31 Hz has "));
 }
 
 TEST_F(DiagnoseCommand, MeasuresTheGapOnASecondRecording) {

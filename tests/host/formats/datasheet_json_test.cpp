@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/formats/export_source.hpp"
 #include "host/formats/gyroparams_script.hpp"
@@ -20,8 +21,6 @@ namespace gyrolog {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double standard_gravity_m_s2 = 9.80665;
 
 // PS-MPU-9250A-01 rev. 1.1, table 1.
 Json mpu9250() {
