@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <set>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -29,6 +30,8 @@ constexpr double unexplained_below_p = 0.005;
 // chance nearly.
 constexpr double tolerated_share = 4e-4;
 constexpr double tolerated_above_p = 1e-6;
+// As many effects together fit anything.
+constexpr std::size_t many_effects = 5;
 // How often a cause is right that does not explain the gap: something else is there that it may stand for.
 constexpr double part_of_unexplained = 0.2;
 constexpr double tie_nats = 4.0;
@@ -239,7 +242,8 @@ private:
         const double excess_after = std::max(after.gap.value * after.gap.value - 1.0, 0.0);
         const bool tolerable =
             excess_after < tolerated_share * excess_before && answer_.p_left >= tolerated_above_p;
-        const bool explained = after_ && (answer_.p_left >= unexplained_below_p || tolerable);
+        const bool explained =
+            after_ && effects_found() < many_effects && (answer_.p_left >= unexplained_below_p || tolerable);
         answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
         if (found_) {
             for (const FoundCause& found : found_->causes) {
@@ -257,6 +261,12 @@ private:
         propose_recordings();
         answer_.where = explained ? answer_.causes.front().finding.where : before.where;
         if (!explained && after_) { answer_.left = after.where; }
+    }
+
+    std::size_t effects_found() const {
+        std::set<std::string> effects;
+        for (const FoundCause& cause : found_->causes) { effects.insert(cause.finding.effect); }
+        return effects.size();
     }
 
     // What would settle what is open.

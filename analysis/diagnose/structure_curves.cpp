@@ -254,7 +254,8 @@ std::vector<double> count_codes(const Recording& recording, std::size_t axis, do
 GapCurve codes_curve(const Observation& observation, std::size_t axis) {
     const double lsb_rad_s = observation.baseline().model().lsb_rad_s;
     GapCurve curve{GapDomainKind::codes, axis, axis, {1.0, 2.0}, {0.0, 0.0}};
-    if (!(lsb_rad_s > 0.0)) { return curve; }
+    // What moves shows each code for as long as the motion has it.
+    if (!(lsb_rad_s > 0.0) || observation.baseline().moves()) { return curve; }
     const std::vector<double> counts = count_codes(observation.recording(), axis, lsb_rad_s);
     double most = 0.0;
     double tries = 0.0;

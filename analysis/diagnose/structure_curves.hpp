@@ -34,7 +34,8 @@ GapCurve narrow_curve(const Observation& observation, std::size_t axis,
 
 // The converter's histogram (IEEE Std 1241, code density): 1, the code that is most at odds with a cubic
 // through the four beside it, as the normal deviate that is as rare among as many codes; 2, even codes
-// against odd ones, in standard deviations of a count. 0 where the model has no step.
+// against odd ones, in standard deviations of a count. 0 where the model has no step or
+// the sensor moves.
 GapCurve codes_curve(const Observation& observation, std::size_t axis);
 
 }  // namespace gyrolog
