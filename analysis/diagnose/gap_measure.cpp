@@ -186,27 +186,50 @@ CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::
     return gap;
 }
 
-std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
-    std::vector<double> surprises;
+namespace {
+
+struct Surprises {
+    std::vector<double> own_nats;                               // by curve
+    std::map<GapDomainKind, std::vector<std::size_t>> of_axes;  // curves of one axis alone, by kind
+    std::map<GapDomainKind, double> together_nats;              // where there are several
+};
+
+Surprises surprises_of(const std::vector<GapCurve>& curves, const GapReference& reference) {
+    Surprises surprises;
     std::vector<CurveDistance> gaps;
-    std::map<GapDomainKind, std::vector<std::size_t>> of_kind;  // those of one axis alone
     for (std::size_t c = 0; c < curves.size(); ++c) {
         gaps.push_back(gap_of(curves[c], reference, c));
-        surprises.push_back(gaps.back().surprise_nats);
-        std::vector<std::size_t>& same = of_kind[curves[c].kind];
+        surprises.own_nats.push_back(gaps.back().surprise_nats);
+        std::vector<std::size_t>& same = surprises.of_axes[curves[c].kind];
         const bool as_long = same.empty() || gaps[same.front()].z.size() == gaps[c].z.size();
         if (curves[c].axis == curves[c].other && as_long) { same.push_back(c); }
     }
-    for (const auto& [kind, same] : of_kind) {
-        if (same.size() < 2) { continue; }
-        const double together = surprise_of_axes(gaps, same, reference);
-        for (const std::size_t c : same) { surprises[c] = std::max(surprises[c], together); }
+    for (const auto& [kind, same] : surprises.of_axes) {
+        if (same.size() > 1) { surprises.together_nats[kind] = surprise_of_axes(gaps, same, reference); }
+    }
+    return surprises;
+}
+
+}  // namespace
+
+std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
+    const Surprises all = surprises_of(curves, reference);
+    std::vector<double> surprises = all.own_nats;
+    for (const auto& [kind, together_nats] : all.together_nats) {
+        const std::vector<std::size_t>& same = all.of_axes.at(kind);
+        const bool one_stands_out =
+            std::ranges::any_of(same, [&](std::size_t c) { return all.own_nats[c] >= stands_out_nats; });
+        if (one_stands_out) { continue; }
+        for (const std::size_t c : same) { surprises[c] = std::max(surprises[c], together_nats); }
     }
     return surprises;
 }
 
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
-    return std::ranges::max(surprises_nats(curves, reference));
+    const Surprises all = surprises_of(curves, reference);
+    double worst = std::ranges::max(all.own_nats);
+    for (const auto& [kind, together_nats] : all.together_nats) { worst = std::max(worst, together_nats); }
+    return worst;
 }
 
 std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations) {

@@ -40,9 +40,13 @@ struct CurveDistance {
 
 CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
 
-// By curve of one observation: its own surprise, or that of all axes' curves of its kind together where that
-// is larger.
+// With as many curves as there are, one or another reaches some 7 nats by chance.
+inline constexpr double stands_out_nats = 7.0;
+
+// By curve of one observation: its own surprise; where no axis stands out by itself, that of all axes' curves
+// of the kind together if that is larger.
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
+// The largest of all, of single curves and of axes together.
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
 // Of every simulation against all the others: a new recording is not in its own reference either.
 std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations);

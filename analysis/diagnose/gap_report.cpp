@@ -86,7 +86,7 @@ GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& re
                                 (2.0 * points * value * value + 1e-12));
     summary.gap = {value, 1.0, std::max(0.0, value - 1.96 * sd), value + 1.96 * sd};
     for (std::size_t c = 0; c < curves.size(); ++c) {
-        if (curves[c].kind != curves[worst].kind || surprises[c] < 7.0) { continue; }
+        if (curves[c].kind != curves[worst].kind || surprises[c] < stands_out_nats) { continue; }
         summary.where.axes.push_back(curves[c].axis);
     }
     if (summary.where.axes.empty()) { summary.where.axes.push_back(curves[worst].axis); }

@@ -109,6 +109,19 @@ TEST(GapMeasure, AddsUpWhatAllAxesShowAtOnePlace) {
     EXPECT_EQ(worst_surprise_nats(curves, reference), together[0]);
 }
 
+TEST(GapMeasure, LaysWhatOneAxisShowsToThatAxis) {
+    std::mt19937_64 random(12);
+    SimulatedCurves simulated;
+    for (int i = 0; i < 200; ++i) { simulated.push_back(flat_curves(random, 0.0, 0, 0)); }
+    const GapReference reference = gap_reference(simulated);
+    std::vector<GapCurve> curves = flat_curves(random, 0.0, 0, 0);
+    curves[0].value[20] += 9.0;
+    const std::vector<double> surprises = surprises_nats(curves, reference);
+    EXPECT_GT(surprises[0], 15.0);
+    EXPECT_EQ(surprises[1], gap_of(curves[1], reference, 1).surprise_nats);
+    EXPECT_LT(surprises[1], stands_out_nats);
+}
+
 TEST(GapMeasure, OfThreeAxesHoldsThemToTheSameStandard) {
     constexpr int records = 300;
     std::mt19937_64 random(11);
