@@ -78,11 +78,15 @@ std::vector<GapCurve> flat_curves(std::mt19937_64& random, double offset, std::s
     return curves;
 }
 
-TEST(GapMeasure, SeesABroadFrontThatIsLittleAtEveryPoint) {
-    std::mt19937_64 random(9);
+GapReference flat_reference(std::mt19937_64& random) {
     SimulatedCurves simulated;
     for (int i = 0; i < 200; ++i) { simulated.push_back(flat_curves(random, 0.0, 0, 0)); }
-    const GapReference reference = gap_reference(simulated);
+    return gap_reference(simulated);
+}
+
+TEST(GapMeasure, SeesABroadFrontThatIsLittleAtEveryPoint) {
+    std::mt19937_64 random(9);
+    const GapReference reference = flat_reference(random);
     const std::vector<GapCurve> curves = flat_curves(random, 3.0, 8, 16);
     const CurveDistance gap = gap_of(curves[0], reference, 0);
     // Eight points, three sigma each: sqrt(8) x 3 together.
@@ -93,9 +97,7 @@ TEST(GapMeasure, SeesABroadFrontThatIsLittleAtEveryPoint) {
 
 TEST(GapMeasure, AddsUpWhatAllAxesShowAtOnePlace) {
     std::mt19937_64 random(10);
-    SimulatedCurves simulated;
-    for (int i = 0; i < 200; ++i) { simulated.push_back(flat_curves(random, 0.0, 0, 0)); }
-    const GapReference reference = gap_reference(simulated);
+    const GapReference reference = flat_reference(random);
     const std::vector<GapCurve> curves = flat_curves(random, 3.5, 20, 21);
     const std::vector<double> together = surprises_nats(curves, reference);
     double worst_alone = 0.0;
@@ -111,9 +113,7 @@ TEST(GapMeasure, AddsUpWhatAllAxesShowAtOnePlace) {
 
 TEST(GapMeasure, LaysWhatOneAxisShowsToThatAxis) {
     std::mt19937_64 random(12);
-    SimulatedCurves simulated;
-    for (int i = 0; i < 200; ++i) { simulated.push_back(flat_curves(random, 0.0, 0, 0)); }
-    const GapReference reference = gap_reference(simulated);
+    const GapReference reference = flat_reference(random);
     std::vector<GapCurve> curves = flat_curves(random, 0.0, 0, 0);
     curves[0].value[20] += 9.0;
     const std::vector<double> surprises = surprises_nats(curves, reference);
