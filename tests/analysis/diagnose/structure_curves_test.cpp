@@ -197,5 +197,14 @@ TEST(StructureCurves, ShowAConverterWhoseLowestBitIsWeak) {
     EXPECT_GT(curve_of(curves, GapDomainKind::codes, changed_axis).value[1], 10.0);
 }
 
+TEST(StructureCurves, JudgeCodesOfASensorAtRestOnly) {
+    const SensorModel model = calibrated_sensor();
+    const auto recording = recorded(model, 20'000, 10, tumbling_world(5.0));
+    const auto baseline = baseline_of(recording, model);
+    ASSERT_TRUE(baseline->moves());
+    const std::vector<GapCurve> curves = gap_curves(Observation(baseline, recording, 1));
+    EXPECT_EQ(curve_of(curves, GapDomainKind::codes, 0).value, (std::vector<double>{0.0, 0.0}));
+}
+
 }  // namespace
 }  // namespace gyrolog
