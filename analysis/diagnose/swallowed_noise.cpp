@@ -55,12 +55,14 @@ std::vector<SwallowedNoise> fitted_noise(const Observation& observation,
     std::vector<SwallowedNoise> fitted;
     for (const std::size_t axis : axes) {
         const NoiseNuisance& seen = observation.axis(axis).noise;
-        NoiseCoefficients stated = observation.baseline().model().axes[axis].noise;
+        const SensorModel& model = observation.baseline().model();
+        const std::array<double, 3> sd_rel = noise_uncertainty(model, axis);
+        NoiseCoefficients stated = model.axes[axis].noise;
         for (std::size_t index = 0; index < names.size(); ++index) {
             const double value = coefficient_of(stated, index);
             if (!(value > 0.0)) { continue; }
-            fitted.push_back({axis, names.at(index), value, value * (1.0 + free_sd_rel * seen.z[index]),
-                              value * free_sd_rel * seen.sd_z[index]});
+            fitted.push_back({axis, names.at(index), value, value * (1.0 + sd_rel[index] * seen.z[index]),
+                              value * sd_rel[index] * seen.sd_z[index]});
         }
     }
     return fitted;

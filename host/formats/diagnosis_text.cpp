@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/diagnose/gap_measure.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "host/formats/effect_words.hpp"
@@ -124,8 +125,8 @@ std::string swallowed_sentence(const Diagnosis& diagnosis) {
     }
     return fmt::format(
         "The model's noise held part of this, as that of a model does which was fitted to a recording with "
-        "the "
-        "same effect; with the effect in the model it is {} (N in deg/s/√Hz, B in deg/s, K in deg/s·√Hz).",
+        "the same effect; with the effect in the model it is {} (N in deg/s/√Hz, B in deg/s, K in "
+        "deg/s·√Hz).",
         fmt::join(changes, ", "));
 }
 
@@ -217,7 +218,6 @@ std::string outside_text(const std::vector<bool>& outside, std::size_t points) {
 
 // Of many places only those with something to see are listed.
 constexpr std::size_t listed_whole_most = 6;
-constexpr double stands_out_nats = 7.0;
 
 bool is_listed(const Diagnosis& diagnosis, const GapDomain& domain) {
     return diagnosis.domains.size() <= listed_whole_most ||

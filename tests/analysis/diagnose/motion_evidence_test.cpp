@@ -75,6 +75,20 @@ TEST(MotionEvidence, OfALatencyIsWhatTheStatedOneDoesNotCover) {
     EXPECT_EQ(seen.best(), found) << seen.best()->effect;
 }
 
+// Its lag looks like latency, what it takes off the motion like noise; only with it nothing else is left.
+TEST(MotionEvidence, OfALowPassIsThatAlone) {
+    const SensorModel model = moving_sensor();
+    const SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 15.77}, {"order", 1.0}}, {});
+    const auto recording = recorded(sensor, 48000, 38, world_with_rests());
+    const std::optional<EffectSearchResult> found =
+        search_effects(examine(baseline_of(recording, model), recording, 1, 1), recording, {});
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->causes.size(), 1U);
+    const Finding& cause = found->causes.front().finding;
+    EXPECT_EQ(cause.effect, "lowpass");
+    EXPECT_NEAR(cause.entries.front().params.at("fc_hz"), 15.77, 4.0 * cause.sd.front().at("fc_hz"));
+}
+
 TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNone) {
     SensorModel sensor = moving_sensor();
     sensor.M[0][0] += 2e-4;
