@@ -238,7 +238,7 @@ private:
                        rival->evidence_nats >= options_.evidence_min_nats) {
                 causes_[i].finding = *rival;
             } else if (own_nats >= options_.evidence_min_nats) {
-                causes_[i].finding = *same;
+                causes_[i].finding = fitted_again(i, *same);
             } else {
                 causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(i));
                 continue;
@@ -253,6 +253,27 @@ private:
             if (!told()) { return false; }
         }
         return true;
+    }
+
+    // A response is fitted as if those that the model is uncertain of stayed as they are without it. Where it
+    // changes much of the motion they do not: parameters that are less likely with it in the model are not
+    // taken.
+    Finding fitted_again(std::size_t cause, const Finding& again) const {
+        const Finding& before = causes_[cause].finding;
+        if (method_of(again) != EvidenceMethod::response || again.effect != before.effect) { return again; }
+        const SensorModel others = model_with_all_but(cause);
+        const auto nats_with = [&](const Finding& finding) {
+            return log_likelihood_nats(
+                Observation(first_.baseline->with(with_cause(others, finding)), recording_, options_.seed));
+        };
+        if (nats_with(again) >= nats_with(before)) { return again; }
+        Finding kept = again;
+        kept.entries = before.entries;
+        kept.sd = before.sd;
+        kept.axis_gain_nats = before.axis_gain_nats;
+        kept.parameters = before.parameters;
+        kept.where = before.where;
+        return kept;
     }
 
     const Hypotheses& first_;

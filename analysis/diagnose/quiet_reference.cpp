@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "analysis/diagnose/cosine_transform.hpp"
@@ -85,24 +86,55 @@ double quieted(const std::vector<double>& values, const std::vector<double>& smo
     return smooth[i];
 }
 
-// The motion's share of a coefficient: all up to the last bin that stands out of the noise, none far above
-// it.
-void cut_noise(std::vector<double>& cosines, double noise_variance) {
-    std::size_t last = 1;
-    for (const SpectralBin& bin : spectral_bins(cosines.size(), 1.0)) {
-        double sum = 0.0;
-        for (std::size_t k = bin.first; k < bin.end; ++k) { sum += cosines[k] * cosines[k]; }
-        if (sum > noise_variance * (bin.count() + 5.0 * std::sqrt(2.0 * bin.count()))) { last = bin.end; }
+constexpr std::size_t rows_to_transform = 256;
+
+// Rows at either end of a segment over which it is faded for its spectrum. Cut off sharply, a strong slow
+// swing leaks into all frequencies.
+std::size_t faded_rows(std::size_t length) { return std::min<std::size_t>(128, length / 16); }
+
+// The first coefficient beyond the last bin that stands out of the noise.
+std::size_t end_of_motion(std::vector<double> values, double noise_variance, CosineTransform& transform) {
+    const std::size_t fade = faded_rows(values.size());
+    for (std::size_t i = 0; i < fade; ++i) {
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(fade);
+        const double weight = 0.5 - 0.5 * std::cos(pi * share);
+        values[i] *= weight;
+        values[values.size() - 1 - i] *= weight;
     }
-    const double from = 1.25 * static_cast<double>(last);
-    const double to = 1.6 * static_cast<double>(last);
-    for (std::size_t k = last; k < cosines.size(); ++k) {
+    transform.forward(values);
+    std::size_t end = 1;
+    for (const SpectralBin& bin : spectral_bins(values.size(), 1.0)) {
+        double sum = 0.0;
+        for (std::size_t k = bin.first; k < bin.end; ++k) { sum += values[k] * values[k]; }
+        if (sum > noise_variance * (bin.count() + 5.0 * std::sqrt(2.0 * bin.count()))) { end = bin.end; }
+    }
+    return end;
+}
+
+// All of the coefficients up to `end`, none far above it.
+void cut_noise(std::vector<double>& cosines, std::size_t end) {
+    const double from = 1.25 * static_cast<double>(end);
+    const double to = 1.6 * static_cast<double>(end);
+    for (std::size_t k = end; k < cosines.size(); ++k) {
         const double place = std::clamp((static_cast<double>(k) - from) / (to - from), 0.0, 1.0);
         cosines[k] *= 0.5 + 0.5 * std::cos(pi * place);
     }
 }
 
-constexpr std::size_t rows_to_transform = 256;
+// `result` takes over what was smoothed of `values`, where no more than noise is off: not at the ends, if it
+// rings there for what leaked and was cut.
+void take_over(std::span<const double> values, const std::vector<double>& smooth, double noise_variance,
+               std::span<double> result) {
+    constexpr std::size_t block = 64;
+    for (std::size_t from = 0; from < smooth.size(); from += block) {
+        const std::size_t end = std::min(from + block, smooth.size());
+        double squares = 0.0;
+        for (std::size_t i = from; i < end; ++i) { squares += std::pow(values[i] - smooth[i], 2.0); }
+        const auto count = static_cast<double>(end - from);
+        if (squares > noise_variance * (count + 4.0 * std::sqrt(2.0 * count))) { continue; }
+        for (std::size_t i = from; i < end; ++i) { result[i] = smooth[i]; }
+    }
+}
 
 // Without what the noise has beyond the motion's frequencies.
 std::vector<double> smoothed(const std::vector<double>& values, const std::vector<Segment>& segments,
@@ -114,12 +146,13 @@ std::vector<double> smoothed(const std::vector<double>& values, const std::vecto
         CosineTransform transform(length);
         // The last rows that a fast length leaves over come from a second pass, aligned to the end.
         for (const std::size_t first : {segment.first + segment.count - length, segment.first}) {
-            const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
-            std::vector<double> work(begin, begin + static_cast<std::ptrdiff_t>(length));
+            const std::span<const double> before = std::span(values).subspan(first, length);
+            std::vector<double> work(before.begin(), before.end());
+            const std::size_t end_of_motion_k = end_of_motion(work, noise_variance, transform);
             transform.forward(work);
-            cut_noise(work, noise_variance);
+            cut_noise(work, end_of_motion_k);
             transform.inverse(work);
-            std::ranges::copy(work, result.begin() + static_cast<std::ptrdiff_t>(first));
+            take_over(before, work, noise_variance, std::span(result).subspan(first, length));
             if (length == segment.count) { break; }
         }
     }

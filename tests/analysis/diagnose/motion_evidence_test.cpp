@@ -1,5 +1,6 @@
 // Effects of a moving sensor, whose gains the model knows within an uncertainty and whose reference is noisy.
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -25,6 +26,25 @@ std::shared_ptr<const World> world_with_rests() {
     return world_turning([](double t_s) {
         return Vector3{world_rate_x_rad_s(t_s), peak_rad_s(t_s) * std::sin(2.0 * pi * t_s / 2.3),
                        peak_rad_s(t_s) * std::sin(2.0 * pi * t_s / 1.7)};
+    });
+}
+
+// Four sines an axis, none at a frequency of another axis.
+double steady_rate_rad_s(std::size_t axis, double t_s) {
+    constexpr std::array<double, 4> f_hz = {0.31, 1.37, 2.93, 4.61};
+    constexpr std::array<double, 4> size_rad_s = {0.5, 0.3, 0.2, 0.12};
+    const auto place = static_cast<double>(axis);
+    double rate_rad_s = 0.0;
+    for (std::size_t i = 0; i < f_hz.size(); ++i) {
+        const double phase_rad = 0.3 * place + static_cast<double>(i);
+        rate_rad_s += size_rad_s[i] * std::sin(2.0 * pi * f_hz[i] * (1.0 + 0.07 * place) * t_s + phase_rad);
+    }
+    return rate_rad_s;
+}
+
+std::shared_ptr<const World> world_without_rests() {
+    return world_turning([](double t_s) {
+        return Vector3{steady_rate_rad_s(0, t_s), steady_rate_rad_s(1, t_s), steady_rate_rad_s(2, t_s)};
     });
 }
 
@@ -75,11 +95,10 @@ TEST(MotionEvidence, OfALatencyIsWhatTheStatedOneDoesNotCover) {
     EXPECT_EQ(seen.best(), found) << seen.best()->effect;
 }
 
-// Its lag looks like latency, what it takes off the motion like noise; only with it nothing else is left.
-TEST(MotionEvidence, OfALowPassIsThatAlone) {
+void expect_low_pass_alone(const std::shared_ptr<const World>& world) {
     const SensorModel model = moving_sensor();
     const SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 15.77}, {"order", 1.0}}, {});
-    const auto recording = recorded(sensor, 48000, 38, world_with_rests());
+    const auto recording = recorded(sensor, 48000, 38, world);
     const std::optional<EffectSearchResult> found =
         search_effects(examine(baseline_of(recording, model), recording, 1, 1), recording, {});
     ASSERT_TRUE(found);
@@ -88,6 +107,12 @@ TEST(MotionEvidence, OfALowPassIsThatAlone) {
     EXPECT_EQ(cause.effect, "lowpass");
     EXPECT_NEAR(cause.entries.front().params.at("fc_hz"), 15.77, 4.0 * cause.sd.front().at("fc_hz"));
 }
+
+// Its lag looks like latency, what it takes off the motion like noise; only with it nothing else is left.
+TEST(MotionEvidence, OfALowPassIsThatAlone) { expect_low_pass_alone(world_with_rests()); }
+
+// What is left of the reference's noise is filtered with the motion, and then missing where it is expected.
+TEST(MotionEvidence, OfALowPassIsThatAloneWithoutARest) { expect_low_pass_alone(world_without_rests()); }
 
 TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNone) {
     SensorModel sensor = moving_sensor();
@@ -179,6 +204,23 @@ TEST(MotionEvidence, OfACeilingIsNoneWhereTheMotionTurnsRound) {
             3.0)
             << seed;
     }
+}
+
+TEST(QuietReference, OfSteadySwingsHasLittleNoiseBeyondThem) {
+    const SensorModel model = moving_sensor();
+    const auto recording = recorded(model, 24000, 39, world_without_rests());
+    const auto quiet = without_reference_noise(RecordedWorld(recording), model.ref_noise_rad_s);
+    const Column& after = *quiet->recording().find("ref_x");
+    double sum = 0.0;
+    constexpr std::size_t first = 1000;
+    constexpr std::size_t end = 23000;
+    for (std::size_t i = first; i < end; ++i) {
+        const double error = after.value(i) - steady_rate_rad_s(0, static_cast<double>(i) / 100.0);
+        sum += error * error;
+    }
+    // Up to 1.25 times the fastest swing all of the noise's even spectrum is kept, to 1.6 times half of it.
+    const double kept = 0.5 * (1.25 + 1.6) * 4.61 / 50.0;
+    EXPECT_LT(std::sqrt(sum / (end - first)), 1.2 * std::sqrt(kept) * model.ref_noise_rad_s);
 }
 
 TEST(QuietReference, HasNoNoiseAtRestAndTheWholeMotionOtherwise) {
