@@ -126,17 +126,17 @@ SensorModel without_noise(const SensorModel& model) {
 }
 
 Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model)
-    : Baseline(std::move(world), model, nullptr) {}
+    : Baseline(std::move(world), model, nullptr, Half::both) {}
 
 Baseline::Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
-                   std::shared_ptr<Shared> shared)
-    : world_(std::move(world)), model_(model), shared_(std::move(shared)) {
+                   std::shared_ptr<Shared> shared, Half half)
+    : world_(std::move(world)), model_(model), shared_(std::move(shared)), half_(half) {
     const Recording& recording = world_->recording();
     rate_hz_ = recording.rate_hz;
     length_ = fast_length(slots_of(recording));
     if (!shared_) { shared_ = std::make_shared<Shared>(length_); }
     axes_ = axes_of(recording);
-    bins_ = spectral_bins(length_, rate_hz_);
+    bins_ = spectral_bins(length_, rate_hz_, half_);
     read_temperature();
     read_motion();
     expect_spectrum();
@@ -269,7 +269,11 @@ double Baseline::reference_noise_rad_s(std::size_t axis) const {
 }
 
 std::shared_ptr<const Baseline> Baseline::with(const SensorModel& model) const {
-    return std::shared_ptr<const Baseline>(new Baseline(world_, model, shared_));
+    return std::shared_ptr<const Baseline>(new Baseline(world_, model, shared_, half_));
+}
+
+std::shared_ptr<const Baseline> Baseline::of_half(Half half) const {
+    return std::shared_ptr<const Baseline>(new Baseline(world_, model_, shared_, half));
 }
 
 std::array<std::vector<float>, 3> noise_free_response(const Baseline& baseline, const SensorModel& model) {

@@ -40,6 +40,8 @@ public:
     // Slots of the grid from the first sample that are looked at: fast_length() of all.
     std::size_t length() const { return length_; }
     double duration_s() const { return static_cast<double>(length_) / rate_hz_; }
+    // Of the recording: what its bins and observations keep to.
+    Half half() const { return half_; }
     const std::vector<std::size_t>& axes() const { return axes_; }  // that the recording has
     bool moves() const { return world_->has_reference(); }
 
@@ -78,6 +80,8 @@ public:
 
     // The same world, another model.
     std::shared_ptr<const Baseline> with(const SensorModel& model) const;
+    // The same world and model.
+    std::shared_ptr<const Baseline> of_half(Half half) const;
     // Shared by all baselines that come from one.
     ResponseMemory& memory() const { return shared_->responses; }
     // Of length() values.
@@ -93,7 +97,7 @@ private:
     };
 
     Baseline(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
-             std::shared_ptr<Shared> shared);
+             std::shared_ptr<Shared> shared, Half half);
 
     void read_temperature();
     void read_motion();
@@ -105,6 +109,7 @@ private:
     std::shared_ptr<const RecordedWorld> world_;
     SensorModel model_;
     std::shared_ptr<Shared> shared_;
+    Half half_;
     double rate_hz_ = 0.0;
     std::size_t length_ = 0;
     std::vector<std::size_t> axes_;

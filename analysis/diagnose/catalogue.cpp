@@ -1,5 +1,8 @@
 #include "analysis/diagnose/catalogue.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "analysis/diagnose/ceiling_test.hpp"
 #include "analysis/diagnose/code_grid_test.hpp"
 #include "analysis/diagnose/line_test.hpp"
@@ -58,10 +61,20 @@ std::string lacking(const EffectSignature& signature, const Baseline& baseline) 
     return {};
 }
 
+MadeTest made_by(EvidenceMethod method, const EffectDefinition& effect,
+                 const std::shared_ptr<const Baseline>& baseline) {
+    const auto* maker = std::ranges::find(makers, method, &MethodMaker::method);
+    return maker == std::end(makers) ? MadeTest{} : maker->make(effect, baseline);
+}
+
 }  // namespace
 
 EvidenceMethod evidence_method(const EffectSignature& signature, const Baseline& baseline) {
     return signature.changes_mean && baseline.moves() ? EvidenceMethod::response : signature.method;
+}
+
+MadeTest make_test(const EffectDefinition& effect, const std::shared_ptr<const Baseline>& baseline) {
+    return made_by(evidence_method(*effect.signature, *baseline), effect, baseline);
 }
 
 std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline,
@@ -73,13 +86,10 @@ std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>
     }
     parallel_for(catalogue.size(), threads, [&](std::size_t i) {
         CatalogueEntry& entry = catalogue[i];
-        const EvidenceMethod method = evidence_method(*entry.effect->signature, *baseline);
-        for (const MethodMaker& maker : makers) {
-            if (!entry.untestable.empty() || maker.method != method) { continue; }
-            MadeTest made = maker.make(*entry.effect, baseline);
-            entry.test = std::move(made.test);
-            entry.untestable = std::move(made.untestable);
-        }
+        if (!entry.untestable.empty()) { return; }
+        MadeTest made = make_test(*entry.effect, baseline);
+        entry.test = std::move(made.test);
+        entry.untestable = std::move(made.untestable);
     });
     return catalogue;
 }

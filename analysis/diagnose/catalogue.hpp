@@ -18,6 +18,9 @@ struct CatalogueEntry {
 // By which an effect is looked for: in a moving world the mean answer tells far more than the noise does.
 EvidenceMethod evidence_method(const EffectSignature& signature, const Baseline& baseline);
 
+// Of one effect; without a test and a reason where nothing looks for it.
+MadeTest make_test(const EffectDefinition& effect, const std::shared_ptr<const Baseline>& baseline);
+
 // Every effect that has a signature, in the order of the signal chain.
 std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline,
                                            unsigned threads = 1);

@@ -14,6 +14,7 @@
 #include "analysis/diagnose/gap_domains.hpp"
 #include "analysis/diagnose/gap_measure.hpp"
 #include "analysis/diagnose/gap_report.hpp"
+#include "analysis/diagnose/halves_check.hpp"
 #include "analysis/diagnose/null_simulations.hpp"
 #include "analysis/diagnose/seen_line.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -251,6 +252,7 @@ private:
             }
         }
         if (explained) {
+            check_halves();
             close_by_causes();
         } else {
             const double shrink = excess_before > 0.0 ? 1.0 - excess_after / excess_before : 0.0;
@@ -295,9 +297,17 @@ private:
         }
     }
 
+    void check_halves() {
+        std::vector<Finding> causes;
+        for (const FoundCause& found : found_->causes) { causes.push_back(found.finding); }
+        answer_.halves = check_by_halves(baseline_->with(found_->without_causes), recording_, causes,
+                                         options_.seed, options_.threads);
+    }
+
     // Along what the causes change, the distance of a recording is sqrt(2 gain / parameters), a simulation's
     // is 1 (twice a log likelihood ratio is chi-square with as many degrees of freedom as parameters). Of the
-    // distance, what the parameters' own error leaves is chi-square likewise.
+    // distance, what the parameters' own error leaves is chi-square likewise; and what fits of the halves
+    // leave in excess of that.
     void close_by_causes() {
         double gain_nats = 0.0;
         double parameters = 0.0;
@@ -308,7 +318,8 @@ private:
         }
         const boost::math::chi_squared error(parameters);
         const auto left = [&](double square) {
-            return std::clamp(1.0 - square / (2.0 * gain_nats), 0.0, 1.0);
+            const double excess = 2.0 * answer_.halves.excess_nats;
+            return std::clamp(1.0 - (square + excess) / (2.0 * gain_nats), 0.0, 1.0);
         };
         answer_.shrink = left(parameters);
         answer_.shrink_lo = left(boost::math::quantile(error, 0.975));
@@ -321,6 +332,11 @@ private:
             const double sd = std::sqrt((2.0 * along * along - 1.0) / (2.0 * parameters)) / along;
             answer_.gap_before = {along, 1.0, std::max(1.0, along - 1.96 * sd), along + 1.96 * sd};
         }
+        const auto after = [&](double shrink) {
+            const double before = answer_.gap_before.value;
+            return std::sqrt(1.0 + (1.0 - shrink) * (before * before - 1.0));
+        };
+        answer_.gap_after = {after(answer_.shrink), 1.0, after(answer_.shrink_hi), after(answer_.shrink_lo)};
     }
 
     // The gap of a recording that had no part in the fit.

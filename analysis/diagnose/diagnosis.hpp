@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/diagnose/finding.hpp"
+#include "analysis/diagnose/halves_result.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
@@ -84,6 +85,7 @@ struct Diagnosis {
     Place left;   // with Verdict::unexplained and causes: what they leave
     Gap gap_before, gap_after;
     double shrink = 0.0, shrink_lo = 0.0, shrink_hi = 0.0;
+    HalvesResult halves;   // with Verdict::known
     std::string held_out;  // the name of the second recording that the gap was measured on; empty without one
     std::vector<GapDomain> domains;
     std::vector<Untestable> untestable;

@@ -49,6 +49,7 @@ public:
 private:
     EffectSearchResult result_of(std::optional<Hypotheses> latest) {
         EffectSearchResult result;
+        result.without_causes = model_;
         if (!free_axes_.empty()) {
             model_ = first_.baseline->model();
             if (!causes_.empty()) {

@@ -34,6 +34,7 @@ struct FoundCause {
 struct EffectSearchResult {
     std::vector<FoundCause> causes;         // by evidence
     std::vector<SwallowedNoise> swallowed;  // where the model that was given held part of the causes
+    SensorModel without_causes;             // noise that held part of them is free
     SensorModel corrected;
     Hypotheses last;  // under the corrected model
 };

@@ -94,7 +94,8 @@ private:
         std::vector<double> out(end - first);
         std::size_t bin = bin_of(first);
         for (std::size_t k = first; k < end; ++k) {
-            while (baseline_->bins()[bin].end <= k) { ++bin; }
+            while (bin + 1 < baseline_->bins().size() && baseline_->bins()[bin].end <= k) { ++bin; }
+            if (!has_coefficient(baseline_->half(), k)) { continue; }
             out[k - first] = 1.0 / (seen.density[bin] * baseline_->rate_hz());
         }
         return out;
@@ -102,18 +103,21 @@ private:
 
     std::size_t bin_of(std::size_t k) const {
         const auto after = std::ranges::upper_bound(baseline_->bins(), k, {}, &SpectralBin::first);
-        return static_cast<std::size_t>(after - baseline_->bins().begin()) - 1;
+        return after == baseline_->bins().begin()
+                   ? 0
+                   : static_cast<std::size_t>(after - baseline_->bins().begin()) - 1;
     }
 
     // Squares of coefficients first ... end - 1 in units of what is around: the expected density or, where
     // that is more, the median of groups. Robust: a few lines in a block do not change it.
     void fill_squares(const AxisObservation& seen, std::size_t first, std::size_t end,
                       std::vector<float>& squares) const {
-        squares.resize(end - first);
+        squares.assign(end - first, 0.0F);
         std::size_t k = first;
-        for (std::size_t bin = bin_of(first); k < end; ++bin) {
+        for (std::size_t bin = bin_of(first); k < end && bin < baseline_->bins().size(); ++bin) {
             const auto weight = static_cast<float>(1.0 / (seen.density[bin] * baseline_->rate_hz()));
             for (; k < std::min(end, baseline_->bins()[bin].end); ++k) {
+                if (!baseline_->bins()[bin].has(k)) { continue; }
                 squares[k - first] = weight * seen.cosines[k] * seen.cosines[k];
             }
         }
@@ -219,13 +223,15 @@ private:
             const auto [first, end] = around(line.place, most);
             const std::vector<double> weight = weights(seen, first, end);
             double sum = 0.0;
+            double count = 0.0;
             for (std::size_t k = first; k < end; ++k) {
+                count += weight[k - first] > 0.0 ? 1.0 : 0.0;
                 const auto [cosine, sine] = shape.at(k);
                 const double left =
                     static_cast<double>(seen.cosines[k]) - line.cosine * cosine - line.sine * sine;
                 sum += weight[k - first] * left * left;
             }
-            const double degrees = std::max(1.0, static_cast<double>(end - first) - fitted);
+            const double degrees = std::max(1.0, count - fitted);
             if (sum > wilson_hilferty_limit(degrees, deviates)) { floor = std::max(floor, sum / degrees); }
         }
         return floor;
@@ -239,7 +245,8 @@ private:
         const auto [first, end] = around(line.place, removed_reach);
         std::size_t bin = bin_of(first);
         for (std::size_t k = first; k < end; ++k) {
-            while (baseline_->bins()[bin].end <= k) { ++bin; }
+            while (bin + 1 < baseline_->bins().size() && baseline_->bins()[bin].end <= k) { ++bin; }
+            if (!has_coefficient(baseline_->half(), k)) { continue; }
             const auto [cosine, sine] = shape.at(k);
             const double part = line.cosine * cosine + line.sine * sine;
             const double change = part * (part - 2.0 * static_cast<double>(seen.cosines[k]));

@@ -194,7 +194,7 @@ void measure_power(const SpectralBins& bins, double rate_hz, const std::vector<f
         double sum = 0.0;
         for (std::size_t k = bins[i].first; k < bins[i].end; ++k) {
             const auto coefficient = static_cast<double>(cosines[k]);
-            sum += coefficient * coefficient;
+            if (bins[i].has(k)) { sum += coefficient * coefficient; }
         }
         power[i] = sum / (bins[i].count() * rate_hz);
     }
@@ -216,6 +216,9 @@ Observation::Observation(std::shared_ptr<const Baseline> baseline, std::shared_p
                   [&](std::size_t slot, std::size_t row) { present_[slot] = judged[row]; });
     const TransformPool::Lease transform = baseline_->transform();
     for (const std::size_t axis : baseline_->axes()) { observe(axis, seed, *transform); }
+    for (std::size_t slot = 0; slot < length; ++slot) {
+        present_[slot] = present_[slot] && has_slot(baseline_->half(), slot, length);
+    }
 }
 
 void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
@@ -295,9 +298,13 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
         residual.assign(work.begin(), work.end());
     }
     std::copy(seen.cosines.begin(), seen.cosines.end(), work.begin());
-    for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
+    const SpectralBins& bins = baseline.bins();
+    for (std::size_t i = 0; i < bins.size(); ++i) {
         const double scale = 1.0 / std::sqrt(seen.density[i] * rate_hz);
-        for (std::size_t k = baseline.bins()[i].first; k < baseline.bins()[i].end; ++k) { work[k] *= scale; }
+        // Coefficients of which the half has no bin go with the next one's.
+        const std::size_t first = i == 0 ? 1 : bins[i - 1].end;
+        const std::size_t end = i + 1 == bins.size() ? length : bins[i].end;
+        for (std::size_t k = first; k < end; ++k) { work[k] *= scale; }
     }
     transform.inverse(work);
     seen.whitened.assign(work.begin(), work.end());

@@ -45,7 +45,7 @@ public:
     const Recording& recording() const { return *recording_; }
     // Of an axis that the baseline has.
     const AxisObservation& axis(std::size_t axis) const { return axes_[axis]; }
-    // By slot: a sample was there and is to be judged.
+    // By slot: a sample was there, is to be judged and belongs to the baseline's half.
     const std::vector<bool>& present() const { return present_; }
 
 private:

@@ -106,6 +106,7 @@ private:
         }
         double count = 0.0;
         for (std::size_t k = first; k < end; ++k) {
+            if (!baseline_->bins()[bin].has(k)) { continue; }
             Eigen::Vector3d x = Eigen::Vector3d::Zero();
             for (const std::size_t axis : baseline_->axes()) {
                 x[static_cast<Eigen::Index>(axis)] =

@@ -91,7 +91,9 @@ private:
         for (std::size_t i = 0; i < density.size(); ++i) {
             const SpectralBin& bin = baseline_->bins()[i];
             const double weight = 1.0 / (density[i] * baseline_->rate_hz());
-            for (std::size_t k = bin.first; k < bin.end && k <= scan.used(); ++k) { weights[k - 1] = weight; }
+            for (std::size_t k = bin.first; k < bin.end && k <= scan.used(); ++k) {
+                if (bin.has(k)) { weights[k - 1] = weight; }
+            }
         }
         return scan.fit(seen.observation->axis(axis).cosines, weights);
     }
@@ -157,6 +159,7 @@ private:
             const SpectralBin& bin = baseline_->bins()[i];
             double change = 0.0;
             for (std::size_t k = bin.first; k < std::min(bin.end, end); ++k) {
+                if (!bin.has(k)) { continue; }
                 const double part = height * step_coefficient(baseline_->length(), at, k);
                 change += part * (part - 2.0 * static_cast<double>(observed.cosines[k]));
             }
@@ -201,7 +204,11 @@ private:
         double spacing = scan.spacing();
         while (now.width < places_min * spacing) {
             const std::size_t most = std::min(finest_used, baseline_->length() - 1);
-            if (used * finer > most) { return moment_among_samples(seen, axes, now.at, spacing); }
+            if (used * finer > most) {
+                // Single samples belong to both halves' frequencies.
+                if (baseline_->half() != Half::both) { return now; }
+                return moment_among_samples(seen, axes, now.at, spacing);
+            }
             used *= finer;
             StepScan finer_scan(baseline_->length(), used);
             std::array<StepScan::Fit, 3> fits;

@@ -208,8 +208,8 @@ Diagnosis as_diagnosis(const CurveDiagnosisReport& report) {
 std::string curve_diagnosis_json(const CurveDiagnosisReport& report) {
     Json json = diagnosis_object(as_diagnosis(report));
     for (const char* of_recordings :
-         {"p_none", "p_left", "shrink_lo", "shrink_hi", "held_out", "recording", "rate_hz", "duration_s",
-          "samples", "simulations", "seed", "untestable"}) {
+         {"p_none", "p_left", "shrink_lo", "shrink_hi", "held_out", "halves", "recording", "rate_hz",
+          "duration_s", "samples", "simulations", "seed", "untestable"}) {
         json.erase(of_recordings);
     }
     for (const char* gap : {"gap_before", "gap_after"}) {

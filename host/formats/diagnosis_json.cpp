@@ -188,6 +188,11 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
     json["shrink_lo"] = diagnosis.shrink_lo;
     json["shrink_hi"] = diagnosis.shrink_hi;
     json["held_out"] = diagnosis.held_out;
+    if (diagnosis.verdict == Verdict::known) {
+        json["halves"] = {{"judged", diagnosis.halves.judged},
+                          {"evidence_left_nats", diagnosis.halves.evidence_left_nats},
+                          {"excess_nats", diagnosis.halves.excess_nats}};
+    }
     put_circumstances(json, diagnosis);
     json["domains"] = Json::array();
     for (const GapDomain& domain : diagnosis.domains) { json["domains"].push_back(domain_json(domain)); }

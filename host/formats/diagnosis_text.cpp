@@ -93,6 +93,22 @@ std::string gap_before_sentence(const Diagnosis& diagnosis) {
                        times_floor(gap.hi, gap));
 }
 
+std::string halves_clause(const HalvesResult& halves) {
+    if (halves.judged.empty()) {
+        return "the fit's own uncertainty says so, no half of the recording could judge the other's fit "
+               "(--holdout takes a second recording)";
+    }
+    const std::string what = listed(halves.judged);
+    if (halves.excess_nats > 0.0) {
+        return fmt::format(
+            "{}, fitted to one half of the recording, leaves more in the other than chance does "
+            "({:.3g} nats), which is counted",
+            what, halves.evidence_left_nats);
+    }
+    return fmt::format(
+        "{}, fitted to one half of the recording, leaves no more in the other than chance does", what);
+}
+
 std::string gap_after_sentence(const Diagnosis& diagnosis) {
     const Gap& gap = diagnosis.gap_after;
     const std::size_t causes = diagnosis.causes.size();
@@ -104,7 +120,7 @@ std::string gap_after_sentence(const Diagnosis& diagnosis) {
     if (!diagnosis.held_out.empty()) {
         text += fmt::format(" on data that the fit did not see ({})", diagnosis.held_out);
     } else if (diagnosis.verdict == Verdict::known) {
-        text += ", as the fit's own uncertainty has it (--holdout measures it on a second recording)";
+        text += "; " + halves_clause(diagnosis.halves);
     }
     return text + ".";
 }

@@ -187,7 +187,7 @@ void expect_schema(const json& answer) {
                  {"duration_s", "number"},       {"samples", "number"},   {"axes", "array"},
                  {"simulations", "number"},      {"seed", "number"},      {"domains", "array"},
                  {"band_probability", "number"}, {"untestable", "array"}, {"next_recordings", "array"},
-                 {"warnings", "array"}},
+                 {"halves?", "object"},          {"warnings", "array"}},
                 "answer");
     EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
     for (const char* gap : {"gap_before", "gap_after"}) {
@@ -314,7 +314,17 @@ TEST(DiagnosisText, TellsPlaceSizeAndHowFarTheGapCloses) {
                           "data that the fit did not see (every other minute)."));
     Diagnosis seen = known();
     seen.held_out.clear();
-    EXPECT_THAT(diagnosis_text(seen), Not(HasSubstr("did not see"))) << "nothing was held out";
+    EXPECT_THAT(joined(diagnosis_text(seen)),
+                HasSubstr("no half of the recording could judge the other's fit"));
+    seen.halves.judged = {"temp_lag"};
+    EXPECT_THAT(
+        joined(diagnosis_text(seen)),
+        HasSubstr("closed; temp_lag, fitted to one half of the recording, leaves no more in the other than "
+                  "chance does."));
+    seen.halves.evidence_left_nats = 7.25;
+    seen.halves.excess_nats = 6.0;
+    EXPECT_THAT(joined(diagnosis_text(seen)),
+                HasSubstr("leaves more in the other than chance does (7.25 nats), which is counted."));
     EXPECT_THAT(text, HasSubstr("`temp_linear` (2.1 nats less) fits nearly as well; one up-and-down sweep of "
                                 "5 degC would decide."));
     EXPECT_THAT(text, HasSubstr("1 of 5000 would differ as much (p = 0.0002)"));

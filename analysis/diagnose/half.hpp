@@ -1,0 +1,26 @@
+// Halves of a recording that have nothing in common, so that what is fitted to one can be judged by the
+// other. For whatever is read from frequencies every other pair of cosine coefficients, for whatever is read
+// from single samples every other one of as many equal parts of the time: both sorts are independent where
+// the model of the noise is right.
+#pragma once
+
+#include <cstddef>
+
+namespace gyrolog {
+
+enum class Half { both, first, second };
+
+inline constexpr std::size_t half_parts = 64;  // of the time, in turns
+
+// Pairs: of a ramp, and of whatever else is odd about the middle, only odd coefficients are not zero.
+constexpr bool has_coefficient(Half half, std::size_t k) {
+    return half == Half::both || ((k / 2) % 2 == 0) == (half == Half::first);
+}
+
+constexpr bool has_slot(Half half, std::size_t slot, std::size_t length) {
+    return half == Half::both || ((slot * half_parts / length) % 2 == 0) == (half == Half::first);
+}
+
+constexpr Half other_than(Half half) { return half == Half::first ? Half::second : Half::first; }
+
+}  // namespace gyrolog
