@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/noise_nuisance.hpp"
 #include "analysis/diagnose/stamp_evidence.hpp"
+#include "analysis/diagnose/white_share.hpp"
 
 namespace gyrolog {
 
@@ -89,7 +90,7 @@ public:
         const double sd_s = std::exp(log_sd);
         double gain_nats = nats(sd_s) - without;
         if (gain_nats < trace_nats) { return std::nullopt; }
-        // Far from a small spread the squares claim what the whole likelihood does not have.
+        // What a model misses of the motion's mean answer is larger where the rate changes, too.
         if (gain_nats > worth_checking_nats) {
             gain_nats = std::min(gain_nats, checked_nats(observation, sd_s));
         }
@@ -111,14 +112,41 @@ public:
     }
 
 private:
-    // Of the spectra, with the spread in the model.
+    // With the spread in the model: of the spectra, and of the variance's course in what is white by its own
+    // spectrum, in which a mean answer that the model misses has no more weight than its frequencies.
     double checked_nats(const Observation& observation, double sd_s) const {
         SensorModel model = baseline_->model();
         model.effects.push_back({std::string(effect_->name), {}, {{"sd_s", sd_s}, {"in_stamps", 0.0}}, ""});
         const std::shared_ptr<const Recording> recording(std::shared_ptr<const Recording>(),
                                                          &observation.recording());
         const Observation with(baseline_->with(model), recording, 1);
-        return log_likelihood_nats(with) - log_likelihood_nats(observation);
+        double nats = log_likelihood_nats(with) - log_likelihood_nats(observation);
+        for (const std::size_t axis : baseline_->axes()) { nats += course_nats(with, axis); }
+        return nats;
+    }
+
+    static double course_nats(const Observation& with, std::size_t axis) {
+        const Baseline& baseline = with.baseline();
+        const std::vector<float>& course = baseline.white_course(axis);
+        if (course.empty()) { return 0.0; }
+        const AxisObservation& seen = with.axis(axis);
+        std::vector<double> white(seen.cosines.begin(), seen.cosines.end());
+        for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
+            const SpectralBin& bin = baseline.bins()[i];
+            const double density = std::max(seen.power[i], seen.density[i]);
+            for (std::size_t k = bin.first; k < bin.end; ++k) {
+                white[k] /= std::sqrt(density * baseline.rate_hz());
+            }
+        }
+        baseline.transform()->inverse(white);
+        const double share = white_share(baseline, axis).variance;
+        double nats = 0.0;
+        for (std::size_t slot = 0; slot < white.size(); ++slot) {
+            if (!with.present()[slot]) { continue; }
+            const double variance = 1.0 + share * (static_cast<double>(course[slot]) - 1.0);
+            nats -= 0.5 * (std::log(variance) + white[slot] * white[slot] * (1.0 / variance - 1.0));
+        }
+        return nats;
     }
 
     AxisBins gathered(const Observation& observation, std::size_t axis) const {

@@ -1,5 +1,6 @@
 // Effects of a moving sensor, whose gains the model knows within an uncertainty and whose reference is noisy.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -113,6 +114,40 @@ TEST(MotionEvidence, OfALowPassIsThatAlone) { expect_low_pass_alone(world_with_r
 
 // What is left of the reference's noise is filtered with the motion, and then missing where it is expected.
 TEST(MotionEvidence, OfALowPassIsThatAloneWithoutARest) { expect_low_pass_alone(world_without_rests()); }
+
+// Samples taken at the wrong moment are off by the rate's change meanwhile: their variance goes with its
+// square. The gain is the expected one against the best even level, which the model's N holds back.
+TEST(MotionEvidence, OfUnevenMomentsIsTheVariancesCourse) {
+    const SensorModel model = moving_sensor();
+    for (const double sd_s : {8e-5, 2e-4}) {
+        const Hypotheses seen =
+            examined(with_effect(model, "clock_jitter", {{"sd_s", sd_s}, {"in_stamps", 0.0}}, {}), model, 40);
+        const Finding* found = of(seen, "clock_jitter");
+        ASSERT_NE(found, nullptr) << sd_s;
+        EXPECT_EQ(seen.best(), found) << seen.best()->effect;
+        EXPECT_NEAR(found->entries.front().params.at("sd_s"), sd_s, 4.0 * found->sd.front().at("sd_s"));
+        const auto expected_nats = [&](double level) {
+            double nats = 0.0;
+            for (const std::size_t axis : {0U, 1U, 2U}) {
+                const double white = seen.baseline->parts(axis).back().sum() * 100.0;
+                const double share = seen.baseline->parts(axis).back().white * 100.0 / white;
+                for (const float change : seen.baseline->response_change_rad_s2(axis)) {
+                    const double off_rad_s = sd_s * static_cast<double>(change);
+                    const double variance = 1.0 + off_rad_s * off_rad_s / white;
+                    nats += 0.5 * (variance / level - 1.0 + std::log(level / variance));
+                }
+                nats += 0.5 * std::pow((level - 1.0) / (2.0 * 0.005 * share), 2.0);
+            }
+            return nats;
+        };
+        double least_nats = expected_nats(1.0);
+        for (double level = 1.0; level < 1.5; level += 0.001) {
+            least_nats = std::min(least_nats, expected_nats(level));
+        }
+        EXPECT_GT(least_nats, 100.0);
+        EXPECT_NEAR(found->gain_nats, least_nats, 6.0 * std::sqrt(2.0 * least_nats)) << sd_s;
+    }
+}
 
 TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNone) {
     SensorModel sensor = moving_sensor();
