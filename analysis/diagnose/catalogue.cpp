@@ -6,6 +6,7 @@
 #include "analysis/diagnose/ceiling_test.hpp"
 #include "analysis/diagnose/code_grid_test.hpp"
 #include "analysis/diagnose/line_test.hpp"
+#include "analysis/diagnose/means_model.hpp"
 #include "analysis/diagnose/outlier_test.hpp"
 #include "analysis/diagnose/repeat_test.hpp"
 #include "analysis/diagnose/response_test.hpp"
@@ -57,6 +58,10 @@ std::string lacking(const EffectSignature& signature, const Baseline& baseline) 
     if (signature.needs_reference && !baseline.moves()) { return "the recording has no reference rate"; }
     if (signature.needs_specific_force && !baseline.world().has_specific_force()) {
         return "the recording has no specific force";
+    }
+    if (baseline.world().recording().samples_per_row > 1 &&
+        !shows_in_means(evidence_method(signature, baseline))) {
+        return "means of several samples do not show it";
     }
     return {};
 }

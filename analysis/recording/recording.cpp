@@ -1,6 +1,7 @@
 #include "analysis/recording/recording.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gyrolog {
 
@@ -38,6 +39,69 @@ double Recording::duration_s() const {
     return static_cast<double>(last.first_index + static_cast<std::int64_t>(last.count) -
                                segments.front().first_index) /
            rate_hz;
+}
+
+namespace {
+
+// Row by row of the means: the first of the rows it is made of, and its place on its own grid.
+struct MeanRow {
+    std::size_t first = 0;
+    std::int64_t index = 0;
+};
+
+std::vector<MeanRow> mean_rows(const Recording& recording, std::int64_t samples) {
+    std::vector<MeanRow> rows;
+    const std::int64_t origin = recording.segments.empty() ? 0 : recording.segments.front().first_index;
+    for (const Segment& segment : recording.segments) {
+        const std::int64_t begin = segment.first_index - origin;
+        const std::int64_t end = begin + static_cast<std::int64_t>(segment.count);
+        for (std::int64_t index = (begin + samples - 1) / samples; (index + 1) * samples <= end; ++index) {
+            rows.push_back({segment.first + static_cast<std::size_t>(index * samples - begin), index});
+        }
+    }
+    return rows;
+}
+
+Column mean_column(const Column& column, const std::vector<MeanRow>& rows, std::size_t samples) {
+    std::vector<double> means;
+    means.reserve(rows.size());
+    for (const MeanRow& row : rows) {
+        double sum = 0.0;
+        double known = 0.0;
+        for (std::size_t i = row.first; i < row.first + samples; ++i) {
+            const double value = column.value(i);
+            if (std::isnan(value)) { continue; }
+            sum += value;
+            known += 1.0;
+        }
+        means.push_back(known > 0.0 ? sum / known : std::nan(""));
+    }
+    return {column.name, column.unit, std::move(means), 1.0, 0.0, ""};
+}
+
+}  // namespace
+
+Recording means_of(const Recording& recording, std::size_t samples) {
+    if (samples < 2) { return recording; }
+    const auto number = static_cast<double>(samples);
+    Recording means;
+    means.name = recording.name;
+    means.rate_hz = recording.rate_hz / number;
+    means.samples_per_row = recording.samples_per_row * samples;
+    if (recording.nominal_rate_hz) { means.nominal_rate_hz = *recording.nominal_rate_hz / number; }
+    if (recording.rate_sd_hz) { means.rate_sd_hz = *recording.rate_sd_hz / number; }
+    means.dropouts = recording.dropouts;
+    means.warnings = recording.warnings;
+    const std::vector<MeanRow> rows = mean_rows(recording, static_cast<std::int64_t>(samples));
+    for (const Column& column : recording.columns) {
+        means.columns.push_back(mean_column(column, rows, samples));
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const bool follows = i > 0 && rows[i].index == rows[i - 1].index + 1;
+        if (!follows) { means.segments.push_back({i, 0, rows[i].index}); }
+        ++means.segments.back().count;
+    }
+    return means;
 }
 
 Recording first_rows(Recording recording, std::size_t rows) {

@@ -55,7 +55,8 @@ struct Dropout {
 // Segments are in order and do not overlap on the grid; every row belongs to exactly one.
 struct Recording {
     std::string name;
-    double rate_hz = 0.0;                   // estimated from the stamps, or given
+    double rate_hz = 0.0;                   // of rows; estimated from the stamps, or given
+    std::size_t samples_per_row = 1;        // that each row is the mean of
     std::optional<double> nominal_rate_hz;  // what the device or the user said
     std::optional<double> rate_sd_hz;       // one sigma of the estimate
     std::optional<double> stamp_jitter_s;   // one sigma of the stamps about the fitted grid
@@ -74,6 +75,10 @@ struct Recording {
     // From the first sampling instant to the end of the last one: (last index - first index + 1) / rate.
     double duration_s() const;
 };
+
+// Each `samples`, at least one, of the grid in one row: their mean, of what is known of it. Where one of them
+// is missing the row is; causes of dropouts are as they were. No stamps are kept.
+Recording means_of(const Recording& recording, std::size_t samples);
 
 // The recording as if it had ended after `rows`, at least one; whole if it has no more.
 Recording first_rows(Recording recording, std::size_t rows);

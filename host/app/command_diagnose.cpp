@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t simulations_least = 20;
 constexpr std::size_t simulations_most = 10'000;
 constexpr unsigned threads_most = 1024;
+constexpr int average_most = 100'000;
 
 struct DiagnoseOptions {
     RecordingDiagnosisRequest request;
@@ -61,6 +62,11 @@ Action setup_diagnose(CLI::App& app) {
     app.add_option("--holdout", request.holdout_path,
                    "A second recording of the sensor: the gap is measured on it")
         ->type_name("RECORDING");
+    app.add_option("--average", request.average,
+                   "Look at means of N samples: all of a long recording, for what is slow")
+        ->type_name("N")
+        ->check(CLI::Range(1, average_most))
+        ->capture_default_str();
     app.add_option("--simulations", request.simulations, "How many simulations tell a gap from chance")
         ->type_name("N")
         ->check(CLI::Range(simulations_least, simulations_most))
@@ -76,7 +82,8 @@ Action setup_diagnose(CLI::App& app) {
     app.add_option("--lsb-dps", request.lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());
-    for (const char* of_recordings : {"--holdout", "--simulations", "--seed", "--threads", "--lsb-dps"}) {
+    for (const char* of_recordings :
+         {"--holdout", "--average", "--simulations", "--seed", "--threads", "--lsb-dps"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

@@ -11,6 +11,9 @@
 
 #include "analysis/diagnose/baseline.hpp"
 #include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/effect_search.hpp"
+#include "analysis/diagnose/means_model.hpp"
+#include "analysis/diagnose/swallowed_noise.hpp"
 #include "host/app/command.hpp"
 #include "host/app/diagnosis_output.hpp"
 #include "host/app/output_paths.hpp"
@@ -27,20 +30,35 @@ namespace {
 
 Result<std::shared_ptr<const Recording>> diagnosable(const RecordingDiagnosisRequest& request,
                                                      const std::string& path) {
-    GYROLOG_TRY(Recording recording, read_recording({path, std::nullopt, request.lsb_dps, {}}));
+    const std::size_t rows_most = diagnosable_samples_max * request.average;
+    GYROLOG_TRY(Recording recording,
+                read_recording({path, std::nullopt, request.lsb_dps, {}, rows_most + request.average}));
     if (const auto refusal = diagnosis_refusal(recording)) {
         return Error{ErrorCode::failed, "diagnose '" + path + "': " + *refusal};
     }
+    if (request.average > 1) {
+        recording = means_of(recording, request.average);
+        if (const auto refusal = diagnosis_refusal(recording)) {
+            return Error{ErrorCode::failed, fmt::format("diagnose '{}': in means of {} samples it {}", path,
+                                                        request.average, *refusal)};
+        }
+    }
     if (recording.rows() > diagnosable_samples_max) {
-        const double whole_s = recording.duration_s();
         recording = first_rows(std::move(recording), diagnosable_samples_max);
-        recording.warnings.push_back(
-            fmt::format("'{}' is looked at from its beginning to {} of {}: a diagnosis takes no more than {} "
-                        "samples; later parts have to be cut out and diagnosed by themselves",
-                        path, format_duration(recording.duration_s()), format_duration(whole_s),
-                        diagnosable_samples_max));
+        recording.warnings.push_back(fmt::format(
+            "'{}' is looked at from its beginning to {}: a diagnosis takes no more than {} samples; "
+            "`--average {}` looks at {} times as much for what is slow, in means of so many samples",
+            path, format_duration(recording.duration_s()), diagnosable_samples_max, 10 * request.average,
+            10));
     }
     return std::make_shared<const Recording>(std::move(recording));
+}
+
+// What was found in means, in a model of samples.
+SensorModel corrected(SensorModel model, const Diagnosis& diagnosis) {
+    model = with_noise(std::move(model), diagnosis.swallowed);
+    for (const Cause& cause : diagnosis.causes) { model = with_cause(std::move(model), cause.finding); }
+    return model;
 }
 
 Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& request) {
@@ -60,10 +78,11 @@ Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& r
         }
         return !console.stop_wanted();
     };
-    auto diagnosis = diagnose(recording, file.model,
+    auto diagnosis = diagnose(recording, model_of_means(file.model, request.average),
                               std::filesystem::path(request.model_path).filename().string(), options);
     if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
     if (!diagnosis) { return Error{ErrorCode::failed, "interrupted; nothing is written"}; }
+    if (request.average > 1) { diagnosis->corrected = corrected(file.model, *diagnosis); }
     for (const std::vector<std::string>& more : {recording->warnings, file.notes}) {
         diagnosis->warnings.insert(diagnosis->warnings.end(), more.begin(), more.end());
     }

@@ -19,6 +19,7 @@ struct RecordingDiagnosisRequest {
     std::string plot_path;
     std::string model_out_path;  // the model with the causes added
     std::optional<double> lsb_dps;
+    std::size_t average = 1;  // samples of which means are looked at
     std::size_t simulations = 200;
     std::uint64_t seed = 1;
     unsigned threads = 0;  // 0: all processors

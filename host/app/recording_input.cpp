@@ -12,7 +12,7 @@ namespace gyrolog {
 namespace {
 
 Result<TimedRecording> read_capture(const RecordingInput& input) {
-    GYROLOG_TRY(LoadedCapture capture, load_capture(input.path, true, input.on_stage));
+    GYROLOG_TRY(LoadedCapture capture, load_capture(input.path, true, input.on_stage, input.rows_most));
     input.on_stage("place");
     auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
@@ -48,6 +48,7 @@ Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
     options.rate_hz = input.rate_hz;
     options.lsb_dps = input.lsb_dps;
     options.allow_unscaled_counts = true;
+    options.rows_most = input.rows_most;
     GYROLOG_TRY(Recording recording, read_recording_csv(input.path, options));
     return TimedRecording{std::move(recording), std::nullopt};
 }

@@ -1,6 +1,8 @@
 // A RECORDING argument of the command line: a capture, or text.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -15,6 +17,8 @@ struct RecordingInput {
     std::optional<double> rate_hz;  // overrides the file's own
     std::optional<double> lsb_dps;  // scale of text columns in counts
     StageObserver on_stage{};       // of "read", and for a capture "decode", "place"
+    // Reading ends soon after so many.
+    std::size_t rows_most = std::numeric_limits<std::size_t>::max() - 1;
 };
 
 Result<Recording> read_recording(const RecordingInput& input);

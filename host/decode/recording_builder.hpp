@@ -7,7 +7,9 @@
 // Memory: two bytes a value. A stretch that has become shorter than another is dropped at once.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -36,6 +38,9 @@ public:
     // `boot` is LinkAccounts::boot() at this frame.
     void take_config(std::uint32_t boot, const glp_config& config);
     void take_samples(const SamplePlace& place, const glp_samples& samples);
+
+    // Of the longest stretch so far.
+    std::size_t samples() const { return std::max(current_.rows, longest_.rows); }
 
     // Error `malformed` when there are no samples, or none whose configuration was told. Leaves the builder
     // empty.

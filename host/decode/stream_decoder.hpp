@@ -58,6 +58,7 @@ public:
     // The report's dropouts with their time from the first sample.
     std::vector<Dropout> timed_dropouts(const LinkReport& report) const;
 
+    std::size_t kept_samples() const { return builder_.samples(); }
     // Only with keep_samples. Empties the store of samples.
     Result<Recording> take_recording(std::string name) {
         return builder_.finish(std::move(name), timeline_, report());

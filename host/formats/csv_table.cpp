@@ -145,9 +145,10 @@ std::string CsvTable::place(const CsvTableColumn& column) const {
     return "line " + std::to_string(number_) + ", column '" + column.header + "': ";
 }
 
-Status read_csv_file(CsvTable& table, const std::string& path) {
+Status read_csv_file(CsvTable& table, const std::string& path, std::size_t lines_most) {
     GYROLOG_TRY(TextReader reader, TextReader::open(path));
     while (true) {
+        if (table.lines() >= lines_most) { return {}; }
         GYROLOG_TRY(const std::string_view piece, reader.read());
         if (piece.empty()) { return table.finish(); }
         GYROLOG_CHECK(table.feed(piece));

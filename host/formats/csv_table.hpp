@@ -35,6 +35,7 @@ public:
     Status finish();
 
     std::vector<CsvTableColumn>& columns() { return columns_; }
+    std::size_t lines() const { return number_; }  // whole ones, the header line included
 
 private:
     Status line(std::string_view text);
@@ -50,7 +51,8 @@ private:
     std::size_t number_ = 0;  // of the line
 };
 
-// The whole file, compressed or not.
-Status read_csv_file(CsvTable& table, const std::string& path);
+// The whole file, compressed or not; no further than it takes to have `lines_most`.
+Status read_csv_file(CsvTable& table, const std::string& path,
+                     std::size_t lines_most = std::numeric_limits<std::size_t>::max());
 
 }  // namespace gyrolog

@@ -236,7 +236,7 @@ Result<Recording> recording_of(std::vector<InputColumn> columns, std::string nam
 
 Result<Recording> read_file(const std::string& path, const CsvReadOptions& options) {
     CsvTable table = recording_table(!options.rate_hz);
-    GYROLOG_CHECK(read_csv_file(table, path));
+    GYROLOG_CHECK(read_csv_file(table, path, options.rows_most + 1));
     return recording_of(input_columns(table), path.substr(path.find_last_of('/') + 1), options);
 }
 

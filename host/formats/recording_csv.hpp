@@ -1,6 +1,8 @@
 // A recording as text: one header line, then one line per sample; the unit stands in the column's name.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +22,8 @@ struct CsvReadOptions {
     // Gyro counts without lsb_dps are an error, because every unit would be wrong; with this they come as
     // unit "lsb".
     bool allow_unscaled_counts = false;
+    // Reading ends soon after so many.
+    std::size_t rows_most = std::numeric_limits<std::size_t>::max() - 1;
 };
 
 // Numbers keep the unit and the digits that the text has (Column::source_unit). Counts that are whole numbers

@@ -39,11 +39,14 @@ void add(CaptureAccounts& sum, const CaptureAccounts& part) {
 // Reads files one behind the other into one decoder.
 class Loading {
 public:
-    Loading(LoadedCapture& loaded, const StageObserver& on_stage) : loaded_(loaded), on_stage_(on_stage) {}
+    Loading(LoadedCapture& loaded, const StageObserver& on_stage, std::size_t samples_most)
+        : loaded_(loaded), on_stage_(on_stage), samples_most_(samples_most) {}
+
+    bool enough() const { return loaded_.decoder->kept_samples() >= samples_most_; }
 
     Status read(const std::string& path) {
         GYROLOG_TRY(CaptureReader reader, CaptureReader::open(path));
-        while (true) {
+        while (!enough()) {
             on_stage_("read");
             GYROLOG_TRY(const std::optional<CapturedTransfer> captured, reader.next());
             if (!captured) { break; }
@@ -78,22 +81,26 @@ private:
 
     LoadedCapture& loaded_;
     const StageObserver& on_stage_;
+    std::size_t samples_most_;
     bool any_data_ = false;
     std::optional<CaptureSegment> present_;
 };
 
 }  // namespace
 
-Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
-                                   const StageObserver& on_stage) {
+Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples, const StageObserver& on_stage,
+                                   std::size_t samples_most) {
     LoadedCapture loaded;
     loaded.files = segment_files(path);
     std::uint64_t stream_bytes = 0;
     for (const std::string& file : loaded.files) { stream_bytes += size_of(file); }
     loaded.decoder = std::make_unique<StreamDecoder>(StreamDecoderOptions{
         .keep_samples = keep_samples, .observer = nullptr, .stream_bytes = stream_bytes});
-    Loading loading(loaded, on_stage);
-    for (const std::string& file : loaded.files) { GYROLOG_CHECK(loading.read(file)); }
+    Loading loading(loaded, on_stage, samples_most);
+    for (const std::string& file : loaded.files) {
+        GYROLOG_CHECK(loading.read(file));
+        if (loading.enough()) { break; }
+    }
     if (loaded.file.blocks.bytes_total == 0) {
         return Error{ErrorCode::malformed, "read capture '" + path + "': the file is empty"};
     }

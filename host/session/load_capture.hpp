@@ -1,6 +1,8 @@
 // A stored capture, all of its files, read and decoded once: what info, check and every analysis start from.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,9 +26,10 @@ struct LoadedCapture {
 };
 
 // Errors: those of CaptureReader. A capture without one good frame is no error.
-// Stages: "read", "decode", by turns.
+// Stages: "read", "decode", by turns. Of samples that are kept, reading ends soon after `samples_most`.
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
-                                   const StageObserver& on_stage = {});
+                                   const StageObserver& on_stage = {},
+                                   std::size_t samples_most = std::numeric_limits<std::size_t>::max());
 
 // Whether the file begins like a capture (pcapng or pcap) rather than like text. False when it cannot be
 // read.

@@ -255,5 +255,22 @@ TEST_F(RealRecordings, CompleteLogsShowNoDropout) {
     }
 }
 
+TEST(RecordingCsv, ReadsNoFurtherThanWanted) {
+    const std::string path = testing::TempDir() + "long.csv";
+    constexpr int rows = 2'000'000;
+    {
+        std::ofstream file(path);
+        file << "t_s,gx_dps\n";
+        for (int i = 0; i < rows; ++i) { file << i << ",1\n"; }
+        file << "this is no number\n";
+    }
+    EXPECT_FALSE(read_recording_csv(path).ok());
+    const Result<Recording> recording = read_recording_csv(path, {.rows_most = 1000});
+    std::filesystem::remove(path);
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_GE(recording.value().rows(), 1000U);
+    EXPECT_LT(recording.value().rows(), static_cast<std::size_t>(rows));
+}
+
 }  // namespace
 }  // namespace gyrolog

@@ -1,0 +1,18 @@
+// What is left of a sensor in means of its samples.
+#pragma once
+
+#include <cstddef>
+
+#include "analysis/simulate/effect_signature.hpp"
+#include "analysis/simulate/sensor_model.hpp"
+
+namespace gyrolog {
+
+// Not so of single samples, their codes and their stamps.
+bool shows_in_means(EvidenceMethod method);
+
+// As white as they were are what is white and what the converter adds; what does not show is left out. Holds
+// for what changes little within `samples`.
+SensorModel model_of_means(SensorModel model, std::size_t samples);
+
+}  // namespace gyrolog
