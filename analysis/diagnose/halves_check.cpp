@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "analysis/diagnose/catalogue.hpp"
@@ -18,11 +19,19 @@ constexpr double seen_nats = 3.0;
 // What a half calls for beyond the other's fit is more than chance.
 constexpr double left_nats = 3.0;
 
+// Of what one fit leaves in the other half, beyond what its own error does by chance.
+constexpr double sds = 3.0;
+
 // Codes, repeated samples and stamps are counted: no noise is fitted that could be fitted too well. Two
-// levels that the model has already cannot be looked for again.
+// levels that the model has already cannot be looked for again. A line lies in few coefficients, which may
+// all be in one half; the largest of some spikes or of clipped samples is no parameter that a second sample
+// of them would share.
 bool can_be_halved(EvidenceMethod method) {
     switch (method) {
         case EvidenceMethod::two_levels:
+        case EvidenceMethod::line:
+        case EvidenceMethod::outliers:
+        case EvidenceMethod::ceiling:
         case EvidenceMethod::repeats:
         case EvidenceMethod::code_grid:
         case EvidenceMethod::stamp_gaps:
@@ -79,6 +88,32 @@ private:
     std::uint64_t seed_;
 };
 
+// The gain of a new fit to one half where the other's is in the model: for each parameter half the square of
+// a normal deviate, as much wider as the other's uncertainty makes it.
+struct ChanceGain {
+    double mean_nats = 0.0;
+    double variance = 0.0;
+};
+
+ChanceGain chance_gain(const Finding& own, const Finding& other) {
+    ChanceGain chance;
+    for (std::size_t entry = 0; entry < own.entries.size(); ++entry) {
+        for (const auto& [name, sd] : own.sd[entry]) {
+            double ratio = 1.0;
+            for (std::size_t i = 0; i < other.entries.size(); ++i) {
+                const bool same_axes =
+                    other.entries[i].axes == own.entries[entry].axes || other.entries.size() == 1;
+                const auto of_other = other.sd[i].find(name);
+                if (same_axes && of_other != other.sd[i].end() && sd > 0.0) { ratio = of_other->second / sd; }
+            }
+            const double widened = 1.0 + ratio * ratio;
+            chance.mean_nats += 0.5 * widened;
+            chance.variance += 0.5 * widened * widened;
+        }
+    }
+    return chance;
+}
+
 // Of one cause.
 struct Left {
     bool judged = false;
@@ -99,10 +134,11 @@ std::vector<Left> left_in(const HalfView& half, const std::vector<Finding>& whol
         left[i].judged = other_nats > seen_nats && std::max(own_nats, more_nats) > seen_nats;
         if (!left[i].judged || !more) { continue; }
         left[i].evidence_nats = more->evidence_nats;
+        if (more->evidence_nats < left_nats) { continue; }
+        const ChanceGain chance = chance_gain(own ? *own : *more, *fits_of_other[i]);
+        if (more->gain_nats < chance.mean_nats + sds * std::sqrt(chance.variance)) { continue; }
         // Of the difference of two fits, the share that the better one is off.
-        if (more->evidence_nats > left_nats) {
-            left[i].nats = more->gain_nats / (1.0 + own_nats / other_nats);
-        }
+        left[i].nats = (more->gain_nats - chance.mean_nats) / (1.0 + own_nats / other_nats);
     }
     return left;
 }
