@@ -59,8 +59,7 @@ std::string lacking(const EffectSignature& signature, const Baseline& baseline) 
     if (signature.needs_specific_force && !baseline.world().has_specific_force()) {
         return "the recording has no specific force";
     }
-    if (baseline.world().recording().samples_per_row > 1 &&
-        !shows_in_means(evidence_method(signature, baseline))) {
+    if (baseline.world().recording().samples_per_row > 1 && !shows_in_means(signature)) {
         return "means of several samples do not show it";
     }
     return {};

@@ -7,8 +7,8 @@
 
 namespace gyrolog {
 
-bool shows_in_means(EvidenceMethod method) {
-    switch (method) {
+bool shows_in_means(const EffectSignature& signature) {
+    switch (signature.method) {
         case EvidenceMethod::tails:
         case EvidenceMethod::outliers:
         case EvidenceMethod::repeats:
@@ -19,7 +19,7 @@ bool shows_in_means(EvidenceMethod method) {
         case EvidenceMethod::stamp_spread:
             return false;
         default:
-            return true;
+            return !signature.folds;
     }
 }
 
@@ -38,7 +38,7 @@ SensorModel model_of_means(SensorModel model, std::size_t samples) {
     }
     std::erase_if(model.effects, [](const EffectModel& entry) {
         const EffectSignature* signature = find_effect(entry.effect)->signature;
-        return signature == nullptr || !shows_in_means(signature->method);
+        return signature == nullptr || !shows_in_means(*signature);
     });
     return model;
 }

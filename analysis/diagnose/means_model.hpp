@@ -8,8 +8,8 @@
 
 namespace gyrolog {
 
-// Not so of single samples, their codes and their stamps.
-bool shows_in_means(EvidenceMethod method);
+// Not so what single samples show, their codes and their stamps, nor what folds: a mean is no sample.
+bool shows_in_means(const EffectSignature& signature);
 
 // As white as they were are what is white and what the converter adds; what does not show is left out. Holds
 // for what changes little within `samples`.

@@ -86,6 +86,7 @@ struct EffectSignature {
     // what the simulator makes of the trial values.
     std::span<const std::string_view> linear{};
     bool changes_mean = false;  // beside the spectrum
+    bool folds = false;         // what it leaves of fast noise depends on how it is sampled
     bool slow = false;          // the mean response is: nothing in it is faster than some ten seconds
     // Every group is a way to vary other parameters, as a product; one group is enough for most.
     std::span<const std::span<const TrialValues>> trials{};

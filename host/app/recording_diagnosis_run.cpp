@@ -1,5 +1,6 @@
 #include "host/app/recording_diagnosis_run.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -54,6 +55,17 @@ Result<std::shared_ptr<const Recording>> diagnosable(const RecordingDiagnosisReq
     return std::make_shared<const Recording>(std::move(recording));
 }
 
+// Of a model that is held against means.
+std::vector<std::string> left_out(const SensorModel& of_samples, const SensorModel& of_means) {
+    std::vector<std::string> warnings;
+    for (const EffectModel& entry : of_samples.effects) {
+        if (std::ranges::count(of_means.effects, entry.effect, &EffectModel::effect) != 0) { continue; }
+        warnings.push_back(fmt::format(
+            "the model's {} is left out: means of samples do not show it as samples do", entry.effect));
+    }
+    return warnings;
+}
+
 // What was found in means, in a model of samples.
 SensorModel corrected(SensorModel model, const Diagnosis& diagnosis) {
     model = with_noise(std::move(model), diagnosis.swallowed);
@@ -78,12 +90,14 @@ Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& r
         }
         return !console.stop_wanted();
     };
-    auto diagnosis = diagnose(recording, model_of_means(file.model, request.average),
-                              std::filesystem::path(request.model_path).filename().string(), options);
+    const SensorModel model = model_of_means(file.model, request.average);
+    auto diagnosis =
+        diagnose(recording, model, std::filesystem::path(request.model_path).filename().string(), options);
     if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
     if (!diagnosis) { return Error{ErrorCode::failed, "interrupted; nothing is written"}; }
     if (request.average > 1) { diagnosis->corrected = corrected(file.model, *diagnosis); }
-    for (const std::vector<std::string>& more : {recording->warnings, file.notes}) {
+    for (const std::vector<std::string>& more :
+         {recording->warnings, file.notes, left_out(file.model, model)}) {
         diagnosis->warnings.insert(diagnosis->warnings.end(), more.begin(), more.end());
     }
     return *std::move(diagnosis);

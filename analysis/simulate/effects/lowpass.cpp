@@ -288,6 +288,7 @@ constexpr std::span<const TrialValues> trials[] = {second_order_values, first_or
 
 constexpr EffectSignature signature = {
     .changes_mean = true,
+    .folds = true,
     .trials = trials,
     .spectral = fitted,
     .spectrum = spectrum,
