@@ -94,10 +94,15 @@ private:
             if (recording == recording_ && seen.share < faint_line_share) { warn_of_faint(entry, seen); }
         }
         const Observation observation(baseline->with(model), recording, options_.seed);
-        for (const std::size_t axis : baseline->axes()) {
+        return baseline->with(with_mean_of(observation, std::move(model)));
+    }
+
+    // The bias that leaves nothing of the observation's mean.
+    static SensorModel with_mean_of(const Observation& observation, SensorModel model) {
+        for (const std::size_t axis : observation.baseline().axes()) {
             model.axes[axis].bias_rad_s += observation.axis(axis).mean_rad_s;
         }
-        return baseline->with(model);
+        return model;
     }
 
     void warn_of_faint(const EffectModel& line, const SeenLine& seen) {
@@ -197,7 +202,8 @@ private:
         }
         std::optional<EffectSearchResult> result = search_effects(first_, recording_, options);
         if (!result) { return false; }
-        answer_.corrected = result->corrected;
+        // Causes have means, too.
+        answer_.corrected = with_mean_of(*result->last.observation, std::move(result->corrected));
         answer_.swallowed = result->swallowed;
         found_ = std::move(*result);
         return true;
@@ -210,7 +216,8 @@ private:
         options.on_progress = [&](double share) {
             return told("simulating the corrected model", 0.8 + 0.2 * share);
         };
-        const std::optional<NullSimulations> null = simulate_null(found_->last.baseline, nullptr, options);
+        const std::optional<NullSimulations> null =
+            simulate_null(found_->last.baseline->with(answer_.corrected), nullptr, options);
         if (!null) { return false; }
         after_ = gap_reference(null->curves);
         after_curves_ = gap_curves(*found_->last.observation);

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -113,6 +114,53 @@ TEST_F(DiagnoseCommand, SaysThatALineOfTheModelIsNotInTheRecording) {
     write_recording_of(typical_mpu9250());
     ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-"}), ExitCode::ok);
     EXPECT_THAT(err.str(), HasSubstr("the model's tone at 31 Hz has "));
+}
+
+double mean_of(const std::string& path, const char* column) {
+    const Result<Recording> recording = read_recording_csv(path);
+    if (!recording.ok()) {
+        ADD_FAILURE() << recording.error().message;
+        return 0.0;
+    }
+    const std::vector<double> values = recording.value().find(column)->values();
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+TEST_F(DiagnoseCommand, WritesAModelThatHasTheRecordingsMean) {
+    SensorModel drifting = typical_mpu9250();
+    drifting.effects.push_back({"rate_ramp", {"x"}, {{"ramp_dps_per_s", 0.01}}, ""});
+    write_recording_of(drifting);
+    const std::string corrected = folder.path("corrected.json");
+    const std::string simulated = folder.path("s.csv");
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-", "--model-out",
+                        corrected}),
+              ExitCode::ok);
+    ASSERT_EQ(read_model(corrected)->effects.size(), 1U);
+    ASSERT_EQ(run_command_line({"simulate", corrected, "-o", simulated, "--duration", "60s"}, {out, err}),
+              ExitCode::ok)
+        << err.str();
+    // The ramp's own mean is 0.3 deg/s; of the noise's either has a few thousandths.
+    EXPECT_NEAR(mean_of(simulated, "gx"), mean_of(recording, "gx"), 0.02 * rad_per_deg);
+}
+
+TEST_F(DiagnoseCommand, LooksAtMeans) {
+    write_noisy_recording(1.5);
+    const std::string corrected = folder.path("corrected.json");
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-", "--average", "2",
+                        "--model-out", corrected}),
+              ExitCode::ok)
+        << err.str();
+    const json answer = json::parse(out.str());
+    EXPECT_EQ(answer["samples"], 3000);
+    EXPECT_NEAR(answer["rate_hz"].get<double>(), 50.0, 1e-3);
+    EXPECT_EQ(answer["causes"][0]["effect"], "arw_scale");
+    EXPECT_NEAR(answer["causes"][0]["params"]["factor"].get<double>(), 1.5, 0.1);
+    // What was found is for samples, not for means.
+    EXPECT_EQ(read_model(corrected)->rate_hz, typical_mpu9250().rate_hz);
+    EXPECT_EQ(read_model(corrected)->lsb_rad_s, typical_mpu9250().lsb_rad_s);
+    EXPECT_EQ(diagnose({recording, "--model", model, "--average", "3"}), ExitCode::failed);
+    EXPECT_THAT(err.str(),
+                HasSubstr("in means of 3 samples it has 2000 samples; a diagnosis needs at least"));
 }
 
 TEST_F(DiagnoseCommand, MeasuresTheGapOnASecondRecording) {
