@@ -24,10 +24,11 @@ constexpr double sds = 3.0;
 
 // Codes, repeated samples and stamps are counted: no noise is fitted that could be fitted too well. Two
 // levels that the model has already cannot be looked for again. A line lies in few coefficients, which may
-// all be in one half; the largest of some spikes or of clipped samples is no parameter that a second sample
-// of them would share.
-bool can_be_halved(EvidenceMethod method) {
-    switch (method) {
+// all be in one half, and so does what is slow; the largest of some spikes or of clipped samples is no
+// parameter that a second sample of them would share.
+bool can_be_halved(const EffectSignature& signature, const Baseline& baseline) {
+    if (signature.slow) { return false; }
+    switch (evidence_method(signature, baseline)) {
         case EvidenceMethod::two_levels:
         case EvidenceMethod::line:
         case EvidenceMethod::outliers:
@@ -79,7 +80,7 @@ public:
     }
 
     bool halved(const Finding& finding) const {
-        return can_be_halved(evidence_method(*find_effect(finding.effect)->signature, *baseline_));
+        return can_be_halved(*find_effect(finding.effect)->signature, *baseline_);
     }
 
 private:

@@ -119,11 +119,14 @@ TEST(HalvesCheck, CountsWhatOnlyOneHalfHas) {
     EXPECT_GT(result.evidence_left_nats, 0.7 * expected_nats);
 }
 
-TEST(HalvesCheck, DoesNotJudgeStamps) {
+TEST(HalvesCheck, DoesNotJudgeWhatIsInFewPlaces) {
     const SensorModel model = calibrated_sensor();
     const auto recording =
         recorded(with_effect(model, "dropped", {{"per_hour", 200.0}, {"longest", 4.0}}, {}), 36000, 71);
     EXPECT_TRUE(checked(recording, model, "dropped").judged.empty());
+    const auto drifting =
+        recorded(with_effect(model, "rate_ramp", {{"ramp_dps_per_s", 1e-3}}, {}), 36000, 72);
+    EXPECT_TRUE(checked(drifting, model, "rate_ramp").judged.empty());
 }
 
 }  // namespace

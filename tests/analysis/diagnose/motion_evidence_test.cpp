@@ -43,9 +43,10 @@ double steady_rate_rad_s(std::size_t axis, double t_s) {
     return rate_rad_s;
 }
 
-std::shared_ptr<const World> world_without_rests() {
-    return world_turning([](double t_s) {
-        return Vector3{steady_rate_rad_s(0, t_s), steady_rate_rad_s(1, t_s), steady_rate_rad_s(2, t_s)};
+std::shared_ptr<const World> world_without_rests(double times = 1.0) {
+    return world_turning([times](double t_s) {
+        return Vector3{times * steady_rate_rad_s(0, t_s), times * steady_rate_rad_s(1, t_s),
+                       times * steady_rate_rad_s(2, t_s)};
     });
 }
 
@@ -114,6 +115,21 @@ TEST(MotionEvidence, OfALowPassIsThatAlone) { expect_low_pass_alone(world_with_r
 
 // What is left of the reference's noise is filtered with the motion, and then missing where it is expected.
 TEST(MotionEvidence, OfALowPassIsThatAloneWithoutARest) { expect_low_pass_alone(world_without_rests()); }
+
+// However well the motion knows the cut-off.
+TEST(MotionEvidence, OfALowPassIsFittedAsWellAsTheTruth) {
+    const SensorModel model = moving_sensor();
+    const SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 5.5}, {"order", 1.0}}, {});
+    const auto recording = recorded(sensor, 48000, 42, world_without_rests(4.0));
+    const auto baseline = baseline_of(recording, model);
+    const Hypotheses seen = examine(baseline, recording, 1, 1);
+    const Finding* found = of(seen, "lowpass");
+    ASSERT_NE(found, nullptr);
+    const auto nats = [&](const SensorModel& with) {
+        return log_likelihood_nats(Observation(baseline->with(with), recording, 1));
+    };
+    EXPECT_GT(nats(with_cause(model, *found)) - nats(sensor), -40.0) << "of 3e9";
+}
 
 // Samples taken at the wrong moment are off by the rate's change meanwhile: their variance goes with its
 // square. The gain is the expected one against the best even level, which the model's N holds back.
