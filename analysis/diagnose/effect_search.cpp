@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/diagnose/apparent_evidence.hpp"
+#include "analysis/diagnose/response_refit.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
@@ -21,6 +22,11 @@ constexpr std::size_t beginnings_most = 4;
 // A cause of such evidence changes everything that others are judged by.
 constexpr double huge_nats = 1e4;
 
+// Of what one response leaves, to fit it together with others.
+constexpr double worth_refitting_nats = 100.0;
+// Of responses, to fit them better than one by one.
+constexpr double worth_settling_nats = 1000.0;
+
 class Search {
 public:
     Search(const Hypotheses& first, std::shared_ptr<const Recording> recording, const SearchOptions& options)
@@ -31,6 +37,7 @@ public:
 
     std::optional<EffectSearchResult> run() {
         std::optional<Hypotheses> latest = with_first_cause();
+        if (latest && settle_responses()) { latest = with_causes(); }
         if (latest && !learn_apparent_evidence(*latest)) { return std::nullopt; }
         // A cause that others make needless may come back for ever.
         const std::size_t rounds_most = 2 * options_.causes_most;
@@ -39,8 +46,9 @@ public:
             const Finding* next = further(*latest);
             if (!freed && (next == nullptr || causes_.size() == options_.causes_most)) { break; }
             // What is next is not known before the noise is.
-            if (!freed) { causes_.push_back({*next, findings_of(*latest)}); }
+            if (!freed && !add_response(*latest, *next)) { causes_.push_back({*next, findings_of(*latest)}); }
             if (!told() || !refit()) { return std::nullopt; }
+            static_cast<void>(settle_responses());
             latest = with_causes();
         }
         return result_of(std::move(latest));
@@ -107,6 +115,72 @@ private:
             apparent_evidence_nats(with_first, options_.seed, options_.threads, [&] { return told(); });
         if (!apparent_nats) { return false; }
         apparent_nats_ = *std::move(apparent_nats);
+        return true;
+    }
+
+    bool is_fast_response(const Finding& finding) const {
+        return method_of(finding) == EvidenceMethod::response &&
+               !find_effect(finding.effect)->signature->slow;
+    }
+
+    // Of causes_, those that shape the motion.
+    std::vector<std::size_t> fast_responses() const {
+        std::vector<std::size_t> places;
+        for (std::size_t i = 0; first_.baseline->moves() && i < causes_.size(); ++i) {
+            if (is_fast_response(causes_[i].finding)) { places.push_back(i); }
+        }
+        return places;
+    }
+
+    // These and `more` fitted together, the other causes in the model.
+    ResponseRefit fitted_together(const std::vector<std::size_t>& places, const Finding* more) const {
+        SensorModel model = model_;
+        std::vector<Finding> together;
+        for (std::size_t i = 0; i < causes_.size(); ++i) {
+            if (std::ranges::count(places, i) != 0) {
+                together.push_back(causes_[i].finding);
+            } else {
+                model = with_cause(std::move(model), causes_[i].finding);
+            }
+        }
+        if (more != nullptr) { together.push_back(*more); }
+        return refit_responses(*first_.baseline->with(model), recording_, std::move(together), options_.seed);
+    }
+
+    // A response is fitted as if those that the model is uncertain of, the latency before all, stayed as they
+    // are without it. Where it changes much of the motion they do not. Whether parameters moved.
+    bool settle_responses() {
+        const std::vector<std::size_t> places = fast_responses();
+        double nats = 0.0;
+        for (const std::size_t i : places) { nats += causes_[i].finding.evidence_nats; }
+        if (places.empty() || nats < worth_settling_nats) { return false; }
+        const ResponseRefit refit = fitted_together(places, nullptr);
+        for (std::size_t i = 0; i < places.size(); ++i) { causes_[places[i]].finding = refit.findings[i]; }
+        return refit.moved;
+    }
+
+    // What a response leaves that was fitted without another one looks like noise, and like more of it than
+    // the other gains beside the first as it is. Takes the other if all fitted together do better than
+    // `next`.
+    bool add_response(const Hypotheses& latest, const Finding& next) {
+        const std::vector<std::size_t> places = fast_responses();
+        if (places.empty() || next.evidence_nats < worth_refitting_nats) { return false; }
+        const double before_nats = log_likelihood_nats(*latest.observation);
+        double best_nats = is_fast_response(next) ? -1e300 : next.evidence_nats;
+        std::vector<Finding> best;
+        for (const std::optional<Finding>& other : latest.findings) {
+            if (!other || !is_fast_response(*other) || !is_new(*other)) { continue; }
+            if (other->evidence_nats < options_.evidence_min_nats) { continue; }
+            ResponseRefit refit = fitted_together(places, &*other);
+            const double cost_nats = other->gain_nats - other->evidence_nats;
+            const double nats = refit.log_likelihood_nats - before_nats - cost_nats;
+            if (!(nats > best_nats)) { continue; }
+            best_nats = nats;
+            best = std::move(refit.findings);
+        }
+        if (best.empty()) { return false; }
+        for (std::size_t i = 0; i < places.size(); ++i) { causes_[places[i]].finding = best[i]; }
+        causes_.push_back({best.back(), findings_of(latest)});
         return true;
     }
 
@@ -239,7 +313,7 @@ private:
                        rival->evidence_nats >= options_.evidence_min_nats) {
                 causes_[i].finding = *rival;
             } else if (own_nats >= options_.evidence_min_nats) {
-                causes_[i].finding = fitted_again(i, *same);
+                causes_[i].finding = *same;
             } else {
                 causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(i));
                 continue;
@@ -254,27 +328,6 @@ private:
             if (!told()) { return false; }
         }
         return true;
-    }
-
-    // A response is fitted as if those that the model is uncertain of stayed as they are without it. Where it
-    // changes much of the motion they do not: parameters that are less likely with it in the model are not
-    // taken.
-    Finding fitted_again(std::size_t cause, const Finding& again) const {
-        const Finding& before = causes_[cause].finding;
-        if (method_of(again) != EvidenceMethod::response || again.effect != before.effect) { return again; }
-        const SensorModel others = model_with_all_but(cause);
-        const auto nats_with = [&](const Finding& finding) {
-            return log_likelihood_nats(
-                Observation(first_.baseline->with(with_cause(others, finding)), recording_, options_.seed));
-        };
-        if (nats_with(again) >= nats_with(before)) { return again; }
-        Finding kept = again;
-        kept.entries = before.entries;
-        kept.sd = before.sd;
-        kept.axis_gain_nats = before.axis_gain_nats;
-        kept.parameters = before.parameters;
-        kept.where = before.where;
-        return kept;
     }
 
     const Hypotheses& first_;

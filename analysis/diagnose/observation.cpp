@@ -17,6 +17,9 @@ namespace {
 constexpr std::uint32_t stand_in_stream = 0x03000000;
 constexpr std::uint32_t reference_stream = 0x05000000;
 
+// In motion, of the recording.
+constexpr double unknown_start_s = 0.1;
+
 // Calls take(slot, row) for every row on the grid.
 template <typename Take>
 void for_each_slot(const std::vector<Segment>& segments, std::int64_t origin, std::size_t length, Take take) {
@@ -216,8 +219,11 @@ Observation::Observation(std::shared_ptr<const Baseline> baseline, std::shared_p
                   [&](std::size_t slot, std::size_t row) { present_[slot] = judged[row]; });
     const TransformPool::Lease transform = baseline_->transform();
     for (const std::size_t axis : baseline_->axes()) { observe(axis, seed, *transform); }
+    // What moved before the recording began is not known, and a sensor that lags shows it.
+    const double unknown_s = baseline_->moves() ? unknown_start_s : 0.0;
     for (std::size_t slot = 0; slot < length; ++slot) {
-        present_[slot] = present_[slot] && has_slot(baseline_->half(), slot, length);
+        const bool known = static_cast<double>(slot) >= unknown_s * baseline_->rate_hz();
+        present_[slot] = present_[slot] && known && has_slot(baseline_->half(), slot, length);
     }
 }
 

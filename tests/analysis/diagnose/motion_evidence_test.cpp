@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -129,6 +130,26 @@ TEST(MotionEvidence, OfALowPassIsFittedAsWellAsTheTruth) {
         return log_likelihood_nats(Observation(baseline->with(with), recording, 1));
     };
     EXPECT_GT(nats(with_cause(model, *found)) - nats(sensor), -40.0) << "of 3e9";
+}
+
+// Fitted alone the low-pass takes most of the latency for its own, and leaves what looks like noise.
+TEST(MotionEvidence, OfALowPassAndALatencyIsBoth) {
+    const SensorModel model = moving_sensor();
+    SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 15.77}, {"order", 1.0}}, {});
+    sensor = with_effect(sensor, "latency", {{"delay_s", 0.002}}, {});
+    const auto recording = recorded(sensor, 48000, 43, world_without_rests());
+    const std::optional<EffectSearchResult> found =
+        search_effects(examine(baseline_of(recording, model), recording, 1, 2), recording, {});
+    ASSERT_TRUE(found);
+    std::map<std::string, double> values;
+    for (const FoundCause& cause : found->causes) {
+        for (const auto& [name, value] : cause.finding.entries.front().params) {
+            values[cause.finding.effect + '.' + name] = value;
+        }
+    }
+    EXPECT_EQ(found->causes.size(), 2U);
+    EXPECT_NEAR(values["lowpass.fc_hz"], 15.77, 0.2);
+    EXPECT_NEAR(values["latency.delay_s"], 0.002, 4e-4) << "stated to 1e-4 s";
 }
 
 // Samples taken at the wrong moment are off by the rate's change meanwhile: their variance goes with its
