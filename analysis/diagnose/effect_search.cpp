@@ -372,9 +372,4 @@ std::optional<EffectSearchResult> search_effects(const Hypotheses& first,
     return Search(first, recording, options).run();
 }
 
-SensorModel with_cause(SensorModel model, const Finding& finding) {
-    for (const EffectModel& entry : finding.entries) { model.effects.push_back(entry); }
-    return model;
-}
-
 }  // namespace gyrolog

@@ -53,7 +53,4 @@ std::optional<EffectSearchResult> search_effects(const Hypotheses& first,
                                                  const std::shared_ptr<const Recording>& recording,
                                                  const SearchOptions& options);
 
-// The model with one more cause.
-SensorModel with_cause(SensorModel model, const Finding& finding);
-
 }  // namespace gyrolog

@@ -45,6 +45,9 @@ struct Finding {
     Place where;
 };
 
+// The model with one more cause.
+SensorModel with_cause(SensorModel model, const Finding& finding);
+
 // A noise coefficient of the model that the recording has otherwise, now that the causes are in the model. In
 // SI units of the two-sided convention.
 struct SwallowedNoise {

@@ -21,6 +21,4 @@ constexpr bool has_slot(Half half, std::size_t slot, std::size_t length) {
     return half == Half::both || ((slot * half_parts / length) % 2 == 0) == (half == Half::first);
 }
 
-constexpr Half other_than(Half half) { return half == Half::first ? Half::second : Half::first; }
-
 }  // namespace gyrolog

@@ -56,8 +56,7 @@ public:
                                 std::size_t but) const {
         SensorModel model = baseline_->model();
         for (std::size_t i = 0; i < causes.size(); ++i) {
-            if (i == but || !causes[i]) { continue; }
-            model.effects.insert(model.effects.end(), causes[i]->entries.begin(), causes[i]->entries.end());
+            if (i != but && causes[i]) { model = with_cause(std::move(model), *causes[i]); }
         }
         const std::shared_ptr<const Baseline> with = baseline_->with(model);
         const MadeTest made = make_test(*find_effect(effect), with);

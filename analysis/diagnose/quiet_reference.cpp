@@ -27,31 +27,48 @@ struct Line {
     double variance;        // of the samples about it
 };
 
-// Through values[first] ... values[end - 1], seen at `middle`.
-Line line_through(const std::vector<double>& values, std::size_t first, std::size_t end, std::size_t middle) {
+// Of values[first] ... values[end - 1] as seen from `middle`, each with its weight.
+struct Sums {
     double n = 0.0;
-    double x_sum = 0.0;
-    double y_sum = 0.0;
+    double x = 0.0;
+    double y = 0.0;
     double xx = 0.0;
     double xy = 0.0;
     double yy = 0.0;
+
+    double x_scatter() const { return xx - x * x / n; }
+    double slope() const { return x_scatter() > 0.0 ? (xy - x * y / n) / x_scatter() : 0.0; }
+    // Of the line, in the middle.
+    double value() const { return (y - slope() * x) / n; }
+};
+
+template <typename Weight>
+Sums sums_about(const std::vector<double>& values, std::size_t first, std::size_t end, std::size_t middle,
+                Weight weight_at) {
+    Sums sums;
     for (std::size_t i = first; i < end; ++i) {
         const double x = static_cast<double>(i) - static_cast<double>(middle);
         const double y = values[i] - values[middle];
-        n += 1.0;
-        x_sum += x;
-        y_sum += y;
-        xx += x * x;
-        xy += x * y;
-        yy += y * y;
+        const double weight = weight_at(x);
+        sums.n += weight;
+        sums.x += weight * x;
+        sums.y += weight * y;
+        sums.xx += weight * x * x;
+        sums.xy += weight * x * y;
+        sums.yy += weight * y * y;
     }
-    const double x_scatter = xx - x_sum * x_sum / n;
-    const double slope = x_scatter > 0.0 ? (xy - x_sum * y_sum / n) / x_scatter : 0.0;
-    const double rest = std::max(0.0, yy - y_sum * y_sum / n - slope * slope * x_scatter);
+    return sums;
+}
+
+Line line_through(const std::vector<double>& values, std::size_t first, std::size_t end, std::size_t middle) {
+    const Sums sums = sums_about(values, first, end, middle, [](double) { return 1.0; });
+    const double x_scatter = sums.x_scatter();
+    const double slope = sums.slope();
+    const double rest = std::max(0.0, sums.yy - sums.y * sums.y / sums.n - slope * slope * x_scatter);
     const double slope_variance = x_scatter > 0.0 ? 1.0 / x_scatter : 0.0;
-    const double x_mean = x_sum / n;
-    return {values[middle] + (y_sum - slope * x_sum) / n, 1.0 / n + x_mean * x_mean * slope_variance, slope,
-            slope_variance, rest / std::max(n - 2.0, 1.0)};
+    const double x_mean = sums.x / sums.n;
+    return {values[middle] + sums.value(), 1.0 / sums.n + x_mean * x_mean * slope_variance, slope,
+            slope_variance, rest / std::max(sums.n - 2.0, 1.0)};
 }
 
 // In the middle of a line through the neighbours within `reach`, by Tukey's biweight. A filter without side
@@ -60,25 +77,11 @@ Line line_through(const std::vector<double>& values, std::size_t first, std::siz
 // not make up the noise again that was read.
 double smooth_line(const std::vector<double>& values, std::size_t first, std::size_t end, std::size_t middle,
                    std::size_t reach) {
-    double n = 0.0;
-    double x_sum = 0.0;
-    double y_sum = 0.0;
-    double xx = 0.0;
-    double xy = 0.0;
-    for (std::size_t i = first; i < end; ++i) {
-        const double x = static_cast<double>(i) - static_cast<double>(middle);
-        const double y = values[i] - values[middle];
+    const Sums sums = sums_about(values, first, end, middle, [&](double x) {
         const double share = x / static_cast<double>(reach + 1);
-        const double weight = (1.0 - share * share) * (1.0 - share * share);
-        n += weight;
-        x_sum += weight * x;
-        y_sum += weight * y;
-        xx += weight * x * x;
-        xy += weight * x * y;
-    }
-    const double x_scatter = xx - x_sum * x_sum / n;
-    const double slope = x_scatter > 0.0 ? (xy - x_sum * y_sum / n) / x_scatter : 0.0;
-    return values[middle] + (y_sum - slope * x_sum) / n;
+        return (1.0 - share * share) * (1.0 - share * share);
+    });
+    return values[middle] + sums.value();
 }
 
 // A table at rest turns at no rate at all, not at what is left of the noise: a sensor that does not follow

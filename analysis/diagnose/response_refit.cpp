@@ -43,9 +43,7 @@ bool can_be_simulated(const std::vector<Finding>& findings) {
 }
 
 SensorModel with_all(SensorModel model, const std::vector<Finding>& findings) {
-    for (const Finding& finding : findings) {
-        model.effects.insert(model.effects.end(), finding.entries.begin(), finding.entries.end());
-    }
+    for (const Finding& finding : findings) { model = with_cause(std::move(model), finding); }
     return model;
 }
 

@@ -12,7 +12,6 @@
 
 #include "analysis/diagnose/baseline.hpp"
 #include "analysis/diagnose/diagnosis.hpp"
-#include "analysis/diagnose/effect_search.hpp"
 #include "analysis/diagnose/means_model.hpp"
 #include "analysis/diagnose/swallowed_noise.hpp"
 #include "host/app/command.hpp"

@@ -50,7 +50,7 @@ TEST(CodeGrid, OfACoarserConverterIsFoundAxisByAxis) {
             EXPECT_EQ(finding->entries.front().axes, (std::vector<std::string>{"x", "z"}));
             EXPECT_NEAR(finding->entries.front().params.at("lsb_dps"), times * lsb_dps, 1e-6);
             EXPECT_EQ(finding->where.structure, "code_grid");
-            EXPECT_FALSE(steps(recording, with_found(model, *finding)));
+            EXPECT_FALSE(steps(recording, with_cause(model, *finding)));
         }
     }
 }

@@ -63,7 +63,7 @@ TEST(LagSlope, OfAClockThatTheStampsHideIsFound) {
         EXPECT_EQ(finding->entries.front().params.at("in_stamps"), 0.0);
         EXPECT_NEAR(finding->entries.front().params.at("rel"), rel, 5.0 * finding->sd.front().at("rel"));
         const auto left =
-            found(make_stamp_rate_test, "clock_rate", recording, with_found(sensor(), *finding));
+            found(make_stamp_rate_test, "clock_rate", recording, with_cause(sensor(), *finding));
         EXPECT_LT(evidence(left), 0.0);
     }
 }
@@ -83,8 +83,8 @@ TEST(LagSteps, OfLossesThatTheStampsHideAreFound) {
         // With the losses known, the samples stand where they belong: next to nothing of the misfit is left
         // (a step in the rest, or in the last second, cannot be placed to the sample).
         EXPECT_GT(misfit(recording, sensor()), 10.0);
-        EXPECT_LT(misfit(recording, with_found(sensor(), *finding)), 0.5);
-        EXPECT_FALSE(found(make_stamp_gap_test, "dropped", recording, with_found(sensor(), *finding)));
+        EXPECT_LT(misfit(recording, with_cause(sensor(), *finding)), 0.5);
+        EXPECT_FALSE(found(make_stamp_gap_test, "dropped", recording, with_cause(sensor(), *finding)));
     }
 }
 
@@ -116,7 +116,7 @@ TEST(TimingSpread, OfInstantsThatTheStampsHideIsFound) {
         EXPECT_EQ(finding->where.structure, "timestamp_jitter");
         EXPECT_EQ(finding->entries.front().params.at("in_stamps"), 0.0);
         EXPECT_NEAR(finding->entries.front().params.at("sd_s"), sd_s, 5.0 * finding->sd.front().at("sd_s"));
-        const auto baseline = baseline_of(recording, with_found(sensor(), *finding));
+        const auto baseline = baseline_of(recording, with_cause(sensor(), *finding));
         const Observation seen(baseline, recording, 1);
         EXPECT_GT(log_likelihood_nats(seen),
                   log_likelihood_nats(Observation(baseline_of(recording, sensor()), recording, 1)));

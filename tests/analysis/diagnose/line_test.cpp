@@ -98,7 +98,7 @@ TEST(LineTest, LeavesNothingOfALineThatIsAddedToTheModel) {
     ASSERT_EQ(finding->where.axes, std::vector<std::size_t>{1});
     EXPECT_GT(finding->evidence_nats, 500.0);
     EXPECT_NEAR(finding->entries.front().params.at("amplitude_dps"), 0.05, 0.002);
-    const auto again = found(make_line_test, "tone", recording, with_found(model, *finding));
+    const auto again = found(make_line_test, "tone", recording, with_cause(model, *finding));
     EXPECT_LT(evidence(again), 3.0);
 }
 
@@ -114,7 +114,7 @@ TEST(LineTest, LeavesNothingOfALineBesideAWrongClock) {
         ASSERT_TRUE(finding);
         EXPECT_NEAR(finding->entries.front().params.at("amplitude_dps"), 0.05, 0.002) << in_stamps;
         EXPECT_NEAR(finding->entries.front().params.at("f_hz"), 31.4, 1e-3) << in_stamps;
-        const auto again = found(make_line_test, "tone", recording, with_found(model, *finding));
+        const auto again = found(make_line_test, "tone", recording, with_cause(model, *finding));
         EXPECT_LT(evidence(again), 3.0) << in_stamps;
     }
 }
@@ -128,7 +128,7 @@ TEST(LineTest, TakesSeveralLinesOneAfterAnother) {
     const auto first = found(make_line_test, "tone", recording, model);
     ASSERT_TRUE(first);
     EXPECT_NEAR(first->entries.front().params.at("f_hz"), 12.0, 1e-3);
-    const auto second = found(make_line_test, "tone", recording, with_found(model, *first));
+    const auto second = found(make_line_test, "tone", recording, with_cause(model, *first));
     ASSERT_TRUE(second);
     EXPECT_NEAR(second->entries.front().params.at("f_hz"), 12.05, 1e-3);
     EXPECT_GT(second->evidence_nats, 100.0);

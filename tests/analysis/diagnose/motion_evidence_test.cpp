@@ -252,7 +252,7 @@ TEST(MotionEvidence, OfACeilingIsThePileOfSamplesBelowIt) {
     EXPECT_EQ(finding->where.axes, std::vector<std::size_t>{0});
     const double lsb_dps = model.lsb_rad_s * deg_per_rad;
     EXPECT_NEAR(finding->entries.front().params.at("limit_dps"), limit_dps, 0.5001 * lsb_dps);
-    EXPECT_LT(evidence(found(make_ceiling_test, "saturation", recording, with_found(model, *finding))), 0.0);
+    EXPECT_LT(evidence(found(make_ceiling_test, "saturation", recording, with_cause(model, *finding))), 0.0);
 }
 
 TEST(MotionEvidence, IsNotTakenFromClippedSamplesAndThreeOnEitherSide) {

@@ -53,10 +53,4 @@ inline double evidence(const std::optional<Finding>& finding) {
     return finding ? finding->evidence_nats : 0.0;
 }
 
-// The model with what was found.
-inline SensorModel with_found(SensorModel model, const Finding& finding) {
-    model.effects.insert(model.effects.end(), finding.entries.begin(), finding.entries.end());
-    return model;
-}
-
 }  // namespace gyrolog

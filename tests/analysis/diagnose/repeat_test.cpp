@@ -85,7 +85,7 @@ TEST(Repeats, ThatTheModelHasAreExplained) {
     const auto recording = recorded(with_effect(model, "stale", {{"eps", 0.05}}), ten_minutes, 8);
     const auto finding = repeats(recording, model);
     ASSERT_TRUE(finding);
-    EXPECT_LT(evidence(repeats(recording, with_found(model, *finding))), 0.0 + 1e-9);
+    EXPECT_LT(evidence(repeats(recording, with_cause(model, *finding))), 0.0 + 1e-9);
 }
 
 TEST(Repeats, OfADeadAxisAreNone) {

@@ -58,7 +58,7 @@ TEST(StampGaps, AreFoundWithTheirRateAndLength) {
                     4.0 * std::sqrt(6.0 * per_hour));  // Poisson, in a sixth of an hour
         EXPECT_LE(finding->entries.front().params.at("longest"), 12.0);
         EXPECT_EQ(finding->where.structure, "timestamp_gaps");
-        EXPECT_LT(evidence(gaps(recording, with_found(sensor(), *finding))), 0.0);
+        EXPECT_LT(evidence(gaps(recording, with_cause(sensor(), *finding))), 0.0);
     }
 }
 
@@ -92,7 +92,7 @@ TEST(StampRate, OffByMoreThanTheModelKnowsIsFound) {
         EXPECT_NEAR(finding->gain_nats, std::min(5000.0, 0.5 * std::pow(rel / 5e-5, 2.0)),
                     0.01 * finding->gain_nats);
         EXPECT_EQ(finding->where.structure, "timestamp_rate");
-        EXPECT_LT(evidence(rate(recording, with_found(sensor(), *finding))), 0.0);
+        EXPECT_LT(evidence(rate(recording, with_cause(sensor(), *finding))), 0.0);
     }
 }
 
@@ -155,7 +155,7 @@ TEST(StampSpread, BeyondTheModelsIsFound) {
         EXPECT_GT(finding->evidence_nats, 15.0) << sd_s;
         EXPECT_NEAR(finding->entries.front().params.at("sd_s"), sd_s, 4.0 * finding->sd.front().at("sd_s"));
         EXPECT_EQ(finding->where.structure, "timestamp_jitter");
-        EXPECT_LE(evidence(spread(recording, with_found(sensor(), *finding))), 0.0);
+        EXPECT_LE(evidence(spread(recording, with_cause(sensor(), *finding))), 0.0);
     }
 }
 

@@ -101,7 +101,7 @@ TEST(StepTest, FindsMomentHeightsAndAxes) {
     }
     ASSERT_TRUE(finding->where.time_s);
     EXPECT_NEAR(finding->where.time_s->from, 400.0, 1.0);
-    EXPECT_LT(evidence(found(make_step_test, "bias_step", recording, with_found(model, *finding))), 3.0);
+    EXPECT_LT(evidence(found(make_step_test, "bias_step", recording, with_cause(model, *finding))), 3.0);
 }
 
 // A sample on the wrong side would be an outlier of its own.

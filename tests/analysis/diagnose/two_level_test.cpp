@@ -125,7 +125,7 @@ TEST(TwoLevelTest, IsWorthMoreThanGaussMarkovNoiseWhereTheLevelsAreTwo) {
         EXPECT_NEAR(params.at("dwell_high_s"), 12.0, 4.0 * sd.at("dwell_high_s"));
         EXPECT_NEAR(params.at("dwell_low_s"), 5.0, 4.0 * sd.at("dwell_low_s"));
         EXPECT_LT(sd.at("dwell_high_s"), 4.0);
-        EXPECT_LT(evidence(found(make_two_level_test, "rtn", recording, with_found(model, *finding))), 3.0);
+        EXPECT_LT(evidence(found(make_two_level_test, "rtn", recording, with_cause(model, *finding))), 3.0);
     }
 }
 
