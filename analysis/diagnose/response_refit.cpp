@@ -67,9 +67,8 @@ public:
             const Eigen::VectorXd by = equations.A.completeOrthogonalDecomposition().solve(equations.b);
             if (!(0.5 * by.dot(equations.b) > settled_nats)) { break; }
             bool better = false;
-            double share = 1.0;
-            for (int i = 0; i < shortenings_most && !better; ++i, share *= 0.5) {
-                const std::vector<Finding> moved = moved_by(share * by);
+            for (int i = 0; i < shortenings_most && !better; ++i) {
+                const std::vector<Finding> moved = moved_by(std::ldexp(1.0, -i) * by);
                 if (!can_be_simulated(moved)) { continue; }
                 Observation there = observed(moved);
                 const double nats_there = log_likelihood_nats(there);

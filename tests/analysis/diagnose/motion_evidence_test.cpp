@@ -137,7 +137,7 @@ TEST(MotionEvidence, OfALowPassAndALatencyIsBoth) {
     const SensorModel model = moving_sensor();
     SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 15.77}, {"order", 1.0}}, {});
     sensor = with_effect(sensor, "latency", {{"delay_s", 0.002}}, {});
-    const auto recording = recorded(sensor, 48000, 43, world_without_rests());
+    const auto recording = recorded(sensor, 24000, 43, world_without_rests());
     const std::optional<EffectSearchResult> found =
         search_effects(examine(baseline_of(recording, model), recording, 1, 2), recording, {});
     ASSERT_TRUE(found);
