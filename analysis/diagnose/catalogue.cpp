@@ -65,12 +65,6 @@ std::string lacking(const EffectSignature& signature, const Baseline& baseline) 
     return {};
 }
 
-MadeTest made_by(EvidenceMethod method, const EffectDefinition& effect,
-                 const std::shared_ptr<const Baseline>& baseline) {
-    const auto* maker = std::ranges::find(makers, method, &MethodMaker::method);
-    return maker == std::end(makers) ? MadeTest{} : maker->make(effect, baseline);
-}
-
 }  // namespace
 
 EvidenceMethod evidence_method(const EffectSignature& signature, const Baseline& baseline) {
@@ -78,7 +72,9 @@ EvidenceMethod evidence_method(const EffectSignature& signature, const Baseline&
 }
 
 MadeTest make_test(const EffectDefinition& effect, const std::shared_ptr<const Baseline>& baseline) {
-    return made_by(evidence_method(*effect.signature, *baseline), effect, baseline);
+    const EvidenceMethod method = evidence_method(*effect.signature, *baseline);
+    const auto* maker = std::ranges::find(makers, method, &MethodMaker::method);
+    return maker == std::end(makers) ? MadeTest{} : maker->make(effect, baseline);
 }
 
 std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline,

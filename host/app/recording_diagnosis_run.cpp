@@ -69,6 +69,9 @@ std::vector<std::string> left_out(const SensorModel& of_samples, const SensorMod
 SensorModel corrected(SensorModel model, const Diagnosis& diagnosis) {
     model = with_noise(std::move(model), diagnosis.swallowed);
     for (const Cause& cause : diagnosis.causes) { model = with_cause(std::move(model), cause.finding); }
+    for (const std::size_t axis : diagnosis.axes) {
+        model.axes[axis].bias_rad_s = diagnosis.corrected.axes[axis].bias_rad_s;
+    }
     return model;
 }
 

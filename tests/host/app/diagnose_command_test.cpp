@@ -158,6 +158,7 @@ TEST_F(DiagnoseCommand, LooksAtMeans) {
     // What was found is for samples, not for means.
     EXPECT_EQ(read_model(corrected)->rate_hz, typical_mpu9250().rate_hz);
     EXPECT_EQ(read_model(corrected)->lsb_rad_s, typical_mpu9250().lsb_rad_s);
+    EXPECT_NEAR(read_model(corrected)->axes[0].bias_rad_s, mean_of(recording, "gx"), 1e-6);
     EXPECT_EQ(diagnose({recording, "--model", model, "--average", "3"}), ExitCode::failed);
     EXPECT_THAT(err.str(),
                 HasSubstr("in means of 3 samples it has 2000 samples; a diagnosis needs at least"));
