@@ -88,6 +88,19 @@ TEST_F(SimulatedCapture, HasTheCountsOfTheSimulationSampleBySample) {
     expect_same_counts(captured(), simulated);
 }
 
+TEST_F(SimulatedCapture, IsReadNoFurtherThanWanted) {
+    const Recording whole = captured();
+    auto capture = load_capture(folder.path("a.pcapng"), true, {}, 5000);
+    ASSERT_TRUE(capture.ok());
+    const auto beginning = capture->decoder->take_recording("a");
+    ASSERT_TRUE(beginning.ok());
+    ASSERT_GE(beginning->rows(), 5000U);
+    EXPECT_LT(beginning->rows(), 6000U);
+    for (std::size_t i = 0; i < beginning->rows(); ++i) {
+        ASSERT_EQ(beginning->find("gx")->value(i), whole.find("gx")->value(i)) << i;
+    }
+}
+
 TEST_F(SimulatedCapture, HasTheSimulationsHolesAndRate) {
     const Recording capture = captured();
     EXPECT_NEAR(capture.rate_hz, 200.0 * 1.002, 200.0 * 2e-6);  // stamps of 1 us over 2 min
