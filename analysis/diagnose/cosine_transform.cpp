@@ -22,61 +22,70 @@ std::size_t fast_length(std::size_t most) {
     return best;
 }
 
+template <typename Real>
 struct CosineTransform::Plan {
     explicit Plan(std::size_t length) : reordered(length), spectrum(length / 2 + 1), turn(length / 2 + 1) {
-        fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+        fft.SetFlag(Eigen::FFT<Real>::HalfSpectrum);
         for (std::size_t k = 0; k < turn.size(); ++k) {
             const double angle = -pi * static_cast<double>(k) / (2.0 * static_cast<double>(length));
-            turn[k] = {std::cos(angle), std::sin(angle)};
+            turn[k] = {static_cast<Real>(std::cos(angle)), static_cast<Real>(std::sin(angle))};
         }
     }
 
-    Eigen::FFT<double> fft;
-    std::vector<double> reordered;
-    std::vector<std::complex<double>> spectrum;
-    std::vector<std::complex<double>> turn;  // exp(-i pi k / 2n)
+    std::size_t length() const { return reordered.size(); }
+
+    void forward(std::span<Real> values) {
+        const std::size_t n = length();
+        for (std::size_t i = 0; i < n / 2; ++i) {
+            reordered[i] = values[2 * i];
+            reordered[n - 1 - i] = values[2 * i + 1];
+        }
+        fft.fwd(spectrum.data(), reordered.data(), static_cast<Eigen::Index>(n));
+        // turn_k V_k = (C_k - i C_{n-k}) / 1, C_k = sum x cos(...): both halves from one product.
+        const Real scale = std::sqrt(Real{2} / static_cast<Real>(n));
+        values[0] = spectrum[0].real() / std::sqrt(static_cast<Real>(n));
+        for (std::size_t k = 1; k <= n / 2; ++k) {
+            const std::complex<Real> c = turn[k] * spectrum[k];
+            values[n - k] = -scale * c.imag();
+            values[k] = scale * c.real();
+        }
+    }
+
+    void inverse(std::span<Real> values) {
+        const std::size_t n = length();
+        const Real scale = std::sqrt(static_cast<Real>(n) / Real{2});
+        spectrum[0] = values[0] * std::sqrt(static_cast<Real>(n));
+        for (std::size_t k = 1; k <= n / 2; ++k) {
+            const std::complex<Real> c(scale * values[k], -scale * values[n - k]);
+            spectrum[k] = std::conj(turn[k]) * c;
+        }
+        spectrum[n / 2].imag(Real{0});
+        fft.inv(reordered.data(), spectrum.data(), static_cast<Eigen::Index>(n));
+        for (std::size_t i = 0; i < n / 2; ++i) {
+            values[2 * i] = reordered[i];
+            values[2 * i + 1] = reordered[n - 1 - i];
+        }
+    }
+
+    Eigen::FFT<Real> fft;
+    std::vector<Real> reordered;
+    std::vector<std::complex<Real>> spectrum;
+    std::vector<std::complex<Real>> turn;  // exp(-i pi k / 2n)
 };
 
-CosineTransform::CosineTransform(std::size_t length) : plan_(std::make_unique<Plan>(length)) {}
+CosineTransform::CosineTransform(std::size_t length) : plan_(std::make_unique<Plan<double>>(length)) {}
 CosineTransform::~CosineTransform() = default;
 CosineTransform::CosineTransform(CosineTransform&&) noexcept = default;
 CosineTransform& CosineTransform::operator=(CosineTransform&&) noexcept = default;
 
-std::size_t CosineTransform::length() const { return plan_->reordered.size(); }
+std::size_t CosineTransform::length() const { return plan_->length(); }
 
-void CosineTransform::forward(std::span<double> values) {
-    const std::size_t n = length();
-    std::vector<double>& v = plan_->reordered;
-    for (std::size_t i = 0; i < n / 2; ++i) {
-        v[i] = values[2 * i];
-        v[n - 1 - i] = values[2 * i + 1];
-    }
-    plan_->fft.fwd(plan_->spectrum.data(), v.data(), static_cast<Eigen::Index>(n));
-    // turn_k V_k = (C_k - i C_{n-k}) / 1, C_k = sum x cos(...): both halves from one product.
-    const double scale = std::sqrt(2.0 / static_cast<double>(n));
-    values[0] = plan_->spectrum[0].real() / std::sqrt(static_cast<double>(n));
-    for (std::size_t k = 1; k <= n / 2; ++k) {
-        const std::complex<double> c = plan_->turn[k] * plan_->spectrum[k];
-        values[n - k] = -scale * c.imag();
-        values[k] = scale * c.real();
-    }
-}
+void CosineTransform::forward(std::span<double> values) { plan_->forward(values); }
+void CosineTransform::inverse(std::span<double> values) { plan_->inverse(values); }
 
-void CosineTransform::inverse(std::span<double> values) {
-    const std::size_t n = length();
-    const double scale = std::sqrt(static_cast<double>(n) / 2.0);
-    plan_->spectrum[0] = values[0] * std::sqrt(static_cast<double>(n));
-    for (std::size_t k = 1; k <= n / 2; ++k) {
-        const std::complex<double> c(scale * values[k], -scale * values[n - k]);
-        plan_->spectrum[k] = std::conj(plan_->turn[k]) * c;
-    }
-    plan_->spectrum[n / 2].imag(0.0);
-    std::vector<double>& v = plan_->reordered;
-    plan_->fft.inv(v.data(), plan_->spectrum.data(), static_cast<Eigen::Index>(n));
-    for (std::size_t i = 0; i < n / 2; ++i) {
-        values[2 * i] = v[i];
-        values[2 * i + 1] = v[n - 1 - i];
-    }
+void CosineTransform::inverse(std::span<float> values) {
+    if (!float_plan_) { float_plan_ = std::make_unique<Plan<float>>(length()); }
+    float_plan_->inverse(values);
 }
 
 TransformPool::Lease TransformPool::lease() {

@@ -1,6 +1,8 @@
 #include "analysis/diagnose/gap_curves.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "analysis/diagnose/structure_curves.hpp"
@@ -9,6 +11,7 @@ namespace gyrolog {
 
 namespace {
 
+constexpr std::size_t allan_places = 8;
 constexpr std::size_t course_blocks = 32;
 constexpr double bands_per_octave = 3.0;
 constexpr std::size_t value_bins = 12;
@@ -50,6 +53,12 @@ GapCurve spectrum_curve(const Observation& observation, std::size_t axis) {
     return curve;
 }
 
+void keep_every_second(std::vector<double>& values) {
+    const std::size_t kept = (values.size() + 1) / 2;
+    for (std::size_t i = 0; i < kept; ++i) { values[i] = values[2 * i]; }
+    values.resize(kept);
+}
+
 GapCurve allan_curve(const Observation& observation, std::size_t axis) {
     const Baseline& baseline = observation.baseline();
     const std::vector<float>& residual = observation.axis(axis).residual_rad_s;
@@ -58,16 +67,22 @@ GapCurve allan_curve(const Observation& observation, std::size_t axis) {
         integral[i + 1] = integral[i] + static_cast<double>(residual[i]);
     }
     GapCurve curve{GapDomainKind::allan, axis, axis, {}, {}};
+    std::size_t stride = 1;
     for (std::size_t m = 1; 4 * m <= residual.size(); m *= 2) {
-        double sum = 0.0;
-        const std::size_t stride = std::max<std::size_t>(1, m / 8);
-        std::size_t count = 0;
-        for (std::size_t i = 0; i + 2 * m < integral.size(); i += stride, ++count) {
-            sum += square(integral[i + 2 * m] - 2.0 * integral[i + m] + integral[i]);
+        // Eight places within one averaging time tell nearly as much as all.
+        if (m / allan_places > stride) {
+            stride = m / allan_places;
+            keep_every_second(integral);
         }
+        const auto within = static_cast<Eigen::Index>(m / stride);
+        const Eigen::Map<const Eigen::ArrayXd> sums(integral.data(),
+                                                    static_cast<Eigen::Index>(integral.size()));
+        const Eigen::Index count = sums.size() - 2 * within;
+        const double squares =
+            (sums.tail(count) - 2.0 * sums.segment(within, count) + sums.head(count)).square().sum();
         const auto span = static_cast<double>(m);
         curve.x.push_back(span / baseline.rate_hz());
-        curve.value.push_back(0.5 * std::log(sum / (2.0 * static_cast<double>(count) * span * span)));
+        curve.value.push_back(0.5 * std::log(squares / (2.0 * static_cast<double>(count) * span * span)));
     }
     return curve;
 }
@@ -104,12 +119,27 @@ GapCurve amplitude_curve(const Observation& observation, std::size_t axis) {
     double skewness = 0.0;
     double count = 0.0;
     const std::vector<float>& white = observation.axis(axis).whitened;
-    for (std::size_t slot = 0; slot < white.size(); ++slot) {
-        if (!observation.present()[slot]) { continue; }
-        const auto value = static_cast<double>(white[slot]);
-        count += 1.0;
-        skewness += value * value * value;
-        for (std::size_t i = 0; i < beyond.size() && std::fabs(value) > curve.x[i]; ++i) { beyond[i] += 1.0; }
+    // Counted one threshold after the other, with the samples near at hand: no branch depends on their
+    // values.
+    constexpr std::size_t piece = 1024;
+    std::array<float, piece> values{};
+    for (std::size_t first = 0; first < white.size(); first += piece) {
+        std::size_t known = 0;
+        for (std::size_t slot = first; slot < std::min(first + piece, white.size()); ++slot) {
+            values[known] = white[slot];
+            known += std::size_t{observation.present()[slot]};
+        }
+        for (std::size_t i = 0; i < known; ++i) {
+            const auto value = static_cast<double>(values[i]);
+            skewness += value * value * value;
+        }
+        for (std::size_t s = 0; s < beyond.size(); ++s) {
+            const auto least = static_cast<float>(curve.x[s]);
+            int more = 0;
+            for (std::size_t i = 0; i < known; ++i) { more += std::fabs(values[i]) > least ? 1 : 0; }
+            beyond[s] += static_cast<double>(more);
+        }
+        count += static_cast<double>(known);
     }
     for (const double number : beyond) { curve.value.push_back(2.0 * std::sqrt(number + 0.375)); }
     curve.x.push_back(0.0);
@@ -171,6 +201,10 @@ bool varies(const std::vector<float>& values) {
     return most > least;
 }
 
+Eigen::Map<const Eigen::ArrayXf> cosines(const AxisObservation& seen) {
+    return {seen.cosines.data(), static_cast<Eigen::Index>(seen.cosines.size())};
+}
+
 GapCurve correlation_curve(const Observation& observation, std::size_t axis, std::size_t other) {
     const SpectralBins& bins = observation.baseline().bins();
     const AxisObservation& a = observation.axis(axis);
@@ -178,18 +212,14 @@ GapCurve correlation_curve(const Observation& observation, std::size_t axis, std
     const std::vector<std::size_t> edges = band_edges(bins);
     GapCurve curve{GapDomainKind::cross_axis, axis, other, {}, {}};
     for (std::size_t band = 0; band + 1 < edges.size(); ++band) {
-        double product = 0.0;
-        double squares_a = 0.0;
-        double squares_b = 0.0;
-        double count = 0.0;
-        for (std::size_t i = edges[band]; i < edges[band + 1]; ++i) {
-            for (std::size_t k = bins[i].first; k < bins[i].end; ++k) {
-                product += static_cast<double>(a.cosines[k]) * static_cast<double>(b.cosines[k]);
-                squares_a += square(static_cast<double>(a.cosines[k]));
-                squares_b += square(static_cast<double>(b.cosines[k]));
-                count += 1.0;
-            }
-        }
+        const auto first = static_cast<Eigen::Index>(bins[edges[band]].first);
+        const auto size = static_cast<Eigen::Index>(bins[edges[band + 1] - 1].end) - first;
+        const auto of_a = cosines(a).segment(first, size).cast<double>();
+        const auto of_b = cosines(b).segment(first, size).cast<double>();
+        const double squares_a = of_a.square().sum();
+        const double squares_b = of_b.square().sum();
+        const double product = (of_a * of_b).sum();
+        const auto count = static_cast<double>(size);
         if (count < 8.0) { continue; }
         curve.x.push_back(std::sqrt(bins[edges[band]].f_hz * bins[edges[band + 1] - 1].f_hz));
         curve.value.push_back(product / std::sqrt(std::max(squares_a * squares_b, 1e-300)) *

@@ -287,7 +287,6 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     fill();
     fit_model(axis, transform);
     const UncertainMean& uncertain = baseline.uncertain(axis);
-    std::vector<double> work(length);
     if (!uncertain.empty()) {
         // What stands in for a sample follows the motion as the samples do.
         const bool whole = std::ranges::find(present_, false) == present_.end();
@@ -299,21 +298,21 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
             fit_model(axis, transform);
         }
         take_off(uncertain, seen.uncertain_fit, seen.cosines);
-        std::copy(seen.cosines.begin(), seen.cosines.end(), work.begin());
+        std::vector<double> work(seen.cosines.begin(), seen.cosines.end());
         transform.inverse(work);
         residual.assign(work.begin(), work.end());
     }
-    std::copy(seen.cosines.begin(), seen.cosines.end(), work.begin());
+    seen.whitened.resize(length);
+    seen.whitened[0] = 0.0F;
     const SpectralBins& bins = baseline.bins();
     for (std::size_t i = 0; i < bins.size(); ++i) {
-        const double scale = 1.0 / std::sqrt(seen.density[i] * rate_hz);
+        const auto scale = static_cast<float>(1.0 / std::sqrt(seen.density[i] * rate_hz));
         // Coefficients of which the half has no bin go with the next one's.
         const std::size_t first = i == 0 ? 1 : bins[i - 1].end;
         const std::size_t end = i + 1 == bins.size() ? length : bins[i].end;
-        for (std::size_t k = first; k < end; ++k) { work[k] *= scale; }
+        for (std::size_t k = first; k < end; ++k) { seen.whitened[k] = seen.cosines[k] * scale; }
     }
-    transform.inverse(work);
-    seen.whitened.assign(work.begin(), work.end());
+    transform.inverse(std::span<float>(seen.whitened));
     even_out(baseline, axis, seen.whitened);
 }
 

@@ -30,6 +30,16 @@ void mark(const Column& column, const Recording& recording, std::size_t lag, std
         column.data);
 }
 
+// Neighbours often have the same pattern; two tables, in turns, do not wait for each other.
+void count_rows(const std::vector<std::uint8_t>& patterns, std::size_t from, std::size_t end,
+                PatternCounts& counts) {
+    std::array<std::array<std::size_t, repeat_patterns>, 2> tables{};
+    for (std::size_t row = from; row < end; ++row) { ++tables[row % 2][patterns[row]]; }
+    for (std::size_t pattern = 0; pattern < repeat_patterns; ++pattern) {
+        counts[pattern] += static_cast<double>(tables[0][pattern] + tables[1][pattern]);
+    }
+}
+
 using Chances = std::array<double, repeat_quantities_max>;
 
 // Probability of the quantities outside of `left_out` by chance.
@@ -114,9 +124,15 @@ std::vector<PatternCounts> count_patterns(const Recording& recording,
     std::vector<std::uint8_t> patterns(recording.rows(), 0);
     for (std::size_t c = 0; c < quantities.size(); ++c) { mark(*quantities[c], recording, lag, c, patterns); }
     std::vector<PatternCounts> counts(blocks);
+    const auto block_of = [&](std::size_t row) { return row * blocks / patterns.size(); };
     for (const Segment& segment : recording.segments) {
-        for (std::size_t row = segment.first + lag; row < segment.first + segment.count; ++row) {
-            counts[row * blocks / patterns.size()][patterns[row]] += 1.0;
+        const std::size_t end = segment.first + segment.count;
+        for (std::size_t row = segment.first + lag; row < end;) {
+            const std::size_t block = block_of(row);
+            // The first row of the next block.
+            const std::size_t next = ((block + 1) * patterns.size() + blocks - 1) / blocks;
+            count_rows(patterns, row, std::min(end, next), counts[block]);
+            row = next;
         }
     }
     return counts;

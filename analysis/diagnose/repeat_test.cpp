@@ -25,28 +25,41 @@ constexpr double steps_min = 100.0;
 
 struct Quantities {
     std::vector<const Column*> columns;
-    std::vector<std::size_t> axes;  // of the first columns; a last one more is the temperature
+    std::vector<std::size_t> axes;       // of the first columns; a last one more is the temperature
+    std::vector<double> repeated_apart;  // by column, the share of rows that repeat the one before the last
 
     bool has_temperature() const { return columns.size() > axes.size(); }
     std::size_t temperature_bit() const { return has_temperature() ? std::size_t{1} << axes.size() : 0; }
 };
 
-double repeated_share(const Column& column, const Recording& recording, std::size_t lag) {
-    const auto counts = count_patterns(recording, {&column}, lag, 1);
-    return count_containing(counts.front(), 1) / std::max(1.0, count_all(counts.front()));
+std::vector<PatternCounts> in_one_block(const std::vector<PatternCounts>& blocks) {
+    PatternCounts all{};
+    for (const PatternCounts& counts : blocks) {
+        for (std::size_t pattern = 0; pattern < counts.size(); ++pattern) { all[pattern] += counts[pattern]; }
+    }
+    return {all};
 }
 
-Quantities moving_quantities(const Recording& recording, const Baseline& baseline) {
-    Quantities moving;
+Quantities all_quantities(const Recording& recording, const Baseline& baseline) {
+    Quantities all;
     for (const std::size_t axis : baseline.axes()) {
-        const Column* column = recording.find(gyro_columns[axis]);
-        if (repeated_share(*column, recording, 2) > frozen_share) { continue; }
-        moving.columns.push_back(column);
-        moving.axes.push_back(axis);
+        all.columns.push_back(recording.find(gyro_columns[axis]));
+        all.axes.push_back(axis);
     }
-    const Column* temperature = recording.find("temp");
-    if (temperature != nullptr && repeated_share(*temperature, recording, 2) < frozen_share) {
-        moving.columns.push_back(temperature);
+    if (const Column* temperature = recording.find("temp")) { all.columns.push_back(temperature); }
+    return all;
+}
+
+// Of `all`, whose patterns over two rows are `apart`, those that carry news.
+Quantities moving_quantities(const Quantities& all, const std::vector<PatternCounts>& apart) {
+    const PatternCounts counts = in_one_block(apart).front();
+    Quantities moving;
+    for (std::size_t c = 0; c < all.columns.size(); ++c) {
+        const double share = count_containing(counts, std::size_t{1} << c) / std::max(1.0, count_all(counts));
+        if (share > frozen_share) { continue; }
+        moving.columns.push_back(all.columns[c]);
+        moving.repeated_apart.push_back(share);
+        if (c < all.axes.size()) { moving.axes.push_back(all.axes[c]); }
     }
     return moving;
 }
@@ -61,14 +74,6 @@ struct Excess {
 
 double eps_sd(double eps, double rows) { return std::sqrt(std::max(eps, 1.0 / rows) / rows); }
 
-std::vector<PatternCounts> in_one_block(const std::vector<PatternCounts>& blocks) {
-    PatternCounts all{};
-    for (const PatternCounts& counts : blocks) {
-        for (std::size_t pattern = 0; pattern < counts.size(); ++pattern) { all[pattern] += counts[pattern]; }
-    }
-    return {all};
-}
-
 class RepeatTest final : public EffectTest {
 public:
     RepeatTest(const EffectDefinition& effect, std::shared_ptr<const Baseline> baseline)
@@ -76,12 +81,16 @@ public:
 
     std::optional<Finding> find(const Observation& observation) const override {
         const Recording& recording = observation.recording();
-        const Quantities moving = moving_quantities(recording, *baseline_);
-        if (moving.axes.empty()) { return std::nullopt; }
-        std::size_t looked_at = 0;
+        const Quantities all = all_quantities(recording, *baseline_);
         const std::size_t blocks = std::clamp<std::size_t>(recording.rows() / block_rows, 1, blocks_max);
+        std::vector<PatternCounts> apart = count_patterns(recording, all.columns, 2, blocks);
+        const Quantities moving = moving_quantities(all, apart);
+        if (moving.axes.empty()) { return std::nullopt; }
+        if (moving.columns.size() < all.columns.size()) {
+            apart = count_patterns(recording, moving.columns, 2, blocks);
+        }
+        std::size_t looked_at = 0;
         const std::vector<PatternCounts> near = count_patterns(recording, moving.columns, 1, blocks);
-        const std::vector<PatternCounts> apart = count_patterns(recording, moving.columns, 2, blocks);
         const std::optional<Excess> best =
             best_set(recording, moving, in_one_block(near), in_one_block(apart), looked_at);
         if (!best) { return std::nullopt; }
@@ -181,7 +190,7 @@ Steps count_steps(const Column& column, const Recording& recording, double code)
                     steps.all += 1.0;
                     const double step =
                         std::fabs(static_cast<double>(data[row]) - static_cast<double>(data[row - 1]));
-                    const double codes = code > 0.0 ? std::round(step / code) : step == 0.0 ? 0.0 : 3.0;
+                    const double codes = code > 0.0 ? step / code + 0.5 : step == 0.0 ? 0.0 : 3.0;
                     if (codes < 3.0) { steps.of_codes[static_cast<std::size_t>(codes)] += 1.0; }
                 }
             }
@@ -204,7 +213,7 @@ Excess RepeatTest::alone(const Recording& recording, const Quantities& moving, s
     const double share = steps.of_codes[0] / steps.all;
     const double of_one = 0.5 * steps.of_codes[1];
     const double of_two = 0.5 * steps.of_codes[2];
-    double chance = std::max(repeated_share(column, recording, 2), 1.0 / steps.all);
+    double chance = std::max(moving.repeated_apart[c], 1.0 / steps.all);
     double chance_sd_rel = smoothness_rel;
     if (of_two > steps_min) {
         chance = std::pow(of_one / steps.all, 4.0 / 3.0) / std::pow(of_two / steps.all, 1.0 / 3.0);

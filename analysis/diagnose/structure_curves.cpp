@@ -38,22 +38,25 @@ double square(double value) { return value * value; }
 using RepeatCounts = std::array<double, repeat_lags + compared_lags>;  // by lag, from 1 on
 
 RepeatCounts count_repeats(const Recording& recording, std::size_t axis) {
-    RepeatCounts counts{};
+    std::array<std::size_t, repeat_lags + compared_lags> repeats{};
     std::visit(
         [&](const auto& data) {
             const ValueRange range(data);
             for (const Segment& segment : recording.segments) {
-                for (std::size_t lag = 1; lag <= counts.size() && lag < segment.count; ++lag) {
-                    std::size_t count = 0;
-                    for (std::size_t row = segment.first + lag; row < segment.first + segment.count; ++row) {
-                        const bool repeats = data[row] == data[row - lag] && !range.ends_at(data[row]);
-                        count += std::size_t{repeats};
+                const std::size_t end = segment.first + segment.count;
+                for (std::size_t row = segment.first + 1; row < end; ++row) {
+                    const auto value = data[row];
+                    const bool counts_here = !range.ends_at(value);
+                    const std::size_t lags = std::min(repeats.size(), row - segment.first);
+                    for (std::size_t lag = 1; lag <= lags; ++lag) {
+                        repeats[lag - 1] += std::size_t{counts_here && data[row - lag] == value};
                     }
-                    counts[lag - 1] += static_cast<double>(count);
                 }
             }
         },
         recording.find(gyro_columns.at(axis))->data);
+    RepeatCounts counts{};
+    std::ranges::copy(repeats, counts.begin());
     return counts;
 }
 
@@ -124,22 +127,24 @@ GapCurve period_curve(const Observation& observation, std::size_t axis) {
     const AxisObservation& seen = observation.axis(axis);
     // The inverse transform of the whitened power is its autocorrelation, half a sample beside the whole
     // lags: two neighbours together are the one at the lag between them, seen through a slight low-pass.
-    std::vector<double> correlation(seen.cosines.size(), 0.0);
+    std::vector<float> correlation(seen.cosines.size(), 0.0F);
     for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
         const double expected = seen.density[i] * baseline.rate_hz();
         for (std::size_t k = std::max<std::size_t>(baseline.bins()[i].first, 1); k < baseline.bins()[i].end;
              ++k) {
             const double power = square(static_cast<double>(seen.cosines[k])) / expected;
-            correlation[k] = std::min(power, power_most) - 1.0;
+            correlation[k] = static_cast<float>(std::min(power, power_most) - 1.0);
         }
     }
-    baseline.transform()->inverse(correlation);
+    baseline.transform()->inverse(std::span<float>(correlation));
     for (std::size_t lag = correlation.size() - 1; lag > 0; --lag) {
         correlation[lag] += correlation[lag - 1];
     }
     const std::size_t lags = correlation.size() / 2;
     double squares = 0.0;
-    for (std::size_t lag = period_least; lag < lags; ++lag) { squares += square(correlation[lag]); }
+    for (std::size_t lag = period_least; lag < lags; ++lag) {
+        squares += square(static_cast<double>(correlation[lag]));
+    }
     const double sd = std::sqrt(squares / static_cast<double>(lags - period_least));
     GapCurve curve{GapDomainKind::period, axis, axis, {}, {}};
     for (std::size_t from = period_least; from < period_most; from *= 2) {
@@ -149,7 +154,7 @@ GapCurve period_curve(const Observation& observation, std::size_t axis) {
             double sum = 0.0;
             double multiples = 0.0;
             for (std::size_t lag = period; lag < lags; lag += period) {
-                sum += correlation[lag];
+                sum += static_cast<double>(correlation[lag]);
                 multiples += 1.0;
             }
             most = std::max(most, sum / std::sqrt(multiples));
@@ -238,15 +243,24 @@ namespace {
 std::vector<double> count_codes(const Recording& recording, std::size_t axis, double lsb_rad_s) {
     constexpr double codes_most = 1 << 20;
     const Column& column = *recording.find(gyro_columns.at(axis));
-    std::vector<double> codes(recording.rows());
-    for (std::size_t row = 0; row < codes.size(); ++row) {
-        codes[row] = std::round(column.value(row) / lsb_rad_s);
-    }
-    const auto [least, most] = std::ranges::minmax_element(codes);
-    if (codes.empty() || *most - *least > codes_most) { return {}; }
-    std::vector<double> counts(static_cast<std::size_t>(*most - *least) + 1, 0.0);
-    for (const double code : codes) { counts[static_cast<std::size_t>(code - *least)] += 1.0; }
-    return counts;
+    const double codes_per_number = column.scale / lsb_rad_s;
+    return std::visit(
+        [&](const auto& data) -> std::vector<double> {
+            if (data.empty()) { return {}; }
+            const auto [least, most] = std::ranges::minmax(data);
+            const double one_end = static_cast<double>(least) * codes_per_number;
+            const double other_end = static_cast<double>(most) * codes_per_number;
+            const double first = std::round(std::min(one_end, other_end));
+            const double codes = std::round(std::max(one_end, other_end)) - first;
+            if (codes > codes_most) { return {}; }
+            std::vector<double> counts(static_cast<std::size_t>(codes) + 1, 0.0);
+            for (const auto number : data) {
+                const double code = static_cast<double>(number) * codes_per_number - first;
+                counts[static_cast<std::size_t>(std::max(code + 0.5, 0.0))] += 1.0;
+            }
+            return counts;
+        },
+        column.data);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "analysis/diagnose/cosine_transform.hpp"
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -49,6 +50,17 @@ TEST(CosineTransform, IsUndoneByItsInverse) {
     transform.forward(y);
     transform.inverse(y);
     for (std::size_t i = 0; i < x.size(); ++i) { ASSERT_NEAR(x[i], y[i], 1e-11) << i; }
+}
+
+TEST(CosineTransform, IsUndoneInSingleNumbersAsInDoubleOnes) {
+    std::vector<double> y = noise(90000);
+    std::vector<float> in_single(y.begin(), y.end());
+    CosineTransform transform(y.size());
+    transform.inverse(y);
+    transform.inverse(std::span<float>(in_single));
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        ASSERT_NEAR(static_cast<double>(in_single[i]), y[i], 5e-6) << i;
+    }
 }
 
 TEST(CosineTransform, HasFastLengthsThatLoseLittle) {
