@@ -61,7 +61,7 @@ private:
         if (!free_axes_.empty()) {
             model_ = first_.baseline->model();
             if (!causes_.empty()) {
-                result.swallowed = fitted_noise(*latest->observation, free_axes_);
+                result.swallowed = fitted_noise(*latest->observation, model_, free_axes_);
                 model_ = with_noise(std::move(model_), result.swallowed);
             }
             latest = with_causes();
@@ -294,7 +294,7 @@ private:
             free_axes_.push_back(axis);
             more = true;
         }
-        if (more) { model_ = with_free_noise(std::move(model_), free_axes_); }
+        if (more) { model_ = with_free_noise(std::move(model_), with_causes, free_axes_); }
         return more;
     }
 

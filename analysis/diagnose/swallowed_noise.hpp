@@ -13,11 +13,12 @@ namespace gyrolog {
 // The axes on which less B or K than the model states, beyond its uncertainty, is called for.
 std::vector<std::size_t> axes_with_swallowed_noise(const Observation& observation);
 
-// N, B and K of the axes as unknown as can be: what is fitted under this model is fitted with them.
-SensorModel with_free_noise(SensorModel model, const std::vector<std::size_t>& axes);
+// The model with N, B and K of the axes as unknown as can be: what is fitted under it is fitted with them.
+// Every sensor has white noise; where the model states none it is some of what is seen.
+SensorModel with_free_noise(SensorModel model, const Observation& seen, const std::vector<std::size_t>& axes);
 
-// What an observation under a model with_free_noise() has them at.
-std::vector<SwallowedNoise> fitted_noise(const Observation& observation,
+// What an observation under a model with_free_noise() has them at, where `stated` has others.
+std::vector<SwallowedNoise> fitted_noise(const Observation& observation, const SensorModel& stated,
                                          const std::vector<std::size_t>& axes);
 SensorModel with_noise(SensorModel model, const std::vector<SwallowedNoise>& noise);
 

@@ -60,8 +60,8 @@ TEST(SwallowedNoise, SetFreeComesToWhatTheSensorHas) {
     SensorModel model = sensor;
     model.axes[2].noise.B_rad_per_s *= 4.0;
     const std::vector<std::size_t> axes = {2};
-    const std::vector<SwallowedNoise> fitted =
-        fitted_noise(observed(recording, with_free_noise(model, axes)), axes);
+    const std::vector<SwallowedNoise> fitted = fitted_noise(
+        observed(recording, with_free_noise(model, observed(recording, model), axes)), model, axes);
     ASSERT_EQ(fitted.size(), 3U);
     const NoiseCoefficients& truth = sensor.axes[2].noise;
     const std::vector<double> true_values = {truth.N_rad_per_sqrt_s, truth.B_rad_per_s,
@@ -79,6 +79,31 @@ TEST(SwallowedNoise, SetFreeComesToWhatTheSensorHas) {
 }
 
 // Held to the model's B, telegraph noise comes out too small, and what is simulated with it too noisy.
+// As a fit may state it that took all for flicker noise: a sensor without white noise is none.
+TEST(SwallowedNoise, MayBeAllThatThereIs) {
+    const SensorModel sensor = calibrated_sensor();
+    const auto recording = recorded(sensor, samples, 33);
+    SensorModel model = sensor;
+    NoiseCoefficients& stated = model.axes[1].noise;
+    stated = {};
+    stated.B_rad_per_s = 0.05 * rad_per_deg;
+    model.axes[1].sd_rel = {{"N", 1.0}, {"B", 0.02}, {"K", 1.0}};
+    const Observation seen = observed(recording, model);
+    const std::vector<std::size_t> axes = {1};
+    ASSERT_EQ(axes_with_swallowed_noise(seen), axes);
+    const std::vector<SwallowedNoise> fitted =
+        fitted_noise(observed(recording, with_free_noise(model, seen, axes)), model, axes);
+    ASSERT_EQ(fitted.size(), 3U);
+    const NoiseCoefficients& truth = sensor.axes[1].noise;
+    const std::vector<double> true_values = {truth.N_rad_per_sqrt_s, truth.B_rad_per_s,
+                                             truth.K_rad_per_s_sqrt_s};
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+        EXPECT_EQ(fitted[i].stated, i == 1 ? stated.B_rad_per_s : 0.0);
+        EXPECT_NEAR(fitted[i].fitted, true_values[i], 4.0 * fitted[i].fitted_sd) << "NBK"[i];
+    }
+    EXPECT_LT(fitted[0].fitted_sd, 0.01 * true_values[0]);
+}
+
 TEST(EffectSearch, TakesOffTheModelWhatItsFitMadeOfTheCause) {
     const auto recording = recorded(telegraph_sensor(), samples, 33);
     const SensorModel model = fitted_to_telegraph_noise();
