@@ -12,6 +12,11 @@ namespace {
 
 // A relative uncertainty as large as the coefficient itself, or larger, says no more than that.
 constexpr double sd_rel_max = 0.9;
+// Of what is stated, a coefficient keeps its sign,
+constexpr double least_factor = 0.02;
+// and one of which hardly more than its size is known does not grow beyond that.
+constexpr double hardly_known_rel = 0.5;
+constexpr double most_factor = 4.0;
 
 double uncertainty(const SensorModel& model, std::size_t axis, const char* name) {
     const std::map<std::string, double>& own = model.axes[axis].sd_rel;
@@ -71,12 +76,14 @@ NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralPar
                            std::span<const double> power, const std::array<double, 3>& sd_rel,
                            const NoiseNuisance& start) {
     Eigen::Vector3d z(start.z.data());
-    // Where the factor 1 + sd z is not positive a coefficient would change its sign.
-    const auto inside = [&](const Eigen::Vector3d& at) {
-        for (int j = 0; j < 3; ++j) {
-            if (1.0 + sd_rel[static_cast<std::size_t>(j)] * at[j] < 0.02) { return false; }
+    const auto clamped = [&](Eigen::Vector3d at) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            if (!(sd_rel[j] > 0.0)) { continue; }
+            double& each = at[static_cast<Eigen::Index>(j)];
+            each = std::max(each, (least_factor - 1.0) / sd_rel[j]);
+            if (sd_rel[j] >= hardly_known_rel) { each = std::min(each, (most_factor - 1.0) / sd_rel[j]); }
         }
-        return true;
+        return at;
     };
     Terms now = terms(bins, parts, power, sd_rel, z);
     for (int iteration = 0; iteration < 30; ++iteration) {
@@ -84,14 +91,12 @@ NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralPar
         Terms next;
         bool better = false;
         for (int halving = 0; halving < 12 && !better; ++halving) {
-            if (inside(z + step)) {
-                next = terms(bins, parts, power, sd_rel, z + step);
-                better = next.log_likelihood_nats > now.log_likelihood_nats;
-            }
+            next = terms(bins, parts, power, sd_rel, clamped(z + step));
+            better = next.log_likelihood_nats > now.log_likelihood_nats;
             if (!better) { step *= 0.5; }
         }
         if (!better) { break; }
-        z += step;
+        z = clamped(z + step);
         const double gained = next.log_likelihood_nats - now.log_likelihood_nats;
         now = next;
         if (gained < 1e-4) { break; }

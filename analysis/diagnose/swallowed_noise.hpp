@@ -14,7 +14,7 @@ namespace gyrolog {
 std::vector<std::size_t> axes_with_swallowed_noise(const Observation& observation);
 
 // The model with N, B and K of the axes as unknown as can be: what is fitted under it is fitted with them.
-// Every sensor has white noise; where the model states none it is some of what is seen.
+// What is stated as nothing a fit may have given to another coefficient: it begins at what is seen.
 SensorModel with_free_noise(SensorModel model, const Observation& seen, const std::vector<std::size_t>& axes);
 
 // What an observation under a model with_free_noise() has them at, where `stated` has others.
