@@ -60,7 +60,6 @@ std::vector<double> averages_of(const std::vector<float>& samples, std::size_t l
 struct Averages {
     double step_s = 0.0;
     std::vector<double> values;
-    DriftStates noise;
 };
 
 class TwoLevelTest final : public EffectTest {
@@ -213,19 +212,20 @@ private:
         Averages out;
         out.step_s = static_cast<double>(length) / baseline_->rate_hz();
         out.values = averages_of(seen.residual_rad_s, length);
-        std::vector<double> density(seen.density.size());
-        const NoiseNuisance noise = noise_with(observation, axis, telegraph);
-        expected_density(baseline_->parts(axis), noise_uncertainty(baseline_->model(), axis), noise.z,
-                         density);
-        out.noise = drift_states(f_hz_, density, out.step_s, duration_s);
         return out;
     }
 
+    // Under the noise that goes with the telegraph: what one would explain, the other need not.
     double gain(const Observation& observation, std::size_t axis, const Averages& averages,
                 const Telegraph& telegraph) const {
-        return spectral_gain(observation, axis, telegraph) +
-               telegraph_log_likelihood(averages.values, averages.step_s, averages.noise, telegraph) -
-               gauss_markov_log_likelihood(averages.values, averages.step_s, averages.noise, telegraph);
+        const NoiseNuisance noise = noise_with(observation, axis, telegraph);
+        std::vector<double> density(f_hz_.size());
+        expected_density(baseline_->parts(axis), noise_uncertainty(baseline_->model(), axis), noise.z,
+                         density);
+        const DriftStates drift = drift_states(f_hz_, density, averages.step_s, baseline_->duration_s());
+        return noise.log_likelihood_nats - observation.axis(axis).noise.log_likelihood_nats +
+               telegraph_log_likelihood(averages.values, averages.step_s, drift, telegraph) -
+               gauss_markov_log_likelihood(averages.values, averages.step_s, drift, telegraph);
     }
 
     // Whether one set of parameters can hold for all.
@@ -320,6 +320,9 @@ private:
                          AxesFit& fit) const {
         constexpr std::array<const char*, 3> names = {"amplitude_dps", "dwell_high_s", "dwell_low_s"};
         constexpr double sd_max = 3.0;
+        const Telegraph telegraph = telegraph_at(maximum.at);
+        const double dwells = static_cast<double>(fit.axes.size()) * baseline_->duration_s() /
+                              (telegraph.high_s + telegraph.low_s);
         for (std::size_t i = 0; i < names.size(); ++i) {
             double curvature = 0.0;
             double step = 0.01;
@@ -334,7 +337,9 @@ private:
                 curvature = fall / (step * step);
                 if (fall > 0.5) { break; }
             }
-            const double sd_log = curvature > 0.0 ? std::min(1.0 / std::sqrt(curvature), sd_max) : sd_max;
+            double sd_log = curvature > 0.0 ? std::min(1.0 / std::sqrt(curvature), sd_max) : sd_max;
+            // Exponential dwell times that were all seen have a mean no better known than this.
+            if (i > 0) { sd_log = std::max(sd_log, 1.0 / std::sqrt(dwells)); }
             const double value = fit.params.at(names[i]);
             fit.sd[names[i]] = value * sd_log;
             fit.cost_nats += occam_cost_nats(param_of(effect_, names[i]), value, value * sd_log);

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/effect_search.hpp"
+#include "analysis/diagnose/two_level_test.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -129,6 +132,26 @@ TEST(EffectSearch, LeavesTheNoiseOfAModelThatIsRight) {
     ASSERT_TRUE(found);
     ASSERT_EQ(found->causes.size(), 1U);
     EXPECT_TRUE(found->swallowed.empty());
+}
+
+// With N, B and K free, noise without a telegraph explains most of one; noise that goes with it explains
+// less.
+TEST(SwallowedNoise, SetFreeLeavesTheTelegraphItsDwellTimes) {
+    SensorModel sensor = calibrated_sensor(0.003);
+    sensor.effects.push_back(
+        {"rtn", {"z"}, {{"amplitude_dps", 0.04}, {"dwell_high_s", 2.4}, {"dwell_low_s", 2.0}}, ""});
+    const auto recording = recorded(sensor, samples, 35);
+    SensorModel model = calibrated_sensor(0.003);
+    model.axes[2].noise.B_rad_per_s = 0.012 * rad_per_deg;
+    model.axes[2].noise.K_rad_per_s_sqrt_s = 0.0;
+    const SensorModel freed = with_free_noise(model, observed(recording, model), {2});
+    const std::optional<Finding> finding = found(make_two_level_test, "rtn", recording, freed);
+    ASSERT_TRUE(finding);
+    ASSERT_EQ(finding->entries.size(), 1U);
+    const std::map<std::string, double>& params = finding->entries[0].params;
+    EXPECT_NEAR(params.at("amplitude_dps"), 0.04, 0.001);
+    EXPECT_NEAR(params.at("dwell_high_s"), 2.4, 5.0 * 2.4 / std::sqrt(1800.0 / 4.4));
+    EXPECT_NEAR(params.at("dwell_low_s"), 2.0, 5.0 * 2.0 / std::sqrt(1800.0 / 4.4));
 }
 
 }  // namespace
