@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numeric>
 #include <set>
+#include <thread>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -27,9 +28,9 @@ namespace {
 constexpr double none_above_p = 0.01;
 // What the causes leave is called unexplained below this,
 constexpr double unexplained_below_p = 0.005;
-// unless it is so little of the gap, 2 % of its size, that the approximations of a fit may leave it, and
+// unless it is so little of the gap, 4 % of its size, that the approximations of a fit may leave it, and
 // chance nearly.
-constexpr double tolerated_share = 4e-4;
+constexpr double tolerated_share = 1.6e-3;
 constexpr double tolerated_above_p = 1e-6;
 // As many effects together fit anything.
 constexpr std::size_t many_effects = 5;
@@ -45,6 +46,17 @@ constexpr double faint_line_share = 0.5;
 // as its model.
 constexpr double square_of_motion = 1000.0;
 
+// What a simulation and its observation hold at once, and how much of it all threads together may.
+constexpr double bytes_per_sample_and_thread = 160.0;
+constexpr double bytes_of_threads_most = 2e9;
+
+unsigned affordable_threads(std::size_t samples) {
+    const double each = bytes_per_sample_and_thread * static_cast<double>(samples);
+    const double affordable = std::max(1.0, bytes_of_threads_most / each);
+    const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+    return affordable < processors ? static_cast<unsigned>(affordable) : processors;
+}
+
 bool judged_by_stamps(const Finding& finding) {
     const EvidenceMethod method = find_effect(finding.effect)->signature->method;
     return method == EvidenceMethod::stamp_gaps || method == EvidenceMethod::stamp_rate ||
@@ -59,6 +71,7 @@ public:
         const auto world = std::make_shared<const RecordedWorld>(recording_);
         answer_.warnings = world->warnings();
         baseline_ = with_own_start(std::make_shared<const Baseline>(world, model), recording_);
+        if (options_.threads == 0) { options_.threads = affordable_threads(baseline_->length()); }
     }
 
     std::optional<Diagnosis> run(const std::string& model_name) {

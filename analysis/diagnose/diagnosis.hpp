@@ -97,7 +97,9 @@ struct Diagnosis {
 struct DiagnosisOptions {
     std::uint64_t seed = 1;
     std::size_t simulations = 200;
-    unsigned threads = 0;  // 0: all processors; the result is the same for any number
+    // 0: all processors, fewer for long recordings whose simulations would take more than 2 GB at a time. The
+    // result is the same for any number.
+    unsigned threads = 0;
     std::shared_ptr<const Recording> holdout{};
     // With what is being done and its share from 0 to 1; false ends the work.
     std::function<bool(const char*, double)> on_progress{};

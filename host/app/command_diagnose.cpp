@@ -75,7 +75,8 @@ Action setup_diagnose(CLI::App& app) {
         ->type_name("N")
         ->check(seed_number())
         ->capture_default_str();
-    app.add_option("--threads", request.threads, "0: all processors; the answer is the same")
+    app.add_option("--threads", request.threads,
+                   "0: all processors, as far as memory allows; the answer is the same")
         ->type_name("N")
         ->check(CLI::Range(0U, threads_most))
         ->capture_default_str();
