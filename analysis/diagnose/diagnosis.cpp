@@ -48,7 +48,7 @@ constexpr double square_of_motion = 1000.0;
 
 // What a simulation and its observation hold at once, and how much of it all threads together may.
 constexpr double bytes_per_sample_and_thread = 160.0;
-constexpr double bytes_of_threads_most = 2e9;
+constexpr double bytes_of_threads_most = 4e9;
 
 unsigned affordable_threads(std::size_t samples) {
     const double each = bytes_per_sample_and_thread * static_cast<double>(samples);

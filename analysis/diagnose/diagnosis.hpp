@@ -97,7 +97,7 @@ struct Diagnosis {
 struct DiagnosisOptions {
     std::uint64_t seed = 1;
     std::size_t simulations = 200;
-    // 0: all processors, fewer for long recordings whose simulations would take more than 2 GB at a time. The
+    // 0: all processors, fewer for long recordings whose simulations would take more than 4 GB at a time. The
     // result is the same for any number.
     unsigned threads = 0;
     std::shared_ptr<const Recording> holdout{};

@@ -129,10 +129,12 @@ GapCurve amplitude_curve(const Observation& observation, std::size_t axis) {
             values[known] = white[slot];
             known += std::size_t{observation.present()[slot]};
         }
+        double cubes = 0.0;
         for (std::size_t i = 0; i < known; ++i) {
             const auto value = static_cast<double>(values[i]);
-            skewness += value * value * value;
+            cubes += value * value * value;
         }
+        skewness += cubes;
         for (std::size_t s = 0; s < beyond.size(); ++s) {
             const auto least = static_cast<float>(curve.x[s]);
             int more = 0;
@@ -214,11 +216,11 @@ GapCurve correlation_curve(const Observation& observation, std::size_t axis, std
     for (std::size_t band = 0; band + 1 < edges.size(); ++band) {
         const auto first = static_cast<Eigen::Index>(bins[edges[band]].first);
         const auto size = static_cast<Eigen::Index>(bins[edges[band + 1] - 1].end) - first;
-        const auto of_a = cosines(a).segment(first, size).cast<double>();
-        const auto of_b = cosines(b).segment(first, size).cast<double>();
-        const double squares_a = of_a.square().sum();
-        const double squares_b = of_b.square().sum();
-        const double product = (of_a * of_b).sum();
+        const auto of_a = cosines(a).segment(first, size);
+        const auto of_b = cosines(b).segment(first, size);
+        const auto squares_a = static_cast<double>(of_a.square().sum());
+        const auto squares_b = static_cast<double>(of_b.square().sum());
+        const auto product = static_cast<double>((of_a * of_b).sum());
         const auto count = static_cast<double>(size);
         if (count < 8.0) { continue; }
         curve.x.push_back(std::sqrt(bins[edges[band]].f_hz * bins[edges[band + 1] - 1].f_hz));
