@@ -13,7 +13,7 @@ namespace {
 // A relative uncertainty as large as the coefficient itself, or larger, says no more than that.
 constexpr double sd_rel_max = 0.9;
 // Of what is stated, a coefficient keeps its sign,
-constexpr double least_factor = 0.02;
+constexpr double least_factor = 1e-3;
 // and one of which hardly more than its size is known does not grow beyond that.
 constexpr double hardly_known_rel = 0.5;
 constexpr double most_factor = 4.0;
