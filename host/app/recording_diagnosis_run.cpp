@@ -30,18 +30,15 @@ namespace {
 
 Result<std::shared_ptr<const Recording>> diagnosable(const RecordingDiagnosisRequest& request,
                                                      const std::string& path) {
-    const std::size_t rows_most = diagnosable_samples_max * request.average;
-    GYROLOG_TRY(Recording recording,
-                read_recording({path, std::nullopt, request.lsb_dps, {}, rows_most + request.average}));
+    RecordingInput input{path, std::nullopt, request.lsb_dps};
+    input.samples_most = (diagnosable_samples_max + 1) * request.average;
+    input.samples_per_row = request.average;
+    GYROLOG_TRY(Recording recording, read_recording(input));
     if (const auto refusal = diagnosis_refusal(recording)) {
-        return Error{ErrorCode::failed, "diagnose '" + path + "': " + *refusal};
-    }
-    if (request.average > 1) {
-        recording = means_of(recording, request.average);
-        if (const auto refusal = diagnosis_refusal(recording)) {
-            return Error{ErrorCode::failed, fmt::format("diagnose '{}': in means of {} samples it {}", path,
-                                                        request.average, *refusal)};
-        }
+        return Error{ErrorCode::failed, request.average > 1
+                                            ? fmt::format("diagnose '{}': in means of {} samples it {}", path,
+                                                          request.average, *refusal)
+                                            : "diagnose '" + path + "': " + *refusal};
     }
     if (recording.rows() > diagnosable_samples_max) {
         recording = first_rows(std::move(recording), diagnosable_samples_max);

@@ -12,7 +12,8 @@ namespace gyrolog {
 namespace {
 
 Result<TimedRecording> read_capture(const RecordingInput& input) {
-    GYROLOG_TRY(LoadedCapture capture, load_capture(input.path, true, input.on_stage, input.rows_most));
+    GYROLOG_TRY(LoadedCapture capture,
+                load_capture(input.path, true, input.on_stage, {input.samples_most, input.samples_per_row}));
     input.on_stage("place");
     auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
@@ -22,13 +23,14 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
                         capture.file.blocks.damaged_ranges));
     }
     if (input.rate_hz) {
-        if (std::abs(*input.rate_hz / recording->rate_hz - 1.0) > 1e-3) {
+        const double told_hz = recording->rate_hz * static_cast<double>(input.samples_per_row);
+        if (std::abs(*input.rate_hz / told_hz - 1.0) > 1e-3) {
             recording->warnings.push_back(
                 fmt::format("the rate is taken as {:g} Hz, as given; the board's clock says {:.6g} Hz",
-                            *input.rate_hz, recording->rate_hz));
+                            *input.rate_hz, told_hz));
         }
         recording->nominal_rate_hz.reset();
-        recording->rate_hz = *input.rate_hz;
+        recording->rate_hz = *input.rate_hz / static_cast<double>(input.samples_per_row);
         recording->rate_sd_hz.reset();
     }
     return TimedRecording{std::move(recording).value(), capture.decoder->recording_host_start_s()};
@@ -48,8 +50,9 @@ Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
     options.rate_hz = input.rate_hz;
     options.lsb_dps = input.lsb_dps;
     options.allow_unscaled_counts = true;
-    options.rows_most = input.rows_most;
+    options.rows_most = input.samples_most;
     GYROLOG_TRY(Recording recording, read_recording_csv(input.path, options));
+    if (input.samples_per_row > 1) { recording = means_of(recording, input.samples_per_row); }
     return TimedRecording{std::move(recording), std::nullopt};
 }
 

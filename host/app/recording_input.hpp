@@ -17,8 +17,10 @@ struct RecordingInput {
     std::optional<double> rate_hz;  // overrides the file's own
     std::optional<double> lsb_dps;  // scale of text columns in counts
     StageObserver on_stage{};       // of "read", and for a capture "decode", "place"
-    // Reading ends soon after so many.
-    std::size_t rows_most = std::numeric_limits<std::size_t>::max() - 1;
+    // Reading ends soon after so many samples.
+    std::size_t samples_most = std::numeric_limits<std::size_t>::max() - 1;
+    // More: means_of() so many. Of a capture no more than those are ever held.
+    std::size_t samples_per_row = 1;
 };
 
 Result<Recording> read_recording(const RecordingInput& input);

@@ -16,14 +16,16 @@ constexpr double longest_pause_s = 1e9;
 constexpr double longest_pause_instants = 1e14;  // the same at 100 kHz: a broken clock may give any rate
 constexpr std::uint64_t most_rows_ahead = std::uint64_t{1} << 26U;  // a file's size may be a claim only
 
+std::int16_t number_at(const std::uint8_t* bytes) {
+    return static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[0] | (bytes[1] << 8U)));
+}
+
 void append_field(std::vector<std::int16_t>& column, const std::uint8_t* bytes, std::size_t count,
                   std::size_t stride) {
     const std::size_t rows = column.size();
     column.resize(rows + count);
     std::int16_t* out = column.data() + rows;
-    for (std::size_t i = 0; i < count; ++i, bytes += stride) {
-        out[i] = static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[0] | (bytes[1] << 8U)));
-    }
+    for (std::size_t i = 0; i < count; ++i, bytes += stride) { out[i] = number_at(bytes); }
 }
 
 struct Quantity {
@@ -94,7 +96,7 @@ const glp_config* RecordingBuilder::config_of(const SamplePlace& place, const gl
 }
 
 bool RecordingBuilder::belongs(const SamplePlace& place, const glp_samples& samples) const {
-    if (current_.rows == 0 || current_.layout != samples.layout) { return false; }
+    if (!current_.begun() || current_.layout != samples.layout) { return false; }
     const glp_config* config = config_of(place, samples);
     if (config != nullptr && current_.config) { return same_setting(*config, *current_.config); }
     return current_.boot == place.boot && current_.generation == samples.config_generation;
@@ -110,7 +112,11 @@ void RecordingBuilder::take_samples(const SamplePlace& place, const glp_samples&
     if (!current_.config) {
         if (const glp_config* config = config_of(place, samples)) { current_.config = *config; }
     }
-    append(place, samples);
+    if (samples_per_row_ > 1) {
+        append_means(place, samples);
+    } else {
+        append(place, samples);
+    }
 }
 
 void RecordingBuilder::append(const SamplePlace& place, const glp_samples& samples) {
@@ -129,14 +135,43 @@ void RecordingBuilder::append(const SamplePlace& place, const glp_samples& sampl
         column.insert(column.end(), samples.count, samples.temperature);
     }
 
+    enter_rows(place, samples.first_index, samples.count);
+}
+
+void RecordingBuilder::enter_rows(const SamplePlace& place, std::uint64_t first_index, std::size_t rows) {
     std::vector<Piece>& pieces = current_.pieces;
     if (!pieces.empty() && pieces.back().run == place.run &&
-        samples.first_index - pieces.back().first_index == pieces.back().count) {
-        pieces.back().count += samples.count;
+        first_index - pieces.back().first_index == pieces.back().count * samples_per_row_) {
+        pieces.back().count += rows;
     } else {
-        pieces.push_back({place.boot, place.run, samples.first_index, current_.rows, samples.count});
+        pieces.push_back({place.boot, place.run, first_index, current_.rows, rows});
     }
-    current_.rows += samples.count;
+    current_.rows += rows;
+}
+
+void RecordingBuilder::append_means(const SamplePlace& place, const glp_samples& samples) {
+    Unfinished& row = current_.unfinished;
+    const bool has_own_temperature = (samples.layout & glp_layout_temperature) != 0;
+    const std::size_t fields = glp_sample_bytes(samples.layout) / 2;
+    const std::size_t columns = fields + (has_own_temperature ? 0 : 1);
+    if (row.run != place.run || row.next_index == 0) { row = {place.run, samples.first_index, 0, 0, {}}; }
+    const std::uint8_t* bytes = samples.samples;
+    for (std::size_t i = 0; i < samples.count; ++i) {
+        const std::uint64_t index = samples.first_index + i;
+        const std::size_t before = static_cast<std::size_t>((index - row.run_begin) % samples_per_row_);
+        if (before == 0 || index != row.next_index) { row.samples = 0, row.sums = {}; }
+        row.next_index = index + 1;
+        for (std::size_t field = 0; field < fields; ++field, bytes += 2) {
+            row.sums[field] += static_cast<double>(number_at(bytes));
+        }
+        if (!has_own_temperature) { row.sums[fields] += static_cast<double>(samples.temperature); }
+        // Of a row whose beginning is missing the rest counts for nothing.
+        if (++row.samples != before + 1 || row.samples != samples_per_row_) { continue; }
+        for (std::size_t column = 0; column < columns; ++column) {
+            current_.means[column].push_back(row.sums[column] / static_cast<double>(samples_per_row_));
+        }
+        enter_rows(place, index + 1 - samples_per_row_, 1);
+    }
 }
 
 void RecordingBuilder::close() {
@@ -155,7 +190,10 @@ void RecordingBuilder::close() {
 // clocks.
 std::vector<RecordingBuilder::RunOrigin> RecordingBuilder::place_on_grid(const std::vector<Piece>& pieces,
                                                                          const SampleTimeline& timeline,
-                                                                         Recording& recording) {
+                                                                         Recording& recording) const {
+    const auto samples_of = [&](std::size_t rows) {
+        return static_cast<std::int64_t>(rows * samples_per_row_);
+    };
     std::vector<RunOrigin> origins;
     for (const Piece& piece : pieces) {
         if (origins.empty()) {
@@ -163,7 +201,7 @@ std::vector<RecordingBuilder::RunOrigin> RecordingBuilder::place_on_grid(const s
         } else if (origins.back().run != piece.run) {
             const RunOrigin& before = origins.back();
             const Segment& last = recording.segments.back();
-            const std::int64_t end = last.first_index + static_cast<std::int64_t>(last.count);
+            const std::int64_t end = last.first_index + samples_of(last.count);
             const std::uint64_t end_index =
                 before.first_index + static_cast<std::uint64_t>(end - before.grid);
             const auto from = timeline.device_time_s(before.run, end_index, recording.rate_hz);
@@ -187,6 +225,24 @@ std::vector<RecordingBuilder::RunOrigin> RecordingBuilder::place_on_grid(const s
             {piece.first, piece.count, origins.back().grid_index(piece.first_index)});
     }
     return origins;
+}
+
+void RecordingBuilder::count_in_rows(Recording& recording) const {
+    if (samples_per_row_ == 1) { return; }
+    const auto samples = static_cast<double>(samples_per_row_);
+    // The rows of a later run lie anywhere between those of the first: at the nearest place.
+    std::int64_t end = 0;
+    for (Segment& segment : recording.segments) {
+        segment.first_index =
+            std::max<std::int64_t>(end, std::llround(static_cast<double>(segment.first_index) / samples));
+        end = segment.first_index + static_cast<std::int64_t>(segment.count);
+    }
+    recording.rate_hz /= samples;
+    if (recording.nominal_rate_hz) { *recording.nominal_rate_hz /= samples; }
+    if (recording.rate_sd_hz) { *recording.rate_sd_hz /= samples; }
+    recording.stamp_jitter_s.reset();
+    recording.stamps = StampKind::none;
+    recording.samples_per_row = samples_per_row_;
 }
 
 void RecordingBuilder::enter_dropouts(const LinkReport& link, const std::vector<RunOrigin>& origins,
@@ -239,7 +295,7 @@ void RecordingBuilder::set_rate(const Stretch& stretch, const SampleTimeline& ti
 Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimeline& timeline,
                                            const LinkReport& link) {
     close();
-    RecordingBuilder taken = std::exchange(*this, RecordingBuilder{});
+    RecordingBuilder taken = std::exchange(*this, RecordingBuilder(0, samples_per_row_));
     Stretch& stretch = taken.longest_;
     if (stretch.rows == 0) {
         return Error{ErrorCode::malformed, taken.without_config_ > 0
@@ -258,9 +314,16 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
     if (device_s && clock) { host_start_s_ = clock->offset_s + clock->ratio * *device_s; }
     std::size_t field = 0;
     for (const Quantity& quantity : quantities(stretch.layout, *stretch.config)) {
-        recording.columns.push_back({quantity.name, quantity.unit, std::move(stretch.fields[field++]),
-                                     quantity.scale, quantity.offset});
+        Column column{quantity.name, quantity.unit, {}, quantity.scale, quantity.offset};
+        if (samples_per_row_ > 1) {
+            column.data = std::move(stretch.means[field]);
+        } else {
+            column.data = std::move(stretch.fields[field]);
+        }
+        recording.columns.push_back(std::move(column));
+        ++field;
     }
+    count_in_rows(recording);
     if (stretch.config->decimation > 1) {
         recording.warnings.push_back("the board took every " + std::to_string(stretch.config->decimation) +
                                      "th sample without a filter: faster noise is folded in");
@@ -269,11 +332,11 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
         recording.warnings.emplace_back("the board was reset: the pause is known by the host's clock only");
     }
     if (taken.left_out_ > 0) {
-        recording.warnings.push_back(std::to_string(taken.left_out_) +
+        recording.warnings.push_back(std::to_string(taken.left_out_ * samples_per_row_) +
                                      " samples of other configurations are left out");
     }
     if (taken.without_config_ > 0) {
-        recording.warnings.push_back(std::to_string(taken.without_config_) +
+        recording.warnings.push_back(std::to_string(taken.without_config_ * samples_per_row_) +
                                      " samples whose configuration was never told are left out");
     }
     return recording;

@@ -33,14 +33,19 @@ class RecordingBuilder {
 public:
     // Room is made at once for as many samples as so many bytes can hold: columns that grow are copied again
     // and again. What is not used of it takes address space only.
-    explicit RecordingBuilder(std::uint64_t stream_bytes = 0) : bytes_to_come_(stream_bytes) {}
+    //
+    // With more than one sample per row a row is their mean, as in means_of(), but counted from the first of
+    // each run: after a restart, up to half a row beside its place. A row that lacks a sample is missing.
+    // Only rows take memory.
+    explicit RecordingBuilder(std::uint64_t stream_bytes = 0, std::size_t samples_per_row = 1)
+        : samples_per_row_(samples_per_row), bytes_to_come_(stream_bytes) {}
 
     // `boot` is LinkAccounts::boot() at this frame.
     void take_config(std::uint32_t boot, const glp_config& config);
     void take_samples(const SamplePlace& place, const glp_samples& samples);
 
     // Of the longest stretch so far.
-    std::size_t samples() const { return std::max(current_.rows, longest_.rows); }
+    std::size_t samples() const { return std::max(current_.rows, longest_.rows) * samples_per_row_; }
 
     // Error `malformed` when there are no samples, or none whose configuration was told. Leaves the builder
     // empty.
@@ -52,13 +57,21 @@ public:
 private:
     static constexpr std::size_t fields_max = 7;
 
-    // Consecutive samples.
+    // Consecutive rows.
     struct Piece {
         std::uint32_t boot = 0;
         std::uint32_t run = 0;
-        std::uint64_t first_index = 0;  // in its run
+        std::uint64_t first_index = 0;  // of its first sample, in its run
         std::size_t first = 0;          // row
         std::size_t count = 0;
+    };
+    // A row of means that lacks samples yet.
+    struct Unfinished {
+        std::uint32_t run = 0;
+        std::uint64_t run_begin = 0;  // its first index
+        std::uint64_t next_index = 0;
+        std::size_t samples = 0;
+        std::array<double, fields_max> sums{};
     };
     // The grid index of a run's sample.
     struct RunOrigin {
@@ -77,20 +90,28 @@ private:
         std::optional<glp_config> config;
         std::vector<Piece> pieces;
         std::array<std::vector<std::int16_t>, fields_max>
-            fields;  // in the layout's order; temperature always last
+            fields;                                         // in the layout's order; temperature always last
+        std::array<std::vector<double>, fields_max> means;  // in their place, of several samples a row
+        Unfinished unfinished;
         std::size_t rows = 0;
+
+        bool begun() const { return rows > 0 || unfinished.samples > 0; }
     };
 
     bool belongs(const SamplePlace& place, const glp_samples& samples) const;
     const glp_config* config_of(const SamplePlace& place, const glp_samples& samples) const;
     void close();
     void append(const SamplePlace& place, const glp_samples& samples);
+    void append_means(const SamplePlace& place, const glp_samples& samples);
+    void enter_rows(const SamplePlace& place, std::uint64_t first_index, std::size_t rows);
     static void set_rate(const Stretch& stretch, const SampleTimeline& timeline, Recording& recording);
-    static std::vector<RunOrigin> place_on_grid(const std::vector<Piece>& pieces,
-                                                const SampleTimeline& timeline, Recording& recording);
+    std::vector<RunOrigin> place_on_grid(const std::vector<Piece>& pieces, const SampleTimeline& timeline,
+                                         Recording& recording) const;
+    void count_in_rows(Recording& recording) const;
     static void enter_dropouts(const LinkReport& link, const std::vector<RunOrigin>& origins,
                                Recording& recording);
 
+    std::size_t samples_per_row_;
     std::optional<glp_config> config_;  // as last told
     std::uint32_t config_boot_ = 0;
     std::uint64_t bytes_to_come_ = 0;

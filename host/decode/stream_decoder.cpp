@@ -38,7 +38,7 @@ bool StreamDecoder::take(const Transfer& transfer) {
     before_start_ = report();
     accounts_ = {};
     timeline_ = {};
-    builder_ = RecordingBuilder(options_.stream_bytes);
+    builder_ = RecordingBuilder(options_.stream_bytes, options_.samples_per_row);
     hello_.reset();
     config_.reset();
     status_.reset();

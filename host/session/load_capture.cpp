@@ -89,14 +89,17 @@ private:
 }  // namespace
 
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples, const StageObserver& on_stage,
-                                   std::size_t samples_most) {
+                                   const KeptRows& kept) {
     LoadedCapture loaded;
     loaded.files = segment_files(path);
     std::uint64_t stream_bytes = 0;
     for (const std::string& file : loaded.files) { stream_bytes += size_of(file); }
-    loaded.decoder = std::make_unique<StreamDecoder>(StreamDecoderOptions{
-        .keep_samples = keep_samples, .observer = nullptr, .stream_bytes = stream_bytes});
-    Loading loading(loaded, on_stage, samples_most);
+    loaded.decoder =
+        std::make_unique<StreamDecoder>(StreamDecoderOptions{.keep_samples = keep_samples,
+                                                             .observer = nullptr,
+                                                             .stream_bytes = stream_bytes,
+                                                             .samples_per_row = kept.samples_per_row});
+    Loading loading(loaded, on_stage, kept.samples_most);
     for (const std::string& file : loaded.files) {
         GYROLOG_CHECK(loading.read(file));
         if (loading.enough()) { break; }

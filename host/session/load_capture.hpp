@@ -25,11 +25,16 @@ struct LoadedCapture {
     std::unique_ptr<StreamDecoder> decoder;
 };
 
+// Of samples that are kept.
+struct KeptRows {
+    std::size_t samples_most = std::numeric_limits<std::size_t>::max();  // reading ends soon after so many
+    std::size_t samples_per_row = 1;                                     // more: means of so many
+};
+
 // Errors: those of CaptureReader. A capture without one good frame is no error.
-// Stages: "read", "decode", by turns. Of samples that are kept, reading ends soon after `samples_most`.
+// Stages: "read", "decode", by turns.
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
-                                   const StageObserver& on_stage = {},
-                                   std::size_t samples_most = std::numeric_limits<std::size_t>::max());
+                                   const StageObserver& on_stage = {}, const KeptRows& kept = {});
 
 // Whether the file begins like a capture (pcapng or pcap) rather than like text. False when it cannot be
 // read.

@@ -1,5 +1,6 @@
 // A capture of the virtual board and a simulation of the same model are one signal.
 
+#include <cmath>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -90,7 +91,7 @@ TEST_F(SimulatedCapture, HasTheCountsOfTheSimulationSampleBySample) {
 
 TEST_F(SimulatedCapture, IsReadNoFurtherThanWanted) {
     const Recording whole = captured();
-    auto capture = load_capture(folder.path("a.pcapng"), true, {}, 5000);
+    auto capture = load_capture(folder.path("a.pcapng"), true, {}, {5000});
     ASSERT_TRUE(capture.ok());
     const auto beginning = capture->decoder->take_recording("a");
     ASSERT_TRUE(beginning.ok());
@@ -135,6 +136,41 @@ TEST_F(SimulatedCapture, HasTheCountsThatSimulateWrites) {
             // In the model's own step: the board's is told to nine digits, the file's has a thousandth.
             ASSERT_NEAR(of_capture.value(i) / model.lsb_rad_s, of_text.value(i) / model.lsb_rad_s, 0.01)
                 << axis << ", row " << i;
+        }
+    }
+}
+
+TEST(CaptureInMeans, IsTheMeansOfWhatIsReadSampleBySample) {
+    const TemporaryFolder folder;
+    const ProgramResult result =
+        run_gyrolog({"capture", "--device", "sim:seed=3,rate=200,fault=drop_packet@7+drop_packet@30",
+                     "--duration", "1m", "-o", folder.path("a.pcapng")});
+    ASSERT_EQ(result.exit_code, 5) << result.err;  // samples are missing
+    auto whole = load_capture(folder.path("a.pcapng"), true);
+    ASSERT_TRUE(whole.ok());
+    const auto read = whole->decoder->take_recording("a");
+    ASSERT_TRUE(read.ok());
+    const Recording expected = means_of(*read, 7);
+    auto capture = load_capture(folder.path("a.pcapng"), true, {}, {.samples_per_row = 7});
+    ASSERT_TRUE(capture.ok());
+    const auto means = capture->decoder->take_recording("a");
+    ASSERT_TRUE(means.ok());
+    EXPECT_EQ(means->samples_per_row, 7U);
+    EXPECT_DOUBLE_EQ(means->rate_hz, expected.rate_hz);
+    ASSERT_EQ(means->segments.size(), 3U);
+    ASSERT_EQ(means->segments.size(), expected.segments.size());
+    for (std::size_t i = 0; i < means->segments.size(); ++i) {
+        EXPECT_EQ(means->segments[i].first, expected.segments[i].first);
+        EXPECT_EQ(means->segments[i].count, expected.segments[i].count);
+        EXPECT_EQ(means->segments[i].first_index, expected.segments[i].first_index);
+    }
+    ASSERT_EQ(means->columns.size(), expected.columns.size());
+    for (const Column& column : expected.columns) {
+        const Column* mean = means->find(column.name);
+        ASSERT_EQ(mean->size(), column.size());
+        for (std::size_t i = 0; i < column.size(); ++i) {
+            ASSERT_NEAR(mean->value(i), column.value(i), 1e-9 * (1.0 + std::fabs(column.value(i))))
+                << column.name << ' ' << i;
         }
     }
 }

@@ -84,6 +84,7 @@ void require_recording(StreamDecoder& decoder) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Counter counter;
     StreamDecoder decoder({.keep_samples = true, .observer = &counter});
+    StreamDecoder in_means({.keep_samples = true, .samples_per_row = 3});
     Input input({data, size});
     HostTime now{1'000'000'000, 0};
     std::uint32_t sequence = 0;
@@ -96,10 +97,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         now.monotonic_ns += 16'000'000;
         if (type == 0xFE) {
             if (raise_line(decoder, now)) { counter = Counter(); }
+            static_cast<void>(raise_line(in_means, now));
             continue;
         }
         if (type == 0xFF) {
             decoder.feed(payload, now);
+            in_means.feed(payload, now);
             fed += payload.size();
             continue;
         }
@@ -110,6 +113,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const glp_cobs_result encoded = glp_frame_encode(&frame, wire.data(), wire.size());
         GYROLOG_REQUIRE(encoded.status == glp_status_ok);
         decoder.feed(ByteView(wire).first(encoded.size), now);
+        in_means.feed(ByteView(wire).first(encoded.size), now);
         fed += encoded.size;
     }
     const LinkReport report = decoder.report();
@@ -129,5 +133,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (const auto rate_hz = decoder.rate_hz()) { GYROLOG_REQUIRE(std::isfinite(*rate_hz)); }
     if (const auto fit = decoder.timeline().host_clock()) { GYROLOG_REQUIRE(std::isfinite(fit->ratio)); }
     require_recording(decoder);
+    require_recording(in_means);
     return 0;
 }

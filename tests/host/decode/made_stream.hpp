@@ -132,8 +132,11 @@ public:
 
 // A decoder, and what a fresh board says first.
 struct Listening {
+    explicit Listening(std::size_t samples_per_row = 1)
+        : decoder({.keep_samples = true, .samples_per_row = samples_per_row}) {}
+
     MadeBoard board;
-    StreamDecoder decoder{{.keep_samples = true}};
+    StreamDecoder decoder;
     std::uint64_t bytes = 0;
 
     void hear(const Bytes& wire) {

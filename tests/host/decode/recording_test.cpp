@@ -98,6 +98,30 @@ TEST(DecodedRecording, SetsARestartApartByTheBoardsTicks) {
     EXPECT_TRUE(recording->dropouts.empty());
 }
 
+// Rows of means are on one grid, too: the later run's begin at the nearest of its places.
+TEST(DecodedRecording, SetsARestartApartInMeans) {
+    constexpr std::size_t samples = 12;
+    Listening link(samples);
+    link.begin();
+    link.hear_samples(99);
+    link.hear(link.board.event_frame(glp_event_stopped));
+    link.board.restart(1600 / 1003.0 + 7.25);
+    link.hear(link.board.samples_frame(glp_flag_first_after_start));
+    link.hear_samples(99);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_NEAR(recording->rate_hz * samples, 1003.0, 1e-3);
+    ASSERT_EQ(recording->segments.size(), 2U);
+    EXPECT_EQ(recording->segments[0].count, 1600U / samples) << "the last four are no row";
+    const double instants = 1600 + 7.25 * 1003.0;
+    EXPECT_EQ(recording->segments[1].first_index, std::llround(instants / samples));
+    EXPECT_EQ(recording->rows(), 2U * (1600U / samples));
+    const auto& means = std::get<std::vector<double>>(recording->find("gx")->data);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < samples; ++i) { sum += made_value(samples + i, 0); }
+    EXPECT_NEAR(means[1], sum / samples, 1e-9);
+}
+
 TEST(DecodedRecording, SetsAResetApartByTheHostsClock) {
     Listening link;
     link.begin();
