@@ -10,7 +10,8 @@
 
 namespace gyrolog {
 
-// The axes on which less B or K than the model states, beyond its uncertainty, is called for.
+// The axes on which less B or K than the model states, beyond its uncertainty, is called for, and those on
+// which it states no N.
 std::vector<std::size_t> axes_with_swallowed_noise(const Observation& observation);
 
 // The model with N, B and K of the axes as unknown as can be: what is fitted under it is fitted with them.

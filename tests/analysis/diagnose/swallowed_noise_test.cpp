@@ -81,7 +81,6 @@ TEST(SwallowedNoise, SetFreeComesToWhatTheSensorHas) {
     EXPECT_TRUE(axes_with_swallowed_noise(observed(recording, restated)).empty());
 }
 
-// Held to the model's B, telegraph noise comes out too small, and what is simulated with it too noisy.
 // As a fit may state it that took all for flicker noise: a sensor without white noise is none.
 TEST(SwallowedNoise, MayBeAllThatThereIs) {
     const SensorModel sensor = calibrated_sensor();
@@ -107,6 +106,43 @@ TEST(SwallowedNoise, MayBeAllThatThereIs) {
     EXPECT_LT(fitted[0].fitted_sd, 0.01 * true_values[0]);
 }
 
+// Four times as much as stated at most, but as little as there is.
+TEST(SwallowedNoise, SetFreeGrowsLittleAndShrinksMuch) {
+    SensorModel sensor = calibrated_sensor();
+    sensor.axes[1].noise.K_rad_per_s_sqrt_s *= 20.0;
+    const auto recording = recorded(sensor, samples, 37);
+    SensorModel model = sensor;
+    model.axes[1].noise.K_rad_per_s_sqrt_s /= 10.0;
+    model.axes[2].noise.B_rad_per_s *= 200.0;
+    const SensorModel freed = with_free_noise(model, observed(recording, model), {1, 2});
+    const std::vector<SwallowedNoise> fitted = fitted_noise(observed(recording, freed), model, {1, 2});
+    ASSERT_EQ(fitted.size(), 6U);
+    EXPECT_NEAR(fitted[2].fitted, 4.0 * model.axes[1].noise.K_rad_per_s_sqrt_s,
+                1e-3 * model.axes[1].noise.K_rad_per_s_sqrt_s);
+    EXPECT_LT(fitted[4].fitted, 2.0 * sensor.axes[2].noise.B_rad_per_s);
+}
+
+// A fit may give flicker noise to the walk: set free, it is there again.
+TEST(SwallowedNoise, LeavesRoomForWhatIsStatedAsNothing) {
+    const SensorModel sensor = calibrated_sensor();
+    const auto recording = recorded(sensor, samples, 36);
+    SensorModel model = sensor;
+    model.axes[0].noise.B_rad_per_s = 0.0;
+    model.axes[0].noise.K_rad_per_s_sqrt_s *= 10.0;
+    model.axes[0].sd_rel = {{"N", 0.005}, {"B", 1.0}, {"K", 0.06}};
+    const Observation seen = observed(recording, model);
+    const std::vector<std::size_t> axes = {0};
+    ASSERT_EQ(axes_with_swallowed_noise(seen), axes);
+    const std::vector<SwallowedNoise> fitted =
+        fitted_noise(observed(recording, with_free_noise(model, seen, axes)), model, axes);
+    ASSERT_EQ(fitted.size(), 3U);
+    const NoiseCoefficients& truth = sensor.axes[0].noise;
+    EXPECT_NEAR(fitted[1].fitted, truth.B_rad_per_s, 4.0 * fitted[1].fitted_sd);
+    EXPECT_LT(fitted[1].fitted_sd, 0.3 * truth.B_rad_per_s);
+    EXPECT_NEAR(fitted[2].fitted, truth.K_rad_per_s_sqrt_s, 4.0 * fitted[2].fitted_sd);
+}
+
+// Held to the model's B, telegraph noise comes out too small, and what is simulated with it too noisy.
 TEST(EffectSearch, TakesOffTheModelWhatItsFitMadeOfTheCause) {
     const auto recording = recorded(telegraph_sensor(), samples, 33);
     const SensorModel model = fitted_to_telegraph_noise();

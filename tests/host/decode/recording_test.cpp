@@ -83,18 +83,25 @@ TEST(DecodedRecording, EstimatesTheSensorsRateWithinItsUncertainty) {
     EXPECT_NEAR(*recording->rate_sd_hz / 1003.0, 2e-9, 1e-9);
 }
 
-TEST(DecodedRecording, SetsARestartApartByTheBoardsTicks) {
-    Listening link;
+// 1600 samples; as many more begin at this instant of the same grid.
+constexpr double restarted_at = 1600 + 7.25 * 1003.0;
+
+void hear_a_restart(Listening& link) {
     link.begin();
     link.hear_samples(99);
     link.hear(link.board.event_frame(glp_event_stopped));
-    link.board.restart(1600 / 1003.0 + 7.25);
+    link.board.restart(restarted_at / 1003.0);
     link.hear(link.board.samples_frame(glp_flag_first_after_start));
     link.hear_samples(99);
+}
+
+TEST(DecodedRecording, SetsARestartApartByTheBoardsTicks) {
+    Listening link;
+    hear_a_restart(link);
     const auto recording = link.decoder.take_recording("bench");
     ASSERT_TRUE(recording.ok());
     ASSERT_EQ(recording->segments.size(), 2U);
-    EXPECT_EQ(recording->segments[1].first_index, std::llround(1600 + 7.25 * 1003.0));
+    EXPECT_EQ(recording->segments[1].first_index, std::llround(restarted_at));
     EXPECT_TRUE(recording->dropouts.empty());
 }
 
@@ -102,19 +109,13 @@ TEST(DecodedRecording, SetsARestartApartByTheBoardsTicks) {
 TEST(DecodedRecording, SetsARestartApartInMeans) {
     constexpr std::size_t samples = 12;
     Listening link(samples);
-    link.begin();
-    link.hear_samples(99);
-    link.hear(link.board.event_frame(glp_event_stopped));
-    link.board.restart(1600 / 1003.0 + 7.25);
-    link.hear(link.board.samples_frame(glp_flag_first_after_start));
-    link.hear_samples(99);
+    hear_a_restart(link);
     const auto recording = link.decoder.take_recording("bench");
     ASSERT_TRUE(recording.ok());
     EXPECT_NEAR(recording->rate_hz * samples, 1003.0, 1e-3);
     ASSERT_EQ(recording->segments.size(), 2U);
     EXPECT_EQ(recording->segments[0].count, 1600U / samples) << "the last four are no row";
-    const double instants = 1600 + 7.25 * 1003.0;
-    EXPECT_EQ(recording->segments[1].first_index, std::llround(instants / samples));
+    EXPECT_EQ(recording->segments[1].first_index, std::llround(restarted_at / samples));
     EXPECT_EQ(recording->rows(), 2U * (1600U / samples));
     const auto& means = std::get<std::vector<double>>(recording->find("gx")->data);
     double sum = 0.0;
