@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numeric>
 #include <set>
+#include <span>
 #include <thread>
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -18,6 +19,8 @@
 #include "analysis/diagnose/halves_check.hpp"
 #include "analysis/diagnose/null_simulations.hpp"
 #include "analysis/diagnose/seen_line.hpp"
+#include "analysis/diagnose/unspecific_rivals.hpp"
+#include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
@@ -32,6 +35,10 @@ constexpr double unexplained_below_p = 0.005;
 // chance nearly.
 constexpr double tolerated_share = 1.6e-3;
 constexpr double tolerated_above_p = 1e-6;
+// A shape of no known origin takes the place of causes that it beats by this,
+constexpr double shape_wins_nats = 8.0;
+// and by this share of their gain: the approximations of a fit may lose as much.
+constexpr double shape_wins_share = 0.04;
 // As many effects together fit anything.
 constexpr std::size_t many_effects = 5;
 // How often a cause is right that does not explain the gap: something else is there that it may stand for.
@@ -85,6 +92,7 @@ public:
             }
         }
         if (!simulate_before() || !search() || !simulate_after()) { return std::nullopt; }
+        if (found_) { compare_shapes(); }
         decide();
         if (options_.holdout && !measure_on_holdout()) { return std::nullopt; }
         return std::move(answer_);
@@ -239,6 +247,46 @@ private:
         return true;
     }
 
+    std::shared_ptr<const Observation> without(std::span<const FoundCause> left_out) const {
+        SensorModel model = found_->without_causes;
+        for (const FoundCause& cause : found_->causes) {
+            const bool is_left_out =
+                std::ranges::any_of(left_out, [&](const FoundCause& one) { return &one == &cause; });
+            if (!is_left_out) { model = with_cause(std::move(model), cause.finding); }
+        }
+        return std::make_shared<const Observation>(baseline_->with(model), recording_, options_.seed);
+    }
+
+    // In place of every cause, and of all of them.
+    void compare_shapes() {
+        const std::span<const FoundCause> all = found_->causes;
+        std::vector<std::span<const FoundCause>> places;
+        for (std::size_t i = 0; i < all.size(); ++i) { places.push_back(all.subspan(i, 1)); }
+        if (all.size() != 1) { places.push_back(all); }
+        const std::shared_ptr<const Observation> with = without({});
+        std::vector<std::optional<BetterShape>> better(places.size());
+        parallel_for(places.size(), options_.threads, [&](std::size_t i) {
+            const std::optional<UnspecificFinding> shape = best_unspecific(*without(places[i]), *with);
+            if (!shape) { return; }
+            double evidence_nats = shape->evidence_nats;
+            double gain_nats = 0.0;
+            std::vector<std::string> than;
+            for (const FoundCause& cause : places[i]) {
+                evidence_nats -= cause.finding.evidence_nats;
+                gain_nats += cause.finding.gain_nats;
+                than.push_back(cause.finding.effect);
+            }
+            if (evidence_nats < std::max(shape_wins_nats, shape_wins_share * gain_nats)) { return; }
+            better[i] = BetterShape{shape->words, std::move(than), evidence_nats};
+        });
+        for (std::optional<BetterShape>& one : better) {
+            if (!one) { continue; }
+            if (!answer_.better_shape || one->evidence_nats > answer_.better_shape->evidence_nats) {
+                answer_.better_shape = std::move(one);
+            }
+        }
+    }
+
     void describe_domains() {
         const MeasuredGap before{before_curves_, before_};
         if (!after_) {
@@ -263,8 +311,8 @@ private:
         const double excess_after = std::max(after.gap.value * after.gap.value - 1.0, 0.0);
         const bool tolerable =
             excess_after < tolerated_share * excess_before && answer_.p_left >= tolerated_above_p;
-        const bool explained =
-            after_ && effects_found() < many_effects && (answer_.p_left >= unexplained_below_p || tolerable);
+        const bool explained = after_ && !answer_.better_shape && effects_found() < many_effects &&
+                               (answer_.p_left >= unexplained_below_p || tolerable);
         answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
         if (found_) {
             for (const FoundCause& found : found_->causes) {
@@ -282,7 +330,7 @@ private:
         }
         propose_recordings();
         answer_.where = explained ? answer_.causes.front().finding.where : before.where;
-        if (!explained && after_) { answer_.left = after.where; }
+        if (!explained && after_ && !answer_.better_shape) { answer_.left = after.where; }
     }
 
     std::size_t effects_found() const {

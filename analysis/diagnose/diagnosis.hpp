@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,13 @@ struct GapDomain {
     double surprise_after_nats = 0.0;
 };
 
+// One that no effect of the catalogue has (unspecific_rivals.hpp) and that tells the recording better.
+struct BetterShape {
+    std::string words;
+    std::vector<std::string> than;  // effects among the causes; empty: than the model alone
+    double evidence_nats = 0.0;     // by how much its log Bayes factor is more
+};
+
 struct Diagnosis {
     std::string recording_name;
     std::string model_name;
@@ -79,6 +87,7 @@ struct Diagnosis {
     double p_none = 1.0;
     double p_left = 1.0;  // of what the causes leave
     std::vector<Cause> causes;
+    std::optional<BetterShape> better_shape;  // then the causes do not explain the gap
     // Noise of the model that held part of the causes, and what it is with them in the model.
     std::vector<SwallowedNoise> swallowed;
     Place where;  // the gap; of a known one, its first cause

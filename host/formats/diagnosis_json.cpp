@@ -179,6 +179,11 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
     json["causes"] = Json::array();
     for (const Cause& cause : diagnosis.causes) { json["causes"].push_back(cause_json(cause)); }
     if (!diagnosis.swallowed.empty()) { json["noise_refitted"] = swallowed_json(diagnosis.swallowed); }
+    if (diagnosis.better_shape) {
+        json["better_shape"] = {{"words", diagnosis.better_shape->words},
+                                {"than", diagnosis.better_shape->than},
+                                {"evidence_nats", diagnosis.better_shape->evidence_nats}};
+    }
     json["where"] = whole_place_json(diagnosis.where);
     const Json left = whole_place_json(diagnosis.left);
     if (!left.empty()) { json["left"] = left; }

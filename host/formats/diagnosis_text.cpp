@@ -146,6 +146,11 @@ std::string swallowed_sentence(const Diagnosis& diagnosis) {
         fmt::join(changes, ", "));
 }
 
+std::string better_shape_sentence(const BetterShape& better) {
+    return fmt::format("{} fits better than {}, by {:.0f} nats, and is no known effect.", better.words,
+                       better.than.empty() ? "the model" : listed(better.than), better.evidence_nats);
+}
+
 // How likely the gap is by chance, where it lies, what makes it and how far it closes.
 std::string summary_text(const Diagnosis& diagnosis) {
     std::vector<std::string> sentences{chance_sentence(diagnosis)};
@@ -160,7 +165,8 @@ std::string summary_text(const Diagnosis& diagnosis) {
     const std::string swallowed = swallowed_sentence(diagnosis);
     if (!swallowed.empty()) { sentences.push_back(swallowed); }
     if (!diagnosis.causes.empty()) { sentences.push_back(gap_after_sentence(diagnosis)); }
-    if (diagnosis.verdict == Verdict::unexplained && !diagnosis.causes.empty()) {
+    if (diagnosis.better_shape) { sentences.push_back(better_shape_sentence(*diagnosis.better_shape)); }
+    if (diagnosis.verdict == Verdict::unexplained && !diagnosis.causes.empty() && !diagnosis.better_shape) {
         const std::string place = place_text(diagnosis.left);
         sentences.push_back(fmt::format("What is left is not by chance either ({}){}.",
                                         probability_text(diagnosis.p_left),
@@ -337,6 +343,10 @@ std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of) {
             break;
     }
     if (diagnosis.causes.empty()) { return "unexplained: there is a gap, and no known effect makes it"; }
+    if (diagnosis.better_shape) {
+        return fmt::format("unexplained: {} {} the gap, but what no effect is like fits better", causes,
+                           one ? "resembles" : "resemble");
+    }
     return fmt::format("unexplained: {} {} part of the gap, what makes the rest is not known", causes,
                        one ? "is" : "are");
 }

@@ -366,6 +366,22 @@ TEST(DiagnosisText, SaysWhereWhatIsLeftLies) {
     EXPECT_EQ(left, json::parse(R"({"axes": ["y"], "freq_hz": [37.9, 38.1]})"));
 }
 
+TEST(DiagnosisText, SaysWhichShapeFitsBetterThanTheCauses) {
+    Diagnosis diagnosis = known();
+    diagnosis.verdict = Verdict::unexplained;
+    diagnosis.better_shape = BetterShape{"A course that repeats every 412 s", {"temp_lag"}, 12.4};
+    const std::string text = joined(diagnosis_text(diagnosis));
+    EXPECT_THAT(text, StartsWith("unexplained: temp_lag on x resembles the gap, but"));
+    EXPECT_THAT(text, HasSubstr("A course that repeats every 412 s fits better than temp_lag, by 12 nats, "
+                                "and is no known effect."));
+    EXPECT_THAT(text, Not(HasSubstr("What is left")));
+    const json shape = json::parse(diagnosis_json(diagnosis)).at("better_shape");
+    EXPECT_EQ(shape.at("words"), "A course that repeats every 412 s");
+    EXPECT_EQ(shape.at("than"), json({"temp_lag"}));
+    EXPECT_EQ(shape.at("evidence_nats"), 12.4);
+    EXPECT_FALSE(json::parse(diagnosis_json(known())).contains("better_shape"));
+}
+
 TEST(DiagnosisText, SaysWhatTheModelsNoiseIsWithoutTheCauses) {
     Diagnosis diagnosis = known();
     EXPECT_THAT(diagnosis_text(diagnosis), Not(HasSubstr("held part")));
