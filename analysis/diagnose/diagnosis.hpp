@@ -52,6 +52,7 @@ struct GapDomain {
     bool log_x = false;
     bool log_y = false;
     std::size_t axis = 0;
+    bool of_all_axes = false;
     std::vector<double> x;
     std::vector<double> recording;
     std::vector<double> before_lo, before_hi;  // band of simulations, see band_probability
@@ -63,6 +64,8 @@ struct GapDomain {
     // another reaches some 7 by chance.
     double surprise_before_nats = 0.0;
     double surprise_after_nats = 0.0;
+
+    std::string axis_text() const { return of_all_axes ? "all" : axis_names.at(axis); }
 };
 
 // One that no effect of the catalogue has (unspecific_rivals.hpp) and that tells the recording better.

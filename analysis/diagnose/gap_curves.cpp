@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
+#include "analysis/diagnose/motion_curves.hpp"
+#include "analysis/diagnose/noise_level_curves.hpp"
 #include "analysis/diagnose/structure_curves.hpp"
 
 namespace gyrolog {
@@ -14,8 +17,6 @@ namespace {
 constexpr std::size_t allan_places = 8;
 constexpr std::size_t course_blocks = 32;
 constexpr double bands_per_octave = 3.0;
-constexpr std::size_t value_bins = 12;
-constexpr double samples_of_bin_least = 30.0;
 constexpr double sigmas[] = {0.5, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0};
 
 double square(double value) { return value * value; }
@@ -149,60 +150,6 @@ GapCurve amplitude_curve(const Observation& observation, std::size_t axis) {
     return curve;
 }
 
-// Sums of the whitened samples by equal ranges of what `at` has by slot.
-struct ValueBins {
-    std::vector<double> x, sum, squares, count;
-};
-
-ValueBins by_value(const Observation& observation, std::size_t axis, const std::vector<float>& at) {
-    ValueBins bins;
-    for (auto* sums : {&bins.x, &bins.sum, &bins.squares, &bins.count}) { sums->assign(value_bins, 0.0); }
-    const auto [least, most] = std::ranges::minmax(at);
-    const auto from = static_cast<double>(least);
-    const double width = (static_cast<double>(most) - from) / static_cast<double>(value_bins);
-    const std::vector<float>& white = observation.axis(axis).whitened;
-    for (std::size_t slot = 0; slot < white.size(); ++slot) {
-        if (!observation.present()[slot]) { continue; }
-        const double place = (static_cast<double>(at[slot]) - from) / width;
-        const auto bin =
-            static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(value_bins) - 1.0));
-        const auto value = static_cast<double>(white[slot]);
-        bins.sum[bin] += value;
-        bins.squares[bin] += square(value);
-        bins.count[bin] += 1.0;
-    }
-    for (std::size_t bin = 0; bin < value_bins; ++bin) {
-        bins.x[bin] = from + (static_cast<double>(bin) + 0.5) * width;
-        if (bins.count[bin] <= samples_of_bin_least) { bins.count[bin] = 0.0; }
-    }
-    return bins;
-}
-
-// In standard deviations.
-GapCurve mean_curve(GapDomainKind kind, std::size_t axis, std::size_t other, const ValueBins& bins) {
-    GapCurve curve{kind, axis, other, bins.x, {}};
-    for (std::size_t bin = 0; bin < value_bins; ++bin) {
-        const double count = bins.count[bin];
-        curve.value.push_back(count > 0.0 ? bins.sum[bin] / std::sqrt(count) : 0.0);
-    }
-    return curve;
-}
-
-GapCurve variance_curve(GapDomainKind kind, std::size_t axis, const ValueBins& bins) {
-    GapCurve curve{kind, axis, axis, bins.x, {}};
-    for (std::size_t bin = 0; bin < value_bins; ++bin) {
-        const double count = bins.count[bin];
-        curve.value.push_back(count > 0.0 ? std::log(std::max(bins.squares[bin] / count, 1e-12)) : 0.0);
-    }
-    return curve;
-}
-
-bool varies(const std::vector<float>& values) {
-    if (values.empty()) { return false; }
-    const auto [least, most] = std::ranges::minmax(values);
-    return most > least;
-}
-
 Eigen::Map<const Eigen::ArrayXf> cosines(const AxisObservation& seen) {
     return {seen.cosines.data(), static_cast<Eigen::Index>(seen.cosines.size())};
 }
@@ -230,21 +177,6 @@ GapCurve correlation_curve(const Observation& observation, std::size_t axis, std
     return curve;
 }
 
-void add_motion_curves(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
-    const Baseline& baseline = observation.baseline();
-    for (const std::size_t other : baseline.axes()) {
-        const std::vector<float>& rate = baseline.true_rate_rad_s(other);
-        if (!varies(rate)) { continue; }
-        const ValueBins bins = by_value(observation, axis, rate);
-        curves.push_back(mean_curve(GapDomainKind::rate, axis, other, bins));
-        if (other == axis) { curves.push_back(variance_curve(GapDomainKind::rate_noise, axis, bins)); }
-    }
-    const std::vector<float>& change = baseline.response_change_rad_s2(axis);
-    if (!varies(change)) { return; }
-    curves.push_back(
-        mean_curve(GapDomainKind::acceleration, axis, axis, by_value(observation, axis, change)));
-}
-
 }  // namespace
 
 std::vector<GapCurve> gap_curves(const Observation& observation) {
@@ -260,15 +192,16 @@ std::vector<GapCurve> gap_curves(const Observation& observation) {
         curves.push_back(memory_curve(observation, axis));
         curves.push_back(period_curve(observation, axis));
         curves.push_back(codes_curve(observation, axis));
-        if (varies(baseline.temperature_C())) {
-            curves.push_back(mean_curve(GapDomainKind::temperature, axis, axis,
-                                        by_value(observation, axis, baseline.temperature_C())));
-        }
+        if (varies(baseline.temperature_C())) { curves.push_back(temperature_curve(observation, axis)); }
         for (const std::size_t other : baseline.axes()) {
             if (other > axis) { curves.push_back(correlation_curve(observation, axis, other)); }
         }
-        if (baseline.moves()) { add_motion_curves(observation, axis, curves); }
+        if (baseline.moves()) {
+            std::ranges::move(motion_curves(observation, axis), std::back_inserter(curves));
+        }
     }
+    if (baseline.axes().size() > 1) { curves.push_back(shared_memory_curve(observation)); }
+    curves.push_back(rhythm_curve(observation));
     return curves;
 }
 

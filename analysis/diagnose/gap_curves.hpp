@@ -22,8 +22,11 @@ enum class GapDomainKind {
     rate,
     rate_noise,
     acceleration,
+    gain_course,
+    delay_course,
     repeats,
     memory,
+    rhythm,
     period,
     codes
 };
@@ -35,6 +38,7 @@ struct GapCurve {
     std::size_t other = 0;  // cross_axis: the other axis; rate: the axis whose rate x is
     std::vector<double> x;
     std::vector<double> value;
+    bool of_all_axes = false;
 };
 
 // Of one observation: the same curves, of as many points, for every observation of a baseline.
@@ -43,12 +47,11 @@ struct GapCurve {
 //   course       ln of the whitened samples' variance over time
 //   drift        mean of the whitened samples over time, in standard deviations
 //   amplitude    ln of the share of whitened samples beyond x standard deviations
-//   temperature  mean of the whitened samples by temperature
 //   cross_axis   correlation of two axes by frequency
-//   rate         mean of the whitened samples by reference rate
-//   rate_noise   ln of the whitened samples' variance by reference rate
-//   acceleration mean of the whitened samples by change of the rate
-//   narrow, repeats, memory, period, codes: structure_curves.hpp
+//   temperature, and of a sensor that moves rate, rate_noise, acceleration, gain_course, delay_course:
+//                motion_curves.hpp
+//   memory, rhythm: noise_level_curves.hpp
+//   narrow, repeats, period, codes: structure_curves.hpp
 std::vector<GapCurve> gap_curves(const Observation& observation);
 
 }  // namespace gyrolog

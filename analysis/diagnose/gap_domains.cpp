@@ -70,11 +70,17 @@ DomainLook look_of(GapDomainKind kind) {
         case GapDomainKind::memory:
             return {"bursts of noise", "length (s)",      "over the model (dB)",
                     as_it_is,          variance_ratio_dB, true};
+        case GapDomainKind::rhythm:
+            return {"rhythm of the noise", "period (s)", "excess (its sd)", as_it_is, as_it_is, true};
         case GapDomainKind::period:
             return {"what comes back", "period (s)", "excess (its sd)", as_it_is, as_it_is, true};
         case GapDomainKind::codes:
             return {"converter's codes", "1 each code, 2 even and odd", "excess (its sd)", as_it_is,
                     as_it_is};
+        case GapDomainKind::gain_course:
+            return {"gain over time", "time (s)", "excess (its sd)", as_it_is, as_it_is};
+        case GapDomainKind::delay_course:
+            return {"delay over time", "time (s)", "excess (its sd)", as_it_is, as_it_is};
         case GapDomainKind::acceleration:
             return {"change of the rate", "change of the rate (deg/s^2)", standard_deviations, in_degrees,
                     as_it_is};
@@ -84,7 +90,9 @@ DomainLook look_of(GapDomainKind kind) {
 
 std::string name_of(const GapCurve& curve, const DomainLook& look) {
     const bool names_other = curve.kind == GapDomainKind::cross_axis || curve.kind == GapDomainKind::rate;
-    return std::string(look.name) + (names_other ? axis_names.at(curve.other) : "");
+    const bool is_also_of_each = curve.of_all_axes && curve.kind == GapDomainKind::memory;
+    return (is_also_of_each ? "shared " : "") + std::string(look.name) +
+           (names_other ? axis_names.at(curve.other) : "");
 }
 
 // Where the x of the points rise: the amplitudes end in a number that is none of them, at 0.
@@ -134,6 +142,7 @@ std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap*
         domain.log_x = look.log_x;
         domain.log_y = look.log_y;
         domain.axis = curve.axis;
+        domain.of_all_axes = curve.of_all_axes;
         for (std::size_t i = 0; i < points; ++i) {
             domain.x.push_back(look.x(curve.x[i]));
             if (look.over_mean) { shift[i] = -before.reference.mean[c][i]; }

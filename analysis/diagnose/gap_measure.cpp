@@ -17,6 +17,7 @@ double least_sd(GapDomainKind kind) {
         case GapDomainKind::amplitude:
             return 0.5;
         case GapDomainKind::repeats:
+        case GapDomainKind::rhythm:
             return 1.0;
         default:
             return 1e-6;
@@ -200,6 +201,7 @@ Surprises surprises_of(const std::vector<GapCurve>& curves, const GapReference& 
     for (std::size_t c = 0; c < curves.size(); ++c) {
         gaps.push_back(gap_of(curves[c], reference, c));
         surprises.own_nats.push_back(gaps.back().surprise_nats);
+        if (curves[c].of_all_axes) { continue; }
         std::vector<std::size_t>& same = surprises.of_axes[curves[c].kind];
         const bool as_long = same.empty() || gaps[same.front()].z.size() == gaps[c].z.size();
         if (curves[c].axis == curves[c].other && as_long) { same.push_back(c); }

@@ -30,6 +30,7 @@ void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
     switch (curve.kind) {
         case GapDomainKind::allan:
         case GapDomainKind::memory:
+        case GapDomainKind::rhythm:
         case GapDomainKind::period:
             where.tau_s = span;
             break;
@@ -39,6 +40,8 @@ void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
             break;
         case GapDomainKind::course:
         case GapDomainKind::drift:
+        case GapDomainKind::gain_course:
+        case GapDomainKind::delay_course:
             where.time_s = span;
             break;
         case GapDomainKind::amplitude:
@@ -86,6 +89,7 @@ GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& re
                                 (2.0 * points * value * value + 1e-12));
     summary.gap = {value, 1.0, std::max(0.0, value - 1.96 * sd), value + 1.96 * sd};
     for (std::size_t c = 0; c < curves.size(); ++c) {
+        if (curves[worst].of_all_axes) { summary.where.axes.push_back(curves[c].axis); }
         if (curves[c].kind != curves[worst].kind || surprises[c] < stands_out_nats) { continue; }
         summary.where.axes.push_back(curves[c].axis);
     }

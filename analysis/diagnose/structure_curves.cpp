@@ -1,5 +1,6 @@
 #include "analysis/diagnose/structure_curves.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,9 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/special_functions/gamma.hpp>
-
+#include "analysis/diagnose/rarity.hpp"
 #include "analysis/diagnose/repeat_patterns.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
@@ -19,7 +18,6 @@ namespace {
 
 constexpr std::size_t repeat_lags = 2;
 constexpr std::size_t compared_lags = 4;  // after those
-constexpr std::size_t memory_blocks_least = 16;
 constexpr std::size_t period_least = 4;
 constexpr std::size_t period_most = 4096;
 constexpr double repetitions_least = 8.0;
@@ -31,7 +29,9 @@ constexpr std::array<std::size_t, 4> narrow_widths = {4, 16, 64, 256};
 // Below the bands that hold the broadest of them.
 constexpr std::array<std::size_t, 3> slow_widths = {2, 4, 16};
 
-constexpr double code_count_least = 20.0;
+constexpr std::size_t codes_around = 6;  // on either side
+constexpr double code_count_least = 8.0;
+constexpr double log_mean_most = 40.0;
 
 double square(double value) { return value * value; }
 
@@ -60,18 +60,6 @@ RepeatCounts count_repeats(const Recording& recording, std::size_t axis) {
     return counts;
 }
 
-// -ln of the chance that the largest of `tries` chi-square numbers is this large.
-double surprise_of_largest(double value, double degrees, double tries) {
-    const double chance = boost::math::gamma_q(0.5 * degrees, 0.5 * value);
-    return -std::log(-std::expm1(tries * std::log1p(-std::max(chance, 1e-280))));
-}
-
-// The normal deviate that is as rare.
-double deviate_of(double surprise_nats) {
-    const double chance = std::clamp(std::exp(-surprise_nats), 1e-280, 0.99);
-    return boost::math::quantile(boost::math::complement(boost::math::normal(), chance));
-}
-
 }  // namespace
 
 GapCurve repeats_curve(const Observation& observation, std::size_t axis) {
@@ -85,39 +73,6 @@ GapCurve repeats_curve(const Observation& observation, std::size_t axis) {
         curve.x.push_back(static_cast<double>(lag + 1) / observation.baseline().rate_hz());
         const double variance = counts[lag] + compared / static_cast<double>(compared_lags) + 1.0;
         curve.value.push_back((counts[lag] - compared) / std::sqrt(variance));
-    }
-    return curve;
-}
-
-GapCurve memory_curve(const Observation& observation, std::size_t axis) {
-    const std::vector<float>& white = observation.axis(axis).whitened;
-    std::vector<double> means;  // of the blocks
-    means.reserve(white.size());
-    double mean = 0.0;
-    for (std::size_t slot = 0; slot < white.size(); ++slot) {
-        if (!observation.present()[slot]) { continue; }
-        means.push_back(square(static_cast<double>(white[slot])));
-        mean += means.back();
-    }
-    mean /= static_cast<double>(std::max<std::size_t>(means.size(), 1));
-    double variance = 0.0;
-    for (const double value : means) { variance += square(value - mean); }
-    variance /= static_cast<double>(std::max<std::size_t>(means.size(), 1));
-    GapCurve curve{GapDomainKind::memory, axis, axis, {}, {}};
-    // As many points for every observation, however many of its samples are to be judged.
-    const std::size_t slots = white.size();
-    for (std::size_t length = 1; slots / length >= memory_blocks_least; length *= 2) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i + 1 < means.size(); i += 2) {
-            sum += square(means[i + 1] - means[i]);
-            means[i / 2] = 0.5 * (means[i] + means[i + 1]);
-        }
-        const std::size_t pairs = means.size() / 2;
-        means.resize(pairs);
-        const double expected = 2.0 * variance / static_cast<double>(length) * static_cast<double>(pairs);
-        curve.x.push_back(static_cast<double>(length) / observation.baseline().rate_hz());
-        // Few pairs are far from normal; the cube root is nearer (see the spectrum's).
-        curve.value.push_back(expected > 0.0 ? std::cbrt(sum / expected) - 1.0 : 0.0);
     }
     return curve;
 }
@@ -239,7 +194,8 @@ GapCurve narrow_curve(const Observation& observation, std::size_t axis,
 
 namespace {
 
-// How often each code of the converter was shown, from the least on.
+// How often each code of the converter was shown, from codes_around below the least to as far above the
+// largest.
 std::vector<double> count_codes(const Recording& recording, std::size_t axis, double lsb_rad_s) {
     constexpr double codes_most = 1 << 20;
     const Column& column = *recording.find(gyro_columns.at(axis));
@@ -253,14 +209,83 @@ std::vector<double> count_codes(const Recording& recording, std::size_t axis, do
             const double first = std::round(std::min(one_end, other_end));
             const double codes = std::round(std::max(one_end, other_end)) - first;
             if (codes > codes_most) { return {}; }
-            std::vector<double> counts(static_cast<std::size_t>(codes) + 1, 0.0);
+            std::vector<double> counts(static_cast<std::size_t>(codes) + 1 + 2 * codes_around, 0.0);
+            const double from = first - static_cast<double>(codes_around);
             for (const auto number : data) {
-                const double code = static_cast<double>(number) * codes_per_number - first;
+                const double code = static_cast<double>(number) * codes_per_number - from;
                 counts[static_cast<std::size_t>(std::max(code + 0.5, 0.0))] += 1.0;
             }
             return counts;
         },
         column.data);
+}
+
+}  // namespace
+
+namespace {
+
+// What the codes around say of one: a parabola through the logarithms of their counts, which a normal density
+// is. The code itself and its neighbours, that have what it lacks, are left out.
+struct ExpectedCount {
+    double count = 0.0;
+    double rel_variance = 0.0;
+};
+
+// By the scoring iterations of a Poisson regression. `counts` goes on by codes_around beyond the code.
+ExpectedCount expected_count(const std::vector<double>& counts, std::size_t code) {
+    constexpr int iterations = 6;
+    constexpr double least_start = 0.5;
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+        Eigen::Vector3d right = Eigen::Vector3d::Zero();
+        for (std::size_t i = 0; i <= 2 * codes_around; ++i) {
+            const double away = static_cast<double>(i) - static_cast<double>(codes_around);
+            if (std::fabs(away) < 2.0) { continue; }
+            const double count = counts[code - codes_around + i];
+            const Eigen::Vector3d powers(1.0, away, away * away);
+            const double log_mean = iteration == 0 ? std::log(std::max(count, least_start)) : powers.dot(at);
+            const double mean = std::exp(std::min(log_mean, log_mean_most));
+            normal.noalias() += mean * powers * powers.transpose();
+            right += (mean * log_mean + count - mean) * powers;
+        }
+        const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
+        if (!(solver.rcond() > 1e-10)) { return {}; }
+        at = solver.solve(right);
+        covariance = solver.solve(Eigen::Matrix3d::Identity());
+    }
+    return {std::exp(at[0]), covariance(0, 0)};
+}
+
+// Twice the log likelihood ratio of a Poisson count, sharing its chance with that of what is expected.
+double deviance(double count, const ExpectedCount& expected) {
+    const double log_part = count > 0.0 ? count * std::log(count / expected.count) : 0.0;
+    return 2.0 * (log_part - count + expected.count) / (1.0 + expected.count * expected.rel_variance);
+}
+
+// Of the code, or of it and the next, that is most at odds with those around.
+double most_surprising_code(const std::vector<double>& counts) {
+    double most_alone = 0.0;
+    double most_of_two = 0.0;
+    double tries = 0.0;
+    double before = 0.0;
+    for (std::size_t code = codes_around; code + codes_around < counts.size(); ++code) {
+        const ExpectedCount expected = expected_count(counts, code);
+        if (!(expected.count >= code_count_least)) {
+            before = 0.0;
+            continue;
+        }
+        const double own = deviance(counts[code], expected);
+        most_alone = std::max(most_alone, own);
+        most_of_two = std::max(most_of_two, own + before);
+        before = own;
+        tries += 1.0;
+    }
+    if (!(tries > 0.0)) { return 0.0; }
+    const double surprise = std::max(surprise_of_largest(most_alone, 1.0, 2.0 * tries),
+                                     surprise_of_largest(most_of_two, 2.0, 2.0 * tries));
+    return deviate_of(surprise);
 }
 
 }  // namespace
@@ -271,23 +296,13 @@ GapCurve codes_curve(const Observation& observation, std::size_t axis) {
     // What moves shows each code for as long as the motion has it.
     if (!(lsb_rad_s > 0.0) || observation.baseline().moves()) { return curve; }
     const std::vector<double> counts = count_codes(observation.recording(), axis, lsb_rad_s);
-    double most = 0.0;
-    double tries = 0.0;
     double balance = 0.0;
     double all = 0.0;
     for (std::size_t code = 0; code < counts.size(); ++code) {
         balance += code % 2 == 0 ? counts[code] : -counts[code];
         all += counts[code];
-        if (code < 2 || code + 2 >= counts.size()) { continue; }
-        const double near = counts[code - 1] + counts[code + 1];
-        const double far = counts[code - 2] + counts[code + 2];
-        const double expected = (4.0 * near - far) / 6.0;  // a cubic through the four
-        if (expected < code_count_least) { continue; }
-        const double variance = expected + (16.0 * near + far) / 36.0;
-        most = std::max(most, square(counts[code] - expected) / variance);
-        tries += 1.0;
     }
-    if (tries > 0.0) { curve.value[0] = deviate_of(surprise_of_largest(most, 1.0, tries)); }
+    curve.value[0] = most_surprising_code(counts);
     curve.value[1] = std::fabs(balance) / std::sqrt(std::max(all, 1.0));
     return curve;
 }

@@ -13,12 +13,6 @@ namespace gyrolog {
 // these show, in standard deviations of a count. Colour makes codes equal at all of these lags, nearly.
 GapCurve repeats_curve(const Observation& observation, std::size_t axis);
 
-// By block length in seconds, doubling: cube root of the Allan variance of the squared whitened samples over
-// that of independent ones, (variance of the squares) / (block length) (D. W. Allan, Proc. IEEE 54 (1966)
-// 221, on squares), less 1. Noise that comes in bursts shows at their length. 0 where too few samples are
-// judged.
-GapCurve memory_curve(const Observation& observation, std::size_t axis);
-
 // By period in seconds, octaves: the most that the autocorrelation has, summed over all multiples of a whole
 // number of samples, as the normal deviate that is as rare among as many periods. What comes back every P
 // samples has no line that stands out when it is short, but all of its multiples agree.
@@ -32,9 +26,9 @@ GapCurve period_curve(const Observation& observation, std::size_t axis);
 GapCurve narrow_curve(const Observation& observation, std::size_t axis,
                       const std::vector<std::size_t>& edges);
 
-// The converter's histogram (IEEE Std 1241, code density): 1, the code that is most at odds with a cubic
-// through the four beside it, as the normal deviate that is as rare among as many codes; 2, even codes
-// against odd ones, in standard deviations of a count. 0 where the model has no step or
+// The converter's histogram (IEEE Std 1241, code density): 1, the code, or the two neighbours, most at odds
+// with the normal density through the codes around, as the normal deviate that is as rare among as many
+// codes; 2, even codes against odd ones, in standard deviations of a count. 0 where the model has no step or
 // the sensor moves.
 GapCurve codes_curve(const Observation& observation, std::size_t axis);
 

@@ -118,7 +118,7 @@ private:
     // The numbers first: a long name is shortened at its end.
     std::string caption() const {
         std::string text =
-            std::string(axis_names.at(domain_.axis)) + ", gap " + rounded_number(domain_.gap_before, 2);
+            (domain_.of_all_axes ? "all axes" : domain_.axis_text()) + ", gap " + rounded_number(domain_.gap_before, 2);
         if (has(Part::after)) { text += " → " + rounded_number(domain_.gap_after, 2); }
         return text + ": " + domain_.name;
     }

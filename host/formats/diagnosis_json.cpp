@@ -118,7 +118,7 @@ Json cause_json(const Cause& cause) {
 Json domain_json(const GapDomain& domain) {
     Json json;
     json["name"] = domain.name;
-    json["axis"] = axis_names.at(domain.axis);
+    json["axis"] = domain.axis_text();
     json["points"] = domain.x.size();
     json["outside_before"] = std::ranges::count(domain.outside_before, true);
     json["gap_before"] = domain.gap_before;

@@ -259,7 +259,7 @@ std::string domains_text(const Diagnosis& diagnosis) {
             ++quiet;
             continue;
         }
-        TextRow row{fmt::format("{} {}", axis_names.at(domain.axis), domain.name), "", {}};
+        TextRow row{fmt::format("{} {}", domain.axis_text(), domain.name), "", {}};
         const std::string before = outside_text(domain.outside_before, domain.x.size());
         row.cells = {fmt::format("{:.2g}", domain.gap_before), before};
         if (corrected && domain.after_lo.empty()) {

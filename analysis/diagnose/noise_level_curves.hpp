@@ -1,0 +1,23 @@
+// How the level of the noise goes, beyond a slow course: bursts, and what repeats itself.
+#pragma once
+
+#include <vector>
+
+#include "analysis/diagnose/gap_curves.hpp"
+
+namespace gyrolog {
+
+// By block length in seconds, doubling: cube root of the Allan variance of the squared whitened samples over
+// that of independent ones, (variance of the squares) / (block length) (D. W. Allan, Proc. IEEE 54 (1966)
+// 221, on squares), less 1. Noise that comes in bursts shows at their length. 0 where too few samples are
+// judged.
+GapCurve memory_curve(const Observation& observation, std::size_t axis);
+
+// The same of the squares of all axes together: bursts that they share.
+GapCurve shared_memory_curve(const Observation& observation);
+
+// By period in seconds, octaves: what the level repeats on any of the axes (repetition.hpp), as the normal
+// deviate that is as rare.
+GapCurve rhythm_curve(const Observation& observation);
+
+}  // namespace gyrolog
