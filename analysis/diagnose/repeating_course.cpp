@@ -8,6 +8,7 @@
 
 #include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/repetition.hpp"
+#include "analysis/diagnose/rival_noise.hpp"
 
 namespace gyrolog {
 
@@ -16,26 +17,6 @@ namespace {
 // A period shorter than some seconds is a few lines that stand alone.
 constexpr double block_s = 0.1;
 constexpr std::size_t blocks_least = 64;
-
-// Under the noise that goes with the causes: what would explain the course is not in it.
-std::vector<double> density_with(const Observation& without, const Observation& with, std::size_t axis) {
-    const Baseline& baseline = without.baseline();
-    std::vector<double> density(baseline.bins().size());
-    expected_density(baseline.parts(axis), noise_uncertainty(baseline.model(), axis), with.axis(axis).noise.z,
-                     density);
-    return density;
-}
-
-double log_likelihood_nats(const Observation& without, const Observation& with, std::size_t axis,
-                           const std::vector<double>& density) {
-    const SpectralBins& bins = without.baseline().bins();
-    double sum = 0.0;
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-        sum -= 0.5 * bins[i].count() * (std::log(density[i]) + without.axis(axis).power[i] / density[i]);
-    }
-    for (const double z : with.axis(axis).noise.z) { sum -= 0.5 * z * z; }
-    return sum;
-}
 
 std::vector<float> whitened(const Observation& without, std::size_t axis,
                             const std::vector<double>& density) {
@@ -72,10 +53,9 @@ std::optional<UnspecificFinding> find_repeating_course(const Observation& withou
     std::vector<std::vector<float>> series;
     double lost_nats = 0.0;
     for (const std::size_t axis : baseline.axes()) {
-        const std::vector<double> density = density_with(without, with, axis);
-        lost_nats +=
-            without.axis(axis).noise.log_likelihood_nats - log_likelihood_nats(without, with, axis, density);
-        series.push_back(block_sums(whitened(without, axis, density), length));
+        const RivalNoise noise = rival_noise(without, with, axis);
+        lost_nats += noise.lost_nats;
+        series.push_back(block_sums(whitened(without, axis, noise.density), length));
     }
     const std::vector<Repetition> found =
         repetitions(series, static_cast<double>(length) / baseline.rate_hz());

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "analysis/diagnose/motion_memory.hpp"
 #include "analysis/diagnose/repeating_course.hpp"
 #include "analysis/diagnose/spectral_hump.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 
 using FindRival = std::optional<UnspecificFinding> (*)(const Observation& without, const Observation& with);
 
-constexpr FindRival rivals[] = {find_repeating_course, find_spectral_hump};
+constexpr FindRival rivals[] = {find_repeating_course, find_spectral_hump, find_motion_memory};
 
 }  // namespace
 

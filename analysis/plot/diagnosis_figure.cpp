@@ -117,8 +117,8 @@ private:
 
     // The numbers first: a long name is shortened at its end.
     std::string caption() const {
-        std::string text =
-            (domain_.of_all_axes ? "all axes" : domain_.axis_text()) + ", gap " + rounded_number(domain_.gap_before, 2);
+        std::string text = (domain_.of_all_axes ? "all axes" : domain_.axis_text()) + ", gap " +
+                           rounded_number(domain_.gap_before, 2);
         if (has(Part::after)) { text += " → " + rounded_number(domain_.gap_after, 2); }
         return text + ": " + domain_.name;
     }

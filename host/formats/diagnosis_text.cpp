@@ -344,7 +344,7 @@ std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of) {
     }
     if (diagnosis.causes.empty()) { return "unexplained: there is a gap, and no known effect makes it"; }
     if (diagnosis.better_shape) {
-        return fmt::format("unexplained: {} {} the gap, but what no effect is like fits better", causes,
+        return fmt::format("unexplained: {} {} the gap, but something else fits better", causes,
                            one ? "resembles" : "resemble");
     }
     return fmt::format("unexplained: {} {} part of the gap, what makes the rest is not known", causes,

@@ -82,6 +82,24 @@ TEST(UnspecificRivals, ASwingThatGrowsFasterIsNoWalk) {
     EXPECT_THAT(seen.rival->words, HasSubstr("density rises"));
 }
 
+TEST(UnspecificRivals, WhatATurnLeavesBehindIsNoWalk) {
+    const auto turns = [](double t_s) {
+        return std::fmod(t_s + 50.0 * std::sin(t_s / 97.0), 140.0) < 20.0 ? 3.0 : 0.1;
+    };
+    const auto world = world_turning([&](double t_s) {
+        const double rate_rad_s = turns(t_s) * std::sin(2.0 * pi * 0.7 * t_s);
+        return Vector3{rate_rad_s, 0.3 * rate_rad_s, 0.2 * rate_rad_s};
+    });
+    double left_dps = 0.0;
+    const auto recording = with_course(recorded(quiet_sensor(), samples / 2, 5, world), [&](double t_s) {
+        left_dps += 0.01 / 14.0 * ((turns(t_s) > 1.0 ? 0.02 : 0.0) - left_dps);
+        return left_dps;
+    });
+    const Contest seen = contest(make_spectrum_test, "rrw_missing", recording);
+    EXPECT_GT(seen.lead_nats(), far_better_nats);
+    EXPECT_THAT(seen.rival->words, HasSubstr("fades in some"));
+}
+
 // Of noise that is what it seems no other shape tells more.
 class GenuineNoise : public testing::TestWithParam<std::uint64_t> {};
 
