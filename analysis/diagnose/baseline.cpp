@@ -84,6 +84,15 @@ SensorModel linear(const SensorModel& model) {
     return sensor;
 }
 
+// Beyond gains and a delay.
+bool shapes_the_motion(const SensorModel& model) {
+    return std::ranges::any_of(model.effects, [](const EffectModel& entry) {
+        const EffectDefinition& effect = *find_effect(entry.effect);
+        return !effect.noise_only && !effect.timing_only && effect.signature != nullptr &&
+               !effect.signature->slow;
+    });
+}
+
 std::vector<float> cosines_of(const std::vector<float>& values, CosineTransform& transform) {
     std::vector<double> work(values.begin(), values.end());
     transform.forward(work);
@@ -170,6 +179,7 @@ void Baseline::read_motion() {
     const double gain_sd = stated(model_.sd_abs, "M", 0.0);
     const double latency_sd_s = stated(model_.sd_abs, "latency_s", 0.0);
     const double clock_sd = stated(model_.sd_abs, "rate_rel", clock_sd_rel);
+    const std::array<std::array<std::vector<float>, 3>, 3> per_gain = responses_per_gain(gain_sd);
     for (const std::size_t axis : axes_) {
         std::vector<float>& change = response_change_rad_s2_[axis];
         for (std::size_t slot = 0; slot < length_; ++slot) {
@@ -179,7 +189,7 @@ void Baseline::read_motion() {
         const auto take = [&](const std::vector<float>& values, double sd) {
             if (sd > 0.0) { uncertain.push_back({cosines_of(values, *transform), sd}); }
         };
-        for (const std::size_t from : axes_) { take(true_rate_rad_s_[from], gain_sd); }
+        for (const std::size_t from : axes_) { take(per_gain[from][axis], gain_sd); }
         take(change, latency_sd_s);
         std::vector<float> growing(length_);
         for (std::size_t slot = 0; slot < length_; ++slot) {
@@ -188,6 +198,30 @@ void Baseline::read_motion() {
         take(growing, clock_sd);
         uncertain_[axis] = UncertainMean(std::move(uncertain), bins_);
     }
+}
+
+// By the rate's axis, then the answer's: what one unit of a gain would add. The rate itself, unless the model
+// filters or distorts it.
+std::array<std::array<std::vector<float>, 3>, 3> Baseline::responses_per_gain(double gain_sd) const {
+    constexpr double step = 0.01;
+    std::array<std::array<std::vector<float>, 3>, 3> per_gain;
+    if (!(gain_sd > 0.0)) { return per_gain; }
+    for (const std::size_t from : axes_) {
+        if (!shapes_the_motion(model_)) {
+            for (const std::size_t axis : axes_) { per_gain[from][axis] = true_rate_rad_s_[from]; }
+            continue;
+        }
+        SensorModel more = model_;
+        for (Vector3& row : more.M) { row[from] += step; }
+        per_gain[from] = noise_free_response(*this, quiet_world(), more);
+        for (const std::size_t axis : axes_) {
+            for (std::size_t slot = 0; slot < length_; ++slot) {
+                float& value = per_gain[from][axis][slot];
+                value = (value - quiet_response_rad_s_[axis][slot]) / static_cast<float>(step);
+            }
+        }
+    }
+    return per_gain;
 }
 
 // Of the reference's noise every reading has its own: nothing in the sensor filters or delays it.

@@ -35,6 +35,9 @@ constexpr double unexplained_below_p = 0.005;
 // chance nearly.
 constexpr double tolerated_share = 1.6e-3;
 constexpr double tolerated_above_p = 1e-6;
+// Or where what is left is so little of what the causes are worth: two right formulas of one filter differ
+// by as much.
+constexpr double formulas_share = 1e-4;
 // A shape of no known origin takes the place of causes that it beats by this,
 constexpr double shape_wins_nats = 8.0;
 // and by this share of their gain: the approximations of a fit may lose as much.
@@ -242,8 +245,9 @@ private:
         if (!null) { return false; }
         after_ = gap_reference(null->curves);
         after_curves_ = gap_curves(*found_->last.observation);
-        answer_.p_left = EvidenceTail(simulated_surprises_nats(null->curves))
-                             .probability(worst_surprise_nats(after_curves_, *after_));
+        surprise_left_nats_ = worst_surprise_nats(after_curves_, *after_);
+        answer_.p_left =
+            EvidenceTail(simulated_surprises_nats(null->curves)).probability(surprise_left_nats_);
         return true;
     }
 
@@ -309,8 +313,9 @@ private:
         }
         const double excess_before = before.gap.value * before.gap.value - 1.0;
         const double excess_after = std::max(after.gap.value * after.gap.value - 1.0, 0.0);
-        const bool tolerable =
-            excess_after < tolerated_share * excess_before && answer_.p_left >= tolerated_above_p;
+        const bool next_to_chance =
+            answer_.p_left >= tolerated_above_p || surprise_left_nats_ < formulas_share * found_gain_nats();
+        const bool tolerable = excess_after < tolerated_share * excess_before && next_to_chance;
         const bool explained = after_ && !answer_.better_shape && effects_found() < many_effects &&
                                (answer_.p_left >= unexplained_below_p || tolerable);
         answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
@@ -331,6 +336,12 @@ private:
         propose_recordings();
         answer_.where = explained ? answer_.causes.front().finding.where : before.where;
         if (!explained && after_ && !answer_.better_shape) { answer_.left = after.where; }
+    }
+
+    double found_gain_nats() const {
+        double sum = 0.0;
+        for (const FoundCause& cause : found_->causes) { sum += cause.finding.gain_nats; }
+        return sum;
     }
 
     std::size_t effects_found() const {
@@ -474,6 +485,7 @@ private:
     std::optional<EffectSearchResult> found_;
     std::optional<GapReference> after_;
     std::vector<GapCurve> after_curves_;
+    double surprise_left_nats_ = 0.0;
 };
 
 }  // namespace

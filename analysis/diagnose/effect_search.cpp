@@ -22,6 +22,9 @@ constexpr std::size_t beginnings_most = 4;
 // A cause of such evidence changes everything that others are judged by.
 constexpr double huge_nats = 1e4;
 
+// Of the main cause's evidence: two right formulas of one filter differ by as much.
+constexpr double formulas_share = 1e-4;
+
 // Of what one response leaves, to fit it together with others.
 constexpr double worth_refitting_nats = 100.0;
 // Of responses, to fit them better than one by one.
@@ -38,10 +41,15 @@ public:
     std::optional<EffectSearchResult> run() {
         std::optional<Hypotheses> latest = with_first_cause();
         if (latest && settle_responses()) { latest = with_causes(); }
-        if (latest && !learn_apparent_evidence(*latest)) { return std::nullopt; }
         // A cause that others make needless may come back for ever.
         const std::size_t rounds_most = 2 * options_.causes_most;
         for (std::size_t round = 0; latest && round < rounds_most; ++round) {
+            if (has_new_main_cause(*latest)) {
+                if (!learn_apparent_evidence()) { return std::nullopt; }
+                if (causes_.size() > 1 && !refit()) { return std::nullopt; }
+                static_cast<void>(settle_responses());
+                latest = with_causes();
+            }
             const bool freed = free_swallowed_noise(*latest->observation);
             const Finding* next = further(*latest);
             if (!freed && (next == nullptr || causes_.size() == options_.causes_most)) { break; }
@@ -106,15 +114,42 @@ private:
         return find_effect(finding.effect)->signature->method == EvidenceMethod::code_grid;
     }
 
+    // Null without causes.
+    const Finding* main_cause() const {
+        if (causes_.empty()) { return nullptr; }
+        const Finding* main = &causes_.front().finding;
+        if (is_of_codes(*main)) { return main; }
+        for (const FoundCause& cause : causes_) {
+            if (cause.finding.evidence_nats > main->evidence_nats) { main = &cause.finding; }
+        }
+        return main;
+    }
+
+    // What a further cause must have.
+    double evidence_least_nats() const {
+        const Finding* main = main_cause();
+        const double formulas_nats = main == nullptr ? 0.0 : formulas_share * main->evidence_nats;
+        return std::max(options_.evidence_min_nats, formulas_nats);
+    }
+
+    // One beside which others may only seem to be.
+    bool has_new_main_cause(const Hypotheses& with_causes) const {
+        if (causes_.empty() || (causes_.size() == 1 && further(with_causes) == nullptr)) { return false; }
+        const Finding* main = main_cause();
+        if (!is_of_codes(*main) && main->evidence_nats < huge_nats) { return false; }
+        return main->effect != apparent_beside_;
+    }
+
     // False when ended early.
-    bool learn_apparent_evidence(const Hypotheses& with_first) {
-        if (causes_.empty() || further(with_first) == nullptr) { return true; }
-        const Finding& first = causes_.front().finding;
-        if (!is_of_codes(first) && first.evidence_nats < huge_nats) { return true; }
+    bool learn_apparent_evidence() {
+        const Finding* main = main_cause();
+        const Hypotheses with_main = examine(first_.baseline->with(with_cause(model_, *main)), recording_,
+                                             options_.seed, options_.threads);
         auto apparent_nats =
-            apparent_evidence_nats(with_first, options_.seed, options_.threads, [&] { return told(); });
+            apparent_evidence_nats(with_main, options_.seed, options_.threads, [&] { return told(); });
         if (!apparent_nats) { return false; }
         apparent_nats_ = *std::move(apparent_nats);
+        apparent_beside_ = main->effect;
         return true;
     }
 
@@ -231,10 +266,13 @@ private:
         return !options_.on_progress || options_.on_progress(share);
     }
 
-    static std::vector<Finding> findings_of(const Hypotheses& hypotheses) {
+    // The best first, by what is more than apparent.
+    std::vector<Finding> findings_of(const Hypotheses& hypotheses) const {
         std::vector<Finding> findings;
         for (const std::optional<Finding>& finding : hypotheses.findings) {
-            if (finding) { findings.push_back(*finding); }
+            if (!finding) { continue; }
+            findings.push_back(*finding);
+            findings.back().evidence_nats = evidence_beyond_apparent_nats(*finding);
         }
         std::ranges::sort(findings, std::greater{}, &Finding::evidence_nats);
         return findings;
@@ -253,7 +291,7 @@ private:
         for (const std::optional<Finding>& finding : hypotheses.findings) {
             if (!finding || !is_new(*finding)) { continue; }
             const double evidence_nats = evidence_beyond_apparent_nats(*finding);
-            if (evidence_nats < options_.evidence_min_nats) { continue; }
+            if (evidence_nats < evidence_least_nats()) { continue; }
             if (best == nullptr || evidence_nats > best_nats) { best = &*finding, best_nats = evidence_nats; }
         }
         return best;
@@ -305,14 +343,16 @@ private:
                                                options_.seed, options_.threads);
             const std::vector<Finding> findings = findings_of(without);
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
+            const double least_nats =
+                &causes_[i].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
             const double own_nats = same == findings.end() ? 0.0 : same->evidence_nats;
             const auto rival = std::ranges::find_if(findings, [&](const Finding& f) { return is_new(f); });
+            const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
             if (is_of_codes(causes_[i].finding)) {
                 if (same != findings.end()) { causes_[i].finding = *same; }
-            } else if (rival != findings.end() && rival->evidence_nats > own_nats + margin_nats &&
-                       rival->evidence_nats >= options_.evidence_min_nats) {
+            } else if (rival_nats > own_nats + margin_nats && rival_nats >= least_nats) {
                 causes_[i].finding = *rival;
-            } else if (own_nats >= options_.evidence_min_nats) {
+            } else if (own_nats >= least_nats) {
                 causes_[i].finding = *same;
             } else {
                 causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -337,6 +377,7 @@ private:
     std::vector<FoundCause> causes_;
     std::vector<std::size_t> free_axes_;
     std::map<std::string, double> apparent_nats_;  // by effect
+    std::string apparent_beside_;                  // the effect that was in the model then
 };
 
 }  // namespace
