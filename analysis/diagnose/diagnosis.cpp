@@ -50,7 +50,7 @@ constexpr double tie_nats = 4.0;
 constexpr std::size_t tie_most = 4;
 // A difference of this evidence is no tie any more, whatever chance does to it.
 constexpr double decided_nats = 8.0;
-constexpr std::size_t simulations_after_most = 100;
+constexpr std::size_t simulations_after_most = 50;
 constexpr double faint_line_share = 0.5;
 // Of the Allan variance at a second, which is the white noise's density: none is thirty times as strong
 // as its model.

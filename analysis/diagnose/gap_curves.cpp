@@ -189,7 +189,6 @@ std::vector<GapCurve> gap_curves(const Observation& observation) {
         course_and_drift(observation, axis, curves);
         curves.push_back(amplitude_curve(observation, axis));
         curves.push_back(repeats_curve(observation, axis));
-        curves.push_back(memory_curve(observation, axis));
         curves.push_back(period_curve(observation, axis));
         curves.push_back(codes_curve(observation, axis));
         if (varies(baseline.temperature_C())) { curves.push_back(temperature_curve(observation, axis)); }
@@ -200,8 +199,7 @@ std::vector<GapCurve> gap_curves(const Observation& observation) {
             std::ranges::move(motion_curves(observation, axis), std::back_inserter(curves));
         }
     }
-    if (baseline.axes().size() > 1) { curves.push_back(shared_memory_curve(observation)); }
-    curves.push_back(rhythm_curve(observation));
+    std::ranges::move(noise_level_curves(observation), std::back_inserter(curves));
     return curves;
 }
 

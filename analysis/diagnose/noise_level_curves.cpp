@@ -1,5 +1,6 @@
 #include "analysis/diagnose/noise_level_curves.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -22,13 +23,19 @@ constexpr double deviates_most = 4.0;
 double square(double value) { return value * value; }
 
 // Of the samples that are judged, in the order of time.
-std::vector<double> squares_of(const Observation& observation, std::size_t axis) {
+std::vector<float> squares_of(const Observation& observation, std::size_t axis) {
     const std::vector<float>& white = observation.axis(axis).whitened;
-    std::vector<double> squares;
-    squares.reserve(white.size());
-    for (std::size_t slot = 0; slot < white.size(); ++slot) {
-        if (observation.present()[slot]) { squares.push_back(square(static_cast<double>(white[slot]))); }
+    std::vector<float> squares(white.size());
+    if (std::ranges::find(observation.present(), false) == observation.present().end()) {
+        std::ranges::transform(white, squares.begin(), [](float value) { return value * value; });
+        return squares;
     }
+    std::size_t known = 0;
+    for (std::size_t slot = 0; slot < white.size(); ++slot) {
+        squares[known] = white[slot] * white[slot];
+        known += std::size_t{observation.present()[slot]};
+    }
+    squares.resize(known);
     return squares;
 }
 
@@ -37,25 +44,26 @@ struct Moments {
     double variance = 0.0;
 };
 
-Moments moments_of(const std::vector<double>& values) {
-    const auto count = static_cast<double>(std::max<std::size_t>(values.size(), 1));
-    Moments moments;
-    for (const double value : values) { moments.mean += value / count; }
-    for (const double value : values) { moments.variance += square(value - moments.mean) / count; }
-    return moments;
+Moments moments_of(const std::vector<float>& values) {
+    const Eigen::Map<const Eigen::ArrayXf> all(values.data(), static_cast<Eigen::Index>(values.size()));
+    if (values.empty()) { return {}; }
+    // The squares of unit noise are about one: no digits are lost in the difference.
+    const double mean = all.cast<double>().mean();
+    return {mean, all.cast<double>().square().mean() - mean * mean};
 }
 
-void fill_memory(const Observation& observation, std::vector<double> means, GapCurve& curve) {
-    const double variance = moments_of(means).variance;
+void fill_memory(const Observation& observation, std::vector<float> means, double variance, GapCurve& curve) {
     // As many points for every observation, however many of its samples are to be judged.
     const std::size_t slots = observation.baseline().length();
     for (std::size_t length = 1; slots / length >= memory_blocks_least; length *= 2) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i + 1 < means.size(); i += 2) {
-            sum += square(means[i + 1] - means[i]);
-            means[i / 2] = 0.5 * (means[i] + means[i + 1]);
-        }
         const std::size_t pairs = means.size() / 2;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < pairs; ++i) {
+            const float first = means[2 * i];
+            const float second = means[2 * i + 1];
+            sum += square(static_cast<double>(second - first));
+            means[i] = 0.5F * (first + second);
+        }
         means.resize(pairs);
         const double expected = 2.0 * variance / static_cast<double>(length) * static_cast<double>(pairs);
         curve.x.push_back(static_cast<double>(length) / observation.baseline().rate_hz());
@@ -65,22 +73,25 @@ void fill_memory(const Observation& observation, std::vector<double> means, GapC
 }
 
 // Means of the squares in blocks, as unit white noise; 0 where none of a block's samples is judged.
-std::vector<float> levels(const Observation& observation, std::size_t axis, std::size_t length) {
-    const std::vector<float>& white = observation.axis(axis).whitened;
-    const std::size_t blocks = white.size() / length;
-    const Moments all = moments_of(squares_of(observation, axis));
-    std::vector<float> level(blocks, 0.0F);
-    for (std::size_t block = 0; block < blocks; ++block) {
-        double sum = 0.0;
-        double count = 0.0;
-        for (std::size_t slot = block * length; slot < (block + 1) * length; ++slot) {
-            if (!observation.present()[slot]) { continue; }
-            sum += square(static_cast<double>(white[slot])) - all.mean;
-            count += 1.0;
-        }
+std::vector<float> levels(const Observation& observation, const std::vector<float>& squares,
+                          const Moments& all, std::size_t length) {
+    std::vector<float> level(observation.baseline().length() / length, 0.0F);
+    const std::vector<bool>& present = observation.present();
+    const bool is_whole = squares.size() == observation.baseline().length();
+    std::size_t next = 0;
+    for (std::size_t block = 0; block < level.size(); ++block) {
+        const auto first = present.begin() + static_cast<std::ptrdiff_t>(block * length);
+        const auto known = is_whole ? length
+                                    : static_cast<std::size_t>(std::count(
+                                          first, first + static_cast<std::ptrdiff_t>(length), true));
+        float sums = 0.0F;
+        for (std::size_t i = next; i < next + known; ++i) { sums += squares[i]; }
+        next += known;
+        const auto sum = static_cast<double>(sums);
+        const auto count = static_cast<double>(known);
         if (!(count > 0.0) || !(all.variance > 0.0)) { continue; }
-        level[block] = static_cast<float>(
-            std::clamp(sum / std::sqrt(count * all.variance), -deviates_most, deviates_most));
+        const double deviates = (sum - count * all.mean) / std::sqrt(count * all.variance);
+        level[block] = static_cast<float>(std::clamp(deviates, -deviates_most, deviates_most));
     }
     return level;
 }
@@ -92,41 +103,46 @@ GapCurve of_all_axes(GapDomainKind kind, const Observation& observation) {
     return curve;
 }
 
-}  // namespace
-
-GapCurve memory_curve(const Observation& observation, std::size_t axis) {
-    GapCurve curve{GapDomainKind::memory, axis, axis, {}, {}};
-    fill_memory(observation, squares_of(observation, axis), curve);
-    return curve;
-}
-
-GapCurve shared_memory_curve(const Observation& observation) {
-    GapCurve curve = of_all_axes(GapDomainKind::memory, observation);
-    std::vector<double> sum;
-    for (const std::size_t axis : observation.baseline().axes()) {
-        const std::vector<double> squares = squares_of(observation, axis);
-        sum.resize(squares.size(), 0.0);
-        for (std::size_t i = 0; i < sum.size(); ++i) { sum[i] += squares[i]; }
-    }
-    fill_memory(observation, std::move(sum), curve);
-    return curve;
-}
-
-GapCurve rhythm_curve(const Observation& observation) {
-    const Baseline& baseline = observation.baseline();
+GapCurve rhythm_curve(const Observation& observation, const std::vector<std::vector<float>>& series,
+                      double step_s) {
     GapCurve curve = of_all_axes(GapDomainKind::rhythm, observation);
-    const auto length =
-        static_cast<std::size_t>(std::max(rhythm_samples_least, rhythm_step_s * baseline.rate_hz()));
-    if (baseline.length() / length < rhythm_steps_least) { return curve; }
-    std::vector<std::vector<float>> series;
-    for (const std::size_t axis : baseline.axes()) { series.push_back(levels(observation, axis, length)); }
-    std::vector<Repetition> found = repetitions(series, static_cast<double>(length) / baseline.rate_hz());
+    std::vector<Repetition> found = repetitions(series, step_s);
     std::ranges::reverse(found);
     for (const Repetition& one : found) {
         curve.x.push_back(one.period_s);
         curve.value.push_back(deviate_of(std::max(one.evidence_nats, even_chance_nats)));
     }
     return curve;
+}
+
+}  // namespace
+
+std::vector<GapCurve> noise_level_curves(const Observation& observation) {
+    const Baseline& baseline = observation.baseline();
+    const auto length =
+        static_cast<std::size_t>(std::max(rhythm_samples_least, rhythm_step_s * baseline.rate_hz()));
+    const bool has_rhythm = baseline.length() / length >= rhythm_steps_least;
+    std::vector<GapCurve> curves;
+    std::vector<std::vector<float>> series;
+    std::vector<float> sum;
+    for (const std::size_t axis : baseline.axes()) {
+        std::vector<float> squares = squares_of(observation, axis);
+        const Moments all = moments_of(squares);
+        sum.resize(squares.size(), 0.0F);
+        for (std::size_t i = 0; i < sum.size(); ++i) { sum[i] += squares[i]; }
+        if (has_rhythm) { series.push_back(levels(observation, squares, all, length)); }
+        curves.push_back({GapDomainKind::memory, axis, axis, {}, {}});
+        fill_memory(observation, std::move(squares), all.variance, curves.back());
+    }
+    if (baseline.axes().size() > 1) {
+        curves.push_back(of_all_axes(GapDomainKind::memory, observation));
+        const double variance = moments_of(sum).variance;
+        fill_memory(observation, std::move(sum), variance, curves.back());
+    }
+    if (has_rhythm) {
+        curves.push_back(rhythm_curve(observation, series, static_cast<double>(length) / baseline.rate_hz()));
+    }
+    return curves;
 }
 
 }  // namespace gyrolog

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <unsupported/Eigen/FFT>
 
 namespace gyrolog {
@@ -15,10 +16,8 @@ constexpr double repeats_least = 4.0;
 constexpr double steps_least = 8.0;
 constexpr std::size_t harmonics_most = 32;
 constexpr std::size_t padding = 4;
-// Of the spacing of the padded frequencies: the highest harmonic then is half of it off at most.
-constexpr double fineness = 1.0 / 32.0;
 // Periods whose harmonics together have less than this above the noise are not weighed.
-constexpr float excess_least = 8.0F;
+constexpr float excess_least = 12.0F;
 // Of a series: that it has the pattern, and how strong.
 constexpr double series_cost_nats = 2.0;
 constexpr std::array<double, 3> exponents = {0.0, 1.0, 2.0};
@@ -59,8 +58,12 @@ public:
         std::size_t count = 0;
         float sum = 0.0F;
         float most = 0.0F;
-        for (; count < harmonics_most; ++count) {
-            const auto index = static_cast<std::size_t>(place * static_cast<double>(count + 1) + 0.5);
+        // In fixed point: the numbers are small, and conversions slow.
+        constexpr int fraction_bits = 32;
+        const auto step = static_cast<std::uint64_t>(std::ldexp(place, fraction_bits));
+        std::uint64_t next = step + (std::uint64_t{1} << (fraction_bits - 1));
+        for (; count < harmonics_most; ++count, next += step) {
+            const auto index = static_cast<std::size_t>(next >> fraction_bits);
             if (index >= power.size()) { break; }
             at[count] = power[index];
             sum += at[count] - 1.0F;
@@ -98,15 +101,17 @@ std::vector<Repetition> repetitions(const std::vector<std::vector<float>>& serie
     double place = repeats_least * padded / static_cast<double>(series.front().size());
     while (place < last) {
         const double end = std::min(2.0 * place, last);
-        // A pattern of many harmonics is as sharp as the highest.
-        const double tries =
-            (end - place) * static_cast<double>(harmonics_most) / static_cast<double>(padding);
         Repetition best;
         double best_place = place;
-        for (; place < end; place += fineness) {
+        double tries = 0.0;  // that differ: the highest harmonic's frequencies, without the padding
+        while (place < end) {
             double nats = 0.0;
             for (const std::vector<float>& of_one : power) { nats += harmonics.evidence_nats(of_one, place); }
             if (nats > best.evidence_nats) { best.evidence_nats = nats, best_place = place; }
+            // The highest harmonic is half a spacing of the frequencies off at most.
+            const double harmonics_there = static_cast<double>(power.front().size()) / place;
+            place += 1.0 / std::min(static_cast<double>(harmonics_most), harmonics_there);
+            tries += 1.0 / static_cast<double>(padding);
         }
         best.evidence_nats -= std::log(std::max(tries, 1.0));
         best.period_s = step_s * padded / best_place;
