@@ -70,6 +70,19 @@ Hypotheses examined(const SensorModel& sensor, const SensorModel& model, std::ui
     return examine(baseline_of(recording, model), recording, 1, 1);
 }
 
+// What a filter leaves of a turn, it leaves of the gains that the model states too.
+TEST(MotionEvidence, OfGainsBehindAFilterIsWhatTheModelDoesNotState) {
+    const SensorModel model =
+        with_effect(moving_sensor(), "lowpass", {{"fc_hz", 0.5}, {"order", 2.0}}, {"x", "y", "z"});
+    SensorModel sensor = model;
+    sensor.M[0][1] += 4e-4;  // two of the stated standard deviations
+    const Hypotheses seen = examined(sensor, model, 36);
+    const Finding* leak = of(seen, "misalignment");
+    if (leak != nullptr) { EXPECT_LT(leak->evidence_nats, 5.0); }
+    const Finding* size = of(seen, "scale_factor");
+    if (size != nullptr) { EXPECT_LT(size->evidence_nats, 5.0); }
+}
+
 TEST(MotionEvidence, OfAScaleFactorIsWhatTheStatedGainsDoNotCover) {
     const SensorModel model = moving_sensor();
     const double eps = 0.008;
