@@ -25,14 +25,23 @@ std::optional<Span> outside(const GapCurve& curve, const std::vector<double>& z)
     return span;
 }
 
+Span worst_point(const GapCurve& curve, const std::vector<double>& z) {
+    const auto worst = std::ranges::max_element(z) - z.begin();
+    const double x = curve.x[static_cast<std::size_t>(worst)];
+    return {x, x};
+}
+
 void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
     const std::optional<Span> span = outside(curve, z);
     switch (curve.kind) {
         case GapDomainKind::allan:
         case GapDomainKind::memory:
+            where.tau_s = span;
+            break;
         case GapDomainKind::rhythm:
         case GapDomainKind::period:
-            where.tau_s = span;
+            // Multiples and parts of a period stand out with it.
+            where.tau_s = worst_point(curve, z);
             break;
         case GapDomainKind::narrow:
         case GapDomainKind::spectrum:

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/gap_report.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -59,6 +61,35 @@ TEST(GapDomains, ShowTheCorrectedModelsBandAsSeenFromTheRecording) {
         EXPECT_NEAR(domain.recording[i] - domain.after_lo[i], after[0].value[i] - (0.1 - 1.96 * 0.02), 1e-5);
     }
     EXPECT_GT(domain.gap_before, domain.gap_after);
+}
+
+TEST(GapDomains, OfAllAxesSayThatTheyAre) {
+    GapCurve own{GapDomainKind::memory, 1, 1, {1.0, 2.0}, {0.1, 0.1}};
+    GapCurve shared = own;
+    shared.of_all_axes = true;
+    const std::vector<GapCurve> curves = {own, shared};
+    const GapReference reference = reference_of(curves);
+    const std::vector<GapDomain> domains = gap_domains({curves, reference}, nullptr, 0.95);
+    EXPECT_EQ(domains[0].axis_text(), "y");
+    EXPECT_EQ(domains[0].name, "bursts of noise");
+    EXPECT_EQ(domains[1].axis_text(), "all");
+    EXPECT_EQ(domains[1].name, "shared bursts of noise");
+}
+
+// Its multiples and parts stand out with it; and it is seen on all axes together.
+TEST(GapReport, SaysTheBestPeriodOfARhythmAndAllAxes) {
+    GapCurve rhythm{GapDomainKind::rhythm, 0, 0, {20.0, 40.0, 80.0}, {0.4, 0.9, 0.3}};
+    rhythm.of_all_axes = true;
+    const std::vector<GapCurve> curves = {{GapDomainKind::drift, 0, 0, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.1}},
+                                          {GapDomainKind::drift, 2, 2, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.1}},
+                                          rhythm};
+    GapReference reference = reference_of(curves);
+    reference.window_sd.assign(curves.size(), {});
+    const Place where = summarise(curves, reference).where;
+    EXPECT_EQ(where.axes, (std::vector<std::size_t>{0, 2}));
+    ASSERT_TRUE(where.tau_s.has_value());
+    EXPECT_EQ(where.tau_s->from, 40.0);
+    EXPECT_EQ(where.tau_s->to, 40.0);
 }
 
 }  // namespace
