@@ -3,11 +3,18 @@
 
 #include <concepts>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "analysis/parallel/parallel_for.hpp"
 
 namespace gyrolog::test {
+
+// A few, unless GYROLOG_REALISATIONS asks for so many.
+inline std::size_t realisations(std::size_t few) {
+    const char* asked = std::getenv("GYROLOG_REALISATIONS");
+    return asked == nullptr ? few : static_cast<std::size_t>(std::strtoull(asked, nullptr, 10));
+}
 
 // experiment(1), ..., experiment(count), in this order.
 template <typename Experiment>
