@@ -84,7 +84,7 @@ SensorModel linear(const SensorModel& model) {
     return sensor;
 }
 
-// Beyond gains and a delay.
+// Then what gains add is not the rate itself.
 bool shapes_the_motion(const SensorModel& model) {
     return std::ranges::any_of(model.effects, [](const EffectModel& entry) {
         const EffectDefinition& effect = *find_effect(entry.effect);
@@ -179,7 +179,11 @@ void Baseline::read_motion() {
     const double gain_sd = stated(model_.sd_abs, "M", 0.0);
     const double latency_sd_s = stated(model_.sd_abs, "latency_s", 0.0);
     const double clock_sd = stated(model_.sd_abs, "rate_rel", clock_sd_rel);
-    const std::array<std::array<std::vector<float>, 3>, 3> per_gain = responses_per_gain(gain_sd);
+    const bool is_shaped = gain_sd > 0.0 && shapes_the_motion(model_);
+    std::array<std::array<std::vector<float>, 3>, 3> per_gain;  // by the rate's axis, then the answer's
+    for (const std::size_t from : axes_) {
+        if (is_shaped) { per_gain[from] = response_per_gain(from); }
+    }
     for (const std::size_t axis : axes_) {
         std::vector<float>& change = response_change_rad_s2_[axis];
         for (std::size_t slot = 0; slot < length_; ++slot) {
@@ -189,7 +193,9 @@ void Baseline::read_motion() {
         const auto take = [&](const std::vector<float>& values, double sd) {
             if (sd > 0.0) { uncertain.push_back({cosines_of(values, *transform), sd}); }
         };
-        for (const std::size_t from : axes_) { take(per_gain[from][axis], gain_sd); }
+        for (const std::size_t from : axes_) {
+            take(is_shaped ? per_gain[from][axis] : true_rate_rad_s_[from], gain_sd);
+        }
         take(change, latency_sd_s);
         std::vector<float> growing(length_);
         for (std::size_t slot = 0; slot < length_; ++slot) {
@@ -200,25 +206,16 @@ void Baseline::read_motion() {
     }
 }
 
-// By the rate's axis, then the answer's: what one unit of a gain would add. The rate itself, unless the model
-// filters or distorts it.
-std::array<std::array<std::vector<float>, 3>, 3> Baseline::responses_per_gain(double gain_sd) const {
+// What one unit of the gains from one axis' rate would add to each axis.
+std::array<std::vector<float>, 3> Baseline::response_per_gain(std::size_t from) const {
     constexpr double step = 0.01;
-    std::array<std::array<std::vector<float>, 3>, 3> per_gain;
-    if (!(gain_sd > 0.0)) { return per_gain; }
-    for (const std::size_t from : axes_) {
-        if (!shapes_the_motion(model_)) {
-            for (const std::size_t axis : axes_) { per_gain[from][axis] = true_rate_rad_s_[from]; }
-            continue;
-        }
-        SensorModel more = model_;
-        for (Vector3& row : more.M) { row[from] += step; }
-        per_gain[from] = noise_free_response(*this, quiet_world(), more);
-        for (const std::size_t axis : axes_) {
-            for (std::size_t slot = 0; slot < length_; ++slot) {
-                float& value = per_gain[from][axis][slot];
-                value = (value - quiet_response_rad_s_[axis][slot]) / static_cast<float>(step);
-            }
+    SensorModel more = model_;
+    for (Vector3& row : more.M) { row[from] += step; }
+    std::array<std::vector<float>, 3> per_gain = noise_free_response(*this, quiet_world(), more);
+    for (const std::size_t axis : axes_) {
+        for (std::size_t slot = 0; slot < length_; ++slot) {
+            float& value = per_gain[axis][slot];
+            value = (value - quiet_response_rad_s_[axis][slot]) / static_cast<float>(step);
         }
     }
     return per_gain;

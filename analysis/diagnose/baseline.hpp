@@ -101,7 +101,7 @@ private:
 
     void read_temperature();
     void read_motion();
-    std::array<std::array<std::vector<float>, 3>, 3> responses_per_gain(double gain_sd) const;
+    std::array<std::vector<float>, 3> response_per_gain(std::size_t from) const;
     void add_reference_noise();
     // Mean square of the factors on the axis' white noise.
     double read_white_course(std::size_t axis);

@@ -35,9 +35,6 @@ constexpr double unexplained_below_p = 0.005;
 // chance nearly.
 constexpr double tolerated_share = 1.6e-3;
 constexpr double tolerated_above_p = 1e-6;
-// Or where what is left is so little of what the causes are worth: two right formulas of one filter differ
-// by as much.
-constexpr double formulas_share = 1e-4;
 // A shape of no known origin takes the place of causes that it beats by this,
 constexpr double shape_wins_nats = 8.0;
 // and by this share of their gain: the approximations of a fit may lose as much.
@@ -261,6 +258,28 @@ private:
         return std::make_shared<const Observation>(baseline_->with(model), recording_, options_.seed);
     }
 
+    struct Worth {
+        double gain_nats = 0.0;
+        double evidence_nats = 0.0;
+    };
+
+    // `together_nats`: what the spectra's likelihood gains by all of them. One fitted beside others may have
+    // little that is its own, and much with them; what tails or codes gain is not in the spectra.
+    Worth worth_of(std::span<const FoundCause> causes, double together_nats) const {
+        Worth worth;
+        for (const FoundCause& cause : causes) {
+            const auto apparent = found_->apparent_nats.find(cause.finding.effect);
+            worth.gain_nats += cause.finding.gain_nats;
+            worth.evidence_nats += cause.finding.evidence_nats;
+            if (apparent != found_->apparent_nats.end()) { worth.evidence_nats += apparent->second; }
+        }
+        const double cost_nats = worth.gain_nats - worth.evidence_nats;
+        if (causes.size() > 1 && together_nats > worth.gain_nats) {
+            worth = {together_nats, together_nats - cost_nats};
+        }
+        return worth;
+    }
+
     // In place of every cause, and of all of them.
     void compare_shapes() {
         const std::span<const FoundCause> all = found_->causes;
@@ -270,18 +289,16 @@ private:
         const std::shared_ptr<const Observation> with = without({});
         std::vector<std::optional<BetterShape>> better(places.size());
         parallel_for(places.size(), options_.threads, [&](std::size_t i) {
-            const std::optional<UnspecificFinding> shape = best_unspecific(*without(places[i]), *with);
+            const std::shared_ptr<const Observation> left = without(places[i]);
+            const std::optional<UnspecificFinding> shape = best_unspecific(*left, *with);
             if (!shape) { return; }
-            double evidence_nats = shape->evidence_nats;
-            double gain_nats = 0.0;
+            const double together_nats = log_likelihood_nats(*with) - log_likelihood_nats(*left);
+            const Worth causes = worth_of(places[i], together_nats);
+            const double more_nats = shape->evidence_nats - causes.evidence_nats;
+            if (more_nats < std::max(shape_wins_nats, shape_wins_share * causes.gain_nats)) { return; }
             std::vector<std::string> than;
-            for (const FoundCause& cause : places[i]) {
-                evidence_nats -= cause.finding.evidence_nats;
-                gain_nats += cause.finding.gain_nats;
-                than.push_back(cause.finding.effect);
-            }
-            if (evidence_nats < std::max(shape_wins_nats, shape_wins_share * gain_nats)) { return; }
-            better[i] = BetterShape{shape->words, std::move(than), evidence_nats};
+            for (const FoundCause& cause : places[i]) { than.push_back(cause.finding.effect); }
+            better[i] = BetterShape{shape->words, std::move(than), more_nats};
         });
         for (std::optional<BetterShape>& one : better) {
             if (!one) { continue; }

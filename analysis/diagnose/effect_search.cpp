@@ -22,8 +22,8 @@ constexpr std::size_t beginnings_most = 4;
 // A cause of such evidence changes everything that others are judged by.
 constexpr double huge_nats = 1e4;
 
-// Of the main cause's evidence: two right formulas of one filter differ by as much.
-constexpr double formulas_share = 1e-4;
+// Two causes of like size must not take turns for ever.
+constexpr int main_causes_most = 3;
 
 // Of what one response leaves, to fit it together with others.
 constexpr double worth_refitting_nats = 100.0;
@@ -57,6 +57,7 @@ public:
             if (!freed && !add_response(*latest, *next)) { causes_.push_back({*next, findings_of(*latest)}); }
             if (!told() || !refit()) { return std::nullopt; }
             static_cast<void>(settle_responses());
+            forget_apparent_evidence();
             latest = with_causes();
         }
         return result_of(std::move(latest));
@@ -75,6 +76,7 @@ private:
             latest = with_causes();
         }
         result.corrected = model_with_all_but(causes_.size());
+        result.apparent_nats = apparent_nats_;
         result.causes = std::move(causes_);
         std::ranges::sort(result.causes, std::greater{},
                           [](const FoundCause& cause) { return cause.finding.evidence_nats; });
@@ -137,7 +139,7 @@ private:
         if (causes_.empty() || (causes_.size() == 1 && further(with_causes) == nullptr)) { return false; }
         const Finding* main = main_cause();
         if (!is_of_codes(*main) && main->evidence_nats < huge_nats) { return false; }
-        return main->effect != apparent_beside_;
+        return main->effect != apparent_beside_ && main_causes_ < main_causes_most;
     }
 
     // False when ended early.
@@ -150,7 +152,17 @@ private:
         if (!apparent_nats) { return false; }
         apparent_nats_ = *std::move(apparent_nats);
         apparent_beside_ = main->effect;
+        ++main_causes_;
         return true;
+    }
+
+    // Where the cause that it was beside is one no more.
+    void forget_apparent_evidence() {
+        const bool is_there = std::ranges::any_of(
+            causes_, [&](const FoundCause& cause) { return cause.finding.effect == apparent_beside_; });
+        if (is_there) { return; }
+        apparent_nats_.clear();
+        apparent_beside_.clear();
     }
 
     bool is_fast_response(const Finding& finding) const {
@@ -201,13 +213,13 @@ private:
         const std::vector<std::size_t> places = fast_responses();
         if (places.empty() || next.evidence_nats < worth_refitting_nats) { return false; }
         const double before_nats = log_likelihood_nats(*latest.observation);
-        double best_nats = is_fast_response(next) ? -1e300 : next.evidence_nats;
+        double best_nats = is_fast_response(next) ? -1e300 : evidence_beyond_apparent_nats(next);
         std::vector<Finding> best;
         for (const std::optional<Finding>& other : latest.findings) {
             if (!other || !is_fast_response(*other) || !is_new(*other)) { continue; }
-            if (other->evidence_nats < options_.evidence_min_nats) { continue; }
+            if (evidence_beyond_apparent_nats(*other) < evidence_least_nats()) { continue; }
             ResponseRefit refit = fitted_together(places, &*other);
-            const double cost_nats = other->gain_nats - other->evidence_nats;
+            const double cost_nats = other->gain_nats - evidence_beyond_apparent_nats(*other);
             const double nats = refit.log_likelihood_nats - before_nats - cost_nats;
             if (!(nats > best_nats)) { continue; }
             best_nats = nats;
@@ -378,6 +390,7 @@ private:
     std::vector<std::size_t> free_axes_;
     std::map<std::string, double> apparent_nats_;  // by effect
     std::string apparent_beside_;                  // the effect that was in the model then
+    int main_causes_ = 0;
 };
 
 }  // namespace

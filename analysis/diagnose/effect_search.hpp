@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "analysis/diagnose/catalogue.hpp"
@@ -31,11 +33,16 @@ struct FoundCause {
     std::vector<Finding> rivals;
 };
 
+// Of the main cause's evidence: two right formulas of one filter differ by as much.
+inline constexpr double formulas_share = 5e-5;
+
 struct EffectSearchResult {
     std::vector<FoundCause> causes;         // by evidence
     std::vector<SwallowedNoise> swallowed;  // where the model that was given held part of the causes
     SensorModel without_causes;             // noise that held part of them is free
     SensorModel corrected;
+    // By effect, evidence that was taken off its findings: it seems to have as much beside the main cause.
+    std::map<std::string, double> apparent_nats;
     Hypotheses last;  // under the corrected model
 };
 

@@ -26,7 +26,8 @@ std::optional<Span> outside(const GapCurve& curve, const std::vector<double>& z)
 }
 
 Span worst_point(const GapCurve& curve, const std::vector<double>& z) {
-    const auto worst = std::ranges::max_element(z) - z.begin();
+    const auto worst =
+        std::ranges::max_element(z, {}, [](double value) { return std::fabs(value); }) - z.begin();
     const double x = curve.x[static_cast<std::size_t>(worst)];
     return {x, x};
 }
@@ -100,6 +101,7 @@ GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& re
     for (std::size_t c = 0; c < curves.size(); ++c) {
         if (curves[worst].of_all_axes) { summary.where.axes.push_back(curves[c].axis); }
         if (curves[c].kind != curves[worst].kind || surprises[c] < stands_out_nats) { continue; }
+        if (curves[c].of_all_axes) { continue; }
         summary.where.axes.push_back(curves[c].axis);
     }
     if (summary.where.axes.empty()) { summary.where.axes.push_back(curves[worst].axis); }

@@ -27,10 +27,13 @@ Edges equal_ranges(const std::vector<float>& at) {
     return edges;
 }
 
-Edges equal_counts(const std::vector<float>& at) {
+Edges equal_counts(const Observation& observation, const std::vector<float>& at) {
     const std::size_t stride = std::max<std::size_t>(1, at.size() / samples_for_quantiles);
     std::vector<float> some;
-    for (std::size_t slot = 0; slot < at.size(); slot += stride) { some.push_back(at[slot]); }
+    for (std::size_t slot = 0; slot < at.size(); slot += stride) {
+        if (observation.present()[slot]) { some.push_back(at[slot]); }
+    }
+    if (some.empty()) { some.push_back(0.0F); }
     std::ranges::sort(some);
     Edges edges{};
     for (std::size_t i = 0; i < edges.size(); ++i) { edges[i] = some[(i + 1) * some.size() / value_bins]; }
@@ -133,7 +136,7 @@ std::vector<GapCurve> motion_curves(const Observation& observation, std::size_t 
     const std::vector<float>& change = baseline.response_change_rad_s2(axis);
     if (!varies(change)) { return curves; }
     curves.push_back(mean_curve(GapDomainKind::acceleration, axis, axis,
-                                by_value(observation, axis, change, equal_counts(change))));
+                                by_value(observation, axis, change, equal_counts(observation, change))));
     curves.push_back(course_curve(GapDomainKind::delay_course, observation, axis, change));
     return curves;
 }

@@ -9,9 +9,10 @@ namespace gyrolog {
 
 //   rate          mean of the whitened samples by reference rate, about each axis that turns
 //   rate_noise    ln of their variance by its own rate
-//   acceleration  mean of the whitened samples by change of the rate, as many samples in every range
+//   acceleration  mean of the whitened samples by change of the model's answer, as many samples in
+//                 every range
 //   gain_course   over time, the whitened samples' product with the true rate, in standard deviations
-//   delay_course  the same with the change of the rate
+//   delay_course  the same with the change of the model's answer
 std::vector<GapCurve> motion_curves(const Observation& observation, std::size_t axis);
 
 // Mean of the whitened samples by temperature.

@@ -99,7 +99,7 @@ std::vector<float> levels(const Observation& observation, const std::vector<floa
 GapCurve of_all_axes(GapDomainKind kind, const Observation& observation) {
     const std::vector<std::size_t>& axes = observation.baseline().axes();
     GapCurve curve{kind, axes.front(), axes.front(), {}, {}};
-    curve.of_all_axes = true;
+    curve.of_all_axes = axes.size() > 1;
     return curve;
 }
 

@@ -14,6 +14,8 @@ namespace {
 constexpr double sd_rel_max = 0.9;
 // Of what is stated, a coefficient keeps its sign,
 constexpr double least_factor = 1e-3;
+// and N most of itself: without white noise, Gauss-Markov noise would be a low-pass.
+constexpr double least_factor_of_N = 0.25;
 // and one of which hardly more than its size is known does not grow beyond that.
 constexpr double hardly_known_rel = 0.5;
 constexpr double most_factor = 4.0;
@@ -80,7 +82,8 @@ NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralPar
         for (std::size_t j = 0; j < 3; ++j) {
             if (!(sd_rel[j] > 0.0)) { continue; }
             double& each = at[static_cast<Eigen::Index>(j)];
-            each = std::max(each, (least_factor - 1.0) / sd_rel[j]);
+            const double least = j == 0 ? least_factor_of_N : least_factor;
+            each = std::max(each, (least - 1.0) / sd_rel[j]);
             if (sd_rel[j] >= hardly_known_rel) { each = std::min(each, (most_factor - 1.0) / sd_rel[j]); }
         }
         return at;

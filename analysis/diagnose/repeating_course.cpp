@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <vector>
 
 #include "analysis/diagnose/cosine_transform.hpp"
@@ -17,6 +18,7 @@ namespace {
 // A period shorter than some seconds is a few lines that stand alone.
 constexpr double block_s = 0.1;
 constexpr std::size_t blocks_least = 64;
+constexpr std::size_t blocks_most = 1'000'000;
 
 std::vector<float> whitened(const Observation& without, std::size_t axis,
                             const std::vector<double>& density) {
@@ -48,7 +50,8 @@ std::vector<float> block_sums(const std::vector<float>& samples, std::size_t len
 
 std::optional<UnspecificFinding> find_repeating_course(const Observation& without, const Observation& with) {
     const Baseline& baseline = without.baseline();
-    const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(block_s * baseline.rate_hz()));
+    const auto length = std::max<std::size_t>(
+        {1, static_cast<std::size_t>(block_s * baseline.rate_hz()), baseline.length() / blocks_most});
     if (baseline.length() / length < blocks_least) { return std::nullopt; }
     std::vector<std::vector<float>> series;
     double lost_nats = 0.0;

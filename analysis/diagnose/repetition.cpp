@@ -111,7 +111,7 @@ std::vector<Repetition> repetitions(const std::vector<std::vector<float>>& serie
             // The highest harmonic is half a spacing of the frequencies off at most.
             const double harmonics_there = static_cast<double>(power.front().size()) / place;
             place += 1.0 / std::min(static_cast<double>(harmonics_most), harmonics_there);
-            tries += 1.0 / static_cast<double>(padding);
+            tries += static_cast<double>(series.front().size()) / padded;
         }
         best.evidence_nats -= std::log(std::max(tries, 1.0));
         best.period_s = step_s * padded / best_place;

@@ -5,7 +5,6 @@
 // (noise: 1) is worth P v / (1 + v) - ln(1 + v) nats, v = V h^-q.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 namespace gyrolog {

@@ -3,7 +3,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <span>
+#include <string_view>
 
 #include "analysis/diagnose/spectrum_test.hpp"
 #include "analysis/simulate/effect.hpp"
@@ -40,11 +43,11 @@ void spectrum(std::span<const double> f_hz, double /*rate_hz*/, const EffectValu
     const double density_rad_rthz = effect["density_dps_rthz"] * rad_per_deg;
     const double log_middle = std::log(effect["f_hz"]);
     const double rise = effect["rise"];
-    const double both = rise + effect["fall"];
+    const double fall = effect["fall"];
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const double log_x = std::log(f_hz[i]) - log_middle;
         parts[i].other +=
-            density_rad_rthz * density_rad_rthz * std::exp(rise * log_x) / (1.0 + std::exp(both * log_x));
+            density_rad_rthz * density_rad_rthz / (std::exp(-rise * log_x) + std::exp(fall * log_x));
     }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <variant>
 #include <vector>
@@ -235,8 +236,11 @@ struct ExpectedCount {
 ExpectedCount expected_count(const std::vector<double>& counts, std::size_t code) {
     constexpr int iterations = 6;
     constexpr double least_start = 0.5;
+    const auto first = counts.begin() + static_cast<std::ptrdiff_t>(code - codes_around);
+    const double all = std::accumulate(first, first + 2 * codes_around + 1, 0.0);
+    if (all < code_count_least) { return {}; }
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    Eigen::LDLT<Eigen::Matrix3d> solver;
     for (int iteration = 0; iteration < iterations; ++iteration) {
         Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
         Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -250,12 +254,11 @@ ExpectedCount expected_count(const std::vector<double>& counts, std::size_t code
             normal.noalias() += mean * powers * powers.transpose();
             right += (mean * log_mean + count - mean) * powers;
         }
-        const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
+        solver.compute(normal);
         if (!(solver.rcond() > 1e-10)) { return {}; }
         at = solver.solve(right);
-        covariance = solver.solve(Eigen::Matrix3d::Identity());
     }
-    return {std::exp(at[0]), covariance(0, 0)};
+    return {std::exp(at[0]), solver.solve(Eigen::Vector3d::UnitX())[0]};
 }
 
 // Twice the log likelihood ratio of a Poisson count, sharing its chance with that of what is expected.

@@ -203,6 +203,8 @@ struct Row {
     std::string name;
     std::vector<const GapDomain*> domains;  // by axis
 
+    bool is_whole(std::size_t axes) const { return domains.size() == axes || domains.front()->of_all_axes; }
+
     double gap() const {
         double most = 0.0;
         for (const GapDomain* domain : domains) { most = std::max(most, domain->gap_before); }
@@ -241,8 +243,7 @@ std::vector<Row> shown_rows(const Diagnosis& diagnosis) {
         std::erase_if(rows, [&](const Row& row) { return row.gap() < least; });
     }
     const std::size_t axes = axes_in(diagnosis);
-    std::stable_partition(rows.begin(), rows.end(),
-                          [&](const Row& row) { return row.domains.size() == axes; });
+    std::stable_partition(rows.begin(), rows.end(), [&](const Row& row) { return row.is_whole(axes); });
     return rows;
 }
 

@@ -344,8 +344,10 @@ std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of) {
     }
     if (diagnosis.causes.empty()) { return "unexplained: there is a gap, and no known effect makes it"; }
     if (diagnosis.better_shape) {
-        return fmt::format("unexplained: {} {} the gap, but something else fits better", causes,
-                           one ? "resembles" : "resemble");
+        const bool than_all = diagnosis.better_shape->than.size() == diagnosis.causes.size();
+        return fmt::format("unexplained: {} {} the gap, but something else fits better{}", causes,
+                           one ? "resembles" : "resemble",
+                           than_all ? "" : " than " + listed(diagnosis.better_shape->than));
     }
     return fmt::format("unexplained: {} {} part of the gap, what makes the rest is not known", causes,
                        one ? "is" : "are");

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <functional>
-#include <variant>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@ double rate_rad_s(double t_s) {
     return 1.5 * std::sin(2.0 * pi * 0.31 * t_s) * std::sin(2.0 * pi * 0.011 * t_s);
 }
 
-// Of a sensor that answers with `more`, beside the rate, on its x axis: of the time and the time lost.
+// Of a sensor that answers with `more`, beside the rate, on its x axis.
 std::vector<GapCurve> curves_with(const std::function<double(double t_s)>& more) {
     const auto world = world_turning([](double t_s) {
         return Vector3{rate_rad_s(t_s), 0.8 * rate_rad_s(0.7 * t_s), 0.5 * rate_rad_s(1.3 * t_s)};

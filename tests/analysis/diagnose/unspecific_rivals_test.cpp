@@ -49,7 +49,7 @@ struct Contest {
     std::optional<Finding> effect;
     std::optional<UnspecificFinding> rival;
 
-    double lead_nats() const { return rival->evidence_nats - evidence(effect); }
+    double lead_nats() const { return (rival ? rival->evidence_nats : 0.0) - evidence(effect); }
 };
 
 Contest contest(TestMaker make, const char* effect, const std::shared_ptr<const Recording>& recording) {
@@ -68,6 +68,7 @@ TEST(UnspecificRivals, SettlingsThatComeBackAreNoTelegraph) {
     const Contest seen = contest(make_two_level_test, "rtn", recording);
     EXPECT_GT(evidence(seen.effect), 20.0);
     EXPECT_GT(seen.lead_nats(), far_better_nats);
+    ASSERT_TRUE(seen.rival.has_value());
     EXPECT_THAT(seen.rival->words, HasSubstr("repeats every 131"));
 }
 
@@ -79,6 +80,7 @@ TEST(UnspecificRivals, ASwingThatGrowsFasterIsNoWalk) {
     const Contest seen = contest(make_spectrum_test, "rrw_missing", recording);
     EXPECT_GT(evidence(seen.effect), 10.0);
     EXPECT_GT(seen.lead_nats(), far_better_nats);
+    ASSERT_TRUE(seen.rival.has_value());
     EXPECT_THAT(seen.rival->words, HasSubstr("density rises"));
 }
 
@@ -97,6 +99,7 @@ TEST(UnspecificRivals, WhatATurnLeavesBehindIsNoWalk) {
     });
     const Contest seen = contest(make_spectrum_test, "rrw_missing", recording);
     EXPECT_GT(seen.lead_nats(), far_better_nats);
+    ASSERT_TRUE(seen.rival.has_value());
     EXPECT_THAT(seen.rival->words, HasSubstr("fades in some"));
 }
 
