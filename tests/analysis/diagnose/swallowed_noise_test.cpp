@@ -190,5 +190,17 @@ TEST(SwallowedNoise, SetFreeLeavesTheTelegraphItsDwellTimes) {
     EXPECT_NEAR(params.at("dwell_low_s"), 2.0, 5.0 * 2.0 / std::sqrt(1800.0 / 4.4));
 }
 
+// Without any, Gauss-Markov noise of a few samples would do what a low-pass does.
+TEST(SwallowedNoise, LeavesAQuarterOfTheWhiteNoise) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel quiet = model;
+    for (AxisModel& axis : quiet.axes) { axis.noise.N_rad_per_sqrt_s *= 0.05; }
+    const auto recording = recorded(quiet, 60'000, 8);
+    const auto baseline = baseline_of(recording, model);
+    const SensorModel free = with_free_noise(model, Observation(baseline, recording, 1), {0});
+    const auto fitted = fitted_noise(Observation(baseline->with(free), recording, 1), free, {0});
+    EXPECT_NEAR(fitted[0].fitted / model.axes[0].noise.N_rad_per_sqrt_s, 0.25, 1e-6);
+}
+
 }  // namespace
 }  // namespace gyrolog
