@@ -248,14 +248,14 @@ private:
         return true;
     }
 
-    std::shared_ptr<const Observation> without(std::span<const FoundCause> left_out) const {
+    Observation without(std::span<const FoundCause> left_out) const {
         SensorModel model = found_->without_causes;
         for (const FoundCause& cause : found_->causes) {
             const bool is_left_out =
                 std::ranges::any_of(left_out, [&](const FoundCause& one) { return &one == &cause; });
             if (!is_left_out) { model = with_cause(std::move(model), cause.finding); }
         }
-        return std::make_shared<const Observation>(baseline_->with(model), recording_, options_.seed);
+        return {baseline_->with(model), recording_, options_.seed};
     }
 
     struct Worth {
@@ -286,13 +286,13 @@ private:
         std::vector<std::span<const FoundCause>> places;
         for (std::size_t i = 0; i < all.size(); ++i) { places.push_back(all.subspan(i, 1)); }
         if (all.size() != 1) { places.push_back(all); }
-        const std::shared_ptr<const Observation> with = without({});
+        const Observation with = without({});
         std::vector<std::optional<BetterShape>> better(places.size());
         parallel_for(places.size(), options_.threads, [&](std::size_t i) {
-            const std::shared_ptr<const Observation> left = without(places[i]);
-            const std::optional<UnspecificFinding> shape = best_unspecific(*left, *with);
+            const Observation left = without(places[i]);
+            const std::optional<UnspecificFinding> shape = best_unspecific(left, with);
             if (!shape) { return; }
-            const double together_nats = log_likelihood_nats(*with) - log_likelihood_nats(*left);
+            const double together_nats = log_likelihood_nats(with) - log_likelihood_nats(left);
             const Worth causes = worth_of(places[i], together_nats);
             const double more_nats = shape->evidence_nats - causes.evidence_nats;
             if (more_nats < std::max(shape_wins_nats, shape_wins_share * causes.gain_nats)) { return; }

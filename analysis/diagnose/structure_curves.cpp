@@ -221,10 +221,6 @@ std::vector<double> count_codes(const Recording& recording, std::size_t axis, do
         column.data);
 }
 
-}  // namespace
-
-namespace {
-
 // What the codes around say of one: a parabola through the logarithms of their counts, which a normal density
 // is. The code itself and its neighbours, that have what it lacks, are left out.
 struct ExpectedCount {
