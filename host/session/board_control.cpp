@@ -79,8 +79,8 @@ Status BoardControl::command(glp_frame_type type, ByteView payload, Answer answe
     GYROLOG_CHECK(source_.write(ByteView(wire).first(encoded.size)));
     if (answer == Answer::not_awaited) { return {}; }
     std::optional<std::uint8_t> result;
-    writer_.wait(reply_timeout, [&] {
-        if (writer_.reply()) { result = writer_.reply()->result; }
+    writer_.wait(reply_timeout, [&](const WriterThread::State& state) {
+        if (state.reply) { result = state.reply->result; }
         return result.has_value() || sink_.end().has_value();
     });
     if (!result) {

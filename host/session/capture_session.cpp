@@ -44,14 +44,15 @@ Status begin(ByteSource& source, QueueingSink& sink, WriterThread& writer, Board
     GYROLOG_CHECK(control.configure(configure));
     GYROLOG_CHECK(control.start());
     // A HELLO from before the start may be that of a stream which somebody else had started.
-    const auto identified = [&] {
-        return (writer.line_was_raised() || !control.has_line()) && writer.has_hello() && writer.has_config();
+    const auto identified = [&](const WriterThread::State& state) {
+        return (state.line_was_raised || !control.has_line()) && state.has_hello && state.has_config;
     };
-    writer.wait(milliseconds(static_cast<std::int64_t>(request.hello_timeout_s * 1e3)),
-                [&] { return identified() || sink.end().has_value(); });
+    writer.wait(
+        milliseconds(static_cast<std::int64_t>(request.hello_timeout_s * 1e3)),
+        [&](const WriterThread::State& state) { return identified(state) || sink.end().has_value(); });
     // The source may have ended with the frames still in the queue.
     if (sink.end()) { writer.join(); }
-    if (identified()) { return {}; }
+    if (identified(writer.state())) { return {}; }
     if (const auto error = sink.error()) { return *error; }
     return Error{ErrorCode::timeout, no_hello};
 }
@@ -150,6 +151,10 @@ public:
           sink_(queue_, source.can_wait()),
           thread_(queue_, sink_, writer, request),
           control_(source, thread_, sink_) {}
+    // Also when the caller's observer throws: the writer ends only with its queue.
+    ~Session() { wind_up(); }
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
 
     Result<CaptureOutcome> run() {
         const Status began = begin(source_, sink_, thread_, control_, request_.configure, request_);
@@ -163,7 +168,8 @@ public:
         }
         control_.stop();
         wind_up();
-        Status closed = thread_.storage_error() ? Status(*thread_.storage_error()) : Status();
+        const std::optional<Error> refused = thread_.state().storage_error;
+        Status closed = refused ? Status(*refused) : Status();
         outcome_.link = thread_.link();
         if (!began.ok() && outcome_.link.bytes.total == 0) { writer_.drop(); }
         const Status last = writer_.close();
@@ -220,11 +226,11 @@ private:
             bool enough = false;
             bool refused = false;
             bool frameless = false;
-            thread_.wait(progress_interval, [&] {
-                enough = thread_.enough();
-                refused = thread_.storage_error().has_value();
+            thread_.wait(progress_interval, [&](const WriterThread::State& state) {
+                enough = state.enough;
+                refused = state.storage_error.has_value();
                 // An old capture may hold any amount of noise; a device that is there may not.
-                frameless = !source_.can_wait() && thread_.frameless_s() > request_.idle_timeout_s;
+                frameless = !source_.can_wait() && state.frameless_s > request_.idle_timeout_s;
                 return enough || refused || frameless || sink_.end().has_value();
             });
             const bool go_on = observe_(progress());
@@ -269,7 +275,7 @@ private:
     // refused the next file.
     bool park() {
         wind_up();
-        if (thread_.storage_error()) { return false; }
+        if (thread_.state().storage_error) { return false; }
         if (Status closed = writer_.close(); !closed.ok()) {
             return storage_failed(std::move(closed).error());
         }
@@ -324,8 +330,8 @@ private:
         LinkReport link = thread_.link();
         link.bytes.total -= bytes_before;
         began = explain(began.error(), source_, link);
-        if (thread_.storage_error()) {
-            storage_failed(*thread_.storage_error());
+        if (const std::optional<Error> refused = thread_.state().storage_error) {
+            storage_failed(*refused);
         } else if (link.bytes.total == 0) {
             writer_.drop();
         } else if (Status closed = writer_.close(); !closed.ok()) {

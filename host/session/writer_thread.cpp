@@ -22,7 +22,6 @@ void WriterThread::resume() {
     config_came_ = false;
     next_index_.reset();
     last_frame_ns_.reset();
-    frameless_s_ = 0.0;
     publish();
     thread_ = std::thread([this] { run(); });
 }
@@ -30,7 +29,12 @@ void WriterThread::resume() {
 void WriterThread::expect_reply(std::uint32_t sequence, std::uint8_t type) {
     const std::lock_guard lock(mutex_);
     expected_ = {sequence, type, 0};
-    reply_.reset();
+    state_.reply.reset();
+}
+
+WriterThread::State WriterThread::state() const {
+    const std::lock_guard lock(mutex_);
+    return state_;
 }
 
 CaptureProgress WriterThread::progress() const {
@@ -54,7 +58,7 @@ void WriterThread::run() {
 void WriterThread::write_marks() {
     if (request_.control == nullptr) { return; }
     for (CaptureMark& mark : request_.control->take_marks()) {
-        if (storage_error_) { return; }
+        if (state_.storage_error) { return; }
         if (Status written = writer_.mark(std::move(mark)); !written.ok()) {
             fail(std::move(written).error());
         } else {
@@ -64,7 +68,7 @@ void WriterThread::write_marks() {
 }
 
 void WriterThread::take(const Transfer& transfer) {
-    if (!storage_error_) {
+    if (!state_.storage_error) {
         if (Status appended = writer_.append(transfer); !appended.ok()) { fail(std::move(appended).error()); }
     }
     if (transfer.carries_stream()) { bytes_since_checkpoint_ += transfer.data.size(); }
@@ -93,7 +97,7 @@ void WriterThread::checkpoint(bool last) {
     const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
     const bool sync_due = last || now_ns - last_sync_ns_ >= sync_interval_ns;
     bytes_since_checkpoint_ = 0;
-    if (storage_error_) { return; }
+    if (state_.storage_error) { return; }
     Status written = writer_.checkpoint(counters());
     if (written.ok() && sync_due) { written = last ? writer_.sync() : writer_.sync_soon(); }
     if (sync_due) { last_sync_ns_ = now_ns; }
@@ -113,7 +117,7 @@ CaptureCounters WriterThread::counters() const {
 
 void WriterThread::fail(Error error) {
     const std::lock_guard lock(mutex_);
-    storage_error_ = std::move(error);
+    state_.storage_error = std::move(error);
 }
 
 void WriterThread::publish() {
@@ -135,13 +139,13 @@ void WriterThread::publish() {
     }
     const std::uint64_t instants = instants_ + link.samples_in_joins;
     if (progress_.rate_hz) { progress_.device_s = static_cast<double>(instants) / *progress_.rate_hz; }
-    line_was_raised_ = started_;
-    has_hello_ = hello_came_;
-    has_config_ = config_came_;
-    if (last_frame_ns_) { frameless_s_ = static_cast<double>(last_data_ns_ - *last_frame_ns_) * 1e-9; }
-    enough_ = (request_.samples && instants >= *request_.samples) ||
-              (request_.duration_s && progress_.rate_hz &&
-               static_cast<double>(instants) >= *request_.duration_s * *progress_.rate_hz);
+    state_.line_was_raised = started_;
+    state_.has_hello = hello_came_;
+    state_.has_config = config_came_;
+    state_.frameless_s = last_frame_ns_ ? static_cast<double>(last_data_ns_ - *last_frame_ns_) * 1e-9 : 0.0;
+    state_.enough = (request_.samples && instants >= *request_.samples) ||
+                    (request_.duration_s && progress_.rate_hz &&
+                     static_cast<double>(instants) >= *request_.duration_s * *progress_.rate_hz);
     changed_.notify_all();
 }
 
@@ -172,7 +176,7 @@ void WriterThread::on_reply(const ReceivedFrame& /*frame*/, const glp_reply& rep
     const std::lock_guard lock(mutex_);
     if (reply.command_sequence == expected_.command_sequence &&
         reply.command_type == expected_.command_type) {
-        reply_ = reply;
+        state_.reply = reply;
     }
 }
 

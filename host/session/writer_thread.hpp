@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "host/base/clock.hpp"
 #include "host/capture/segment_writer.hpp"
@@ -43,21 +44,25 @@ public:
     // Before the command is sent. Other replies are not kept: a device may send any number of them.
     void expect_reply(std::uint32_t sequence, std::uint8_t type);
 
-    // Waits until `wanted(*this)` holds or the time is over; the lock is held while it looks.
+    // What the caller's thread steers by. Only ever seen under the lock, or as a copy.
+    struct State {
+        bool line_was_raised = false;
+        bool has_hello = false;  // in the present connection
+        bool has_config = false;
+        bool enough = false;
+        // How long bytes have been coming that are no frames, by the times of their arrival.
+        double frameless_s = 0.0;
+        std::optional<Error> storage_error;
+        std::optional<glp_reply> reply;  // to what expect_reply() named
+    };
+    State state() const;
+    // Waits until `wanted(state)` holds or the time is over; the lock is held while it looks. Returns whether
+    // it holds.
     template <typename Wanted>
     bool wait(std::chrono::milliseconds time, Wanted&& wanted) {
         std::unique_lock lock(mutex_);
-        return changed_.wait_for(lock, time, [&] { return wanted(); });
+        return changed_.wait_for(lock, time, [&] { return wanted(std::as_const(state_)); });
     }
-    // The ones below: inside wait(), or after join().
-    bool line_was_raised() const { return line_was_raised_; }
-    bool has_hello() const { return has_hello_; }  // in the present connection
-    bool has_config() const { return has_config_; }
-    bool enough() const { return enough_; }
-    const std::optional<Error>& storage_error() const { return storage_error_; }
-    const std::optional<glp_reply>& reply() const { return reply_; }  // to what expect_reply() named
-    // How long bytes have been coming that are no frames, by the times of their arrival.
-    double frameless_s() const { return frameless_s_; }
 
     CaptureProgress progress() const;
     LinkReport link() const { return decoder_.report(); }  // after join()
@@ -109,14 +114,8 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     CaptureProgress progress_;
+    State state_;
     glp_reply expected_{};
-    std::optional<glp_reply> reply_;
-    double frameless_s_ = 0.0;
-    std::optional<Error> storage_error_;
-    bool enough_ = false;
-    bool line_was_raised_ = false;
-    bool has_hello_ = false;
-    bool has_config_ = false;
 
     std::thread thread_;  // last: starts when everything else is there
 };

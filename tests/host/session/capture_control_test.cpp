@@ -1,6 +1,8 @@
 // What a user does to a running capture: marks, stop, start.
 #include "host/session/capture_control.hpp"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "host/session/capture_session.hpp"
@@ -100,6 +102,18 @@ TEST_F(ControlledCapture, StoppedAndStartedAgainIsAnotherRunAndNothingIsMissing)
         EXPECT_GE(outcome->link.samples.good, samples_when_stopped + 700);
         EXPECT_FALSE(source->board().streaming());
     }
+}
+
+// A caller that throws ends the capture: what came is in the file, and nobody waits for a writer that waits.
+TEST_F(ControlledCapture, ThrowingObserverEndsIt) {
+    const auto source = BoardSource::create({.turn_board_s = 0.010, .turn_host_s = 0.002});
+    EXPECT_THROW(static_cast<void>(run_capture(*source, request_,
+                                               [](const CaptureProgress& progress) -> bool {
+                                                   if (progress.samples < 500) { return true; }
+                                                   throw std::runtime_error("the view");
+                                               })),
+                 std::runtime_error);
+    EXPECT_GE(loaded().decoder->report().samples.good, 500U);
 }
 
 // The samples as they come. A board that was running may still finish a frame from before the start, whose
