@@ -46,8 +46,8 @@ private:
 };
 
 Result<Recording> simulated_board(const std::string& uri, double seconds) {
+    DecodingSink sink;  // outlives the source, whose thread calls it
     GYROLOG_TRY(OpenedSource opened, open_source(uri, {seconds, std::nullopt}, false));
-    DecodingSink sink;
     GYROLOG_CHECK(opened.source->start(sink));
     Status streamed = opened.source->set_line_state(true);
     if (streamed.ok()) { streamed = sink.wait(); }

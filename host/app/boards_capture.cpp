@@ -23,19 +23,28 @@ class BoardCapture {
 public:
     BoardCapture(OpenedSource opened, CaptureRequest request)
         : opened_(std::move(opened)), request_(std::move(request)) {}
+    ~BoardCapture() {
+        stop();
+        join();
+    }
+    BoardCapture(const BoardCapture&) = delete;
+    BoardCapture& operator=(const BoardCapture&) = delete;
 
-    void start(const std::atomic<bool>& stop_wanted) {
-        thread_ = std::thread([this, &stop_wanted] {
+    void start() {
+        thread_ = std::thread([this] {
             auto outcome = run_capture(*opened_.source, request_, [&](const CaptureProgress& progress) {
                 const std::lock_guard lock(mutex_);
                 progress_ = progress;
-                return !stop_wanted;
+                return !stop_wanted_;
             });
             const std::lock_guard lock(mutex_);
             outcome_.emplace(std::move(outcome));
         });
     }
-    void join() { thread_.join(); }
+    void stop() { stop_wanted_ = true; }
+    void join() {
+        if (thread_.joinable()) { thread_.join(); }
+    }
 
     const std::string& path() const { return request_.path; }
     const ByteSource& source() const { return *opened_.source; }
@@ -52,6 +61,7 @@ public:
 private:
     OpenedSource opened_;
     CaptureRequest request_;
+    std::atomic<bool> stop_wanted_{false};
     mutable std::mutex mutex_;
     CaptureProgress progress_;
     std::optional<Result<CaptureOutcome>> outcome_;
@@ -112,14 +122,16 @@ Result<Boards> open_all(const CaptureOptions& options, const std::vector<std::st
     return boards;
 }
 
-void watch(Console& console, const Boards& boards, std::atomic<bool>& stop_wanted) {
+void watch(Console& console, const Boards& boards) {
     LiveView view(console);
     std::vector<StallNotice> stalls(boards.size(), StallNotice(console));
     std::vector<ParkingNotice> parkings(boards.size(), ParkingNotice(console, &view));
     const auto finished = [](const auto& board) { return board->finished(); };
     while (!std::ranges::all_of(boards, finished)) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        if (console.stop_wanted()) { stop_wanted = true; }
+        if (console.stop_wanted()) {
+            for (const auto& board : boards) { board->stop(); }
+        }
         for (std::size_t i = 0; i < boards.size(); ++i) {
             const CaptureProgress progress = boards[i]->progress();
             stalls[i].tell(progress);
@@ -143,9 +155,8 @@ ExitCode capture_boards(Console& console, const char* command, const CaptureOpti
     for (const auto& board : boards) {
         console.err << "capturing from " << board->source().identity().uri << " to " << board->path() << '\n';
     }
-    std::atomic<bool> stop_wanted{false};
-    for (const auto& board : boards) { board->start(stop_wanted); }
-    watch(console, boards, stop_wanted);
+    for (const auto& board : boards) { board->start(); }
+    watch(console, boards);
     ExitCode code = ExitCode::ok;
     for (const auto& board : boards) {
         board->join();

@@ -110,6 +110,11 @@ bool TerminalKeys::take_over() {
     mode.c_cc[VMIN] = 0;
     mode.c_cc[VTIME] = 0;
     mode_changed = tcsetattr(STDIN_FILENO, TCSANOW, &mode) == 0;
+    // A signal in between has given back what was not taken yet.
+    if (given_back && mode_changed) {
+        tcsetattr(STDIN_FILENO, TCSANOW, &found_mode);
+        return false;
+    }
     return mode_changed;
 }
 

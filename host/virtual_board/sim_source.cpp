@@ -104,6 +104,7 @@ Result<std::unique_ptr<SimSource>> SimSource::create(const SimOptions& options, 
 SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::unique_ptr<VirtualBoard> board)
     : realtime_(options.realtime),
       board_(std::move(board)),
+      ring_bytes_(board_->firmware().ring.capacity),
       buffer_(transfer_bytes),
       queued_bytes_(transfer_bytes) {
     identity_.uri = uri_of(options);
@@ -127,7 +128,7 @@ SimSource::~SimSource() { stop(); }
 
 double SimSource::tolerated_stall_s(double bytes_per_s, double /*bytes_per_frame*/) const {
     if (!realtime_) { return std::numeric_limits<double>::infinity(); }
-    return static_cast<double>(queued_bytes_ + board_->firmware().ring.capacity) / bytes_per_s;
+    return static_cast<double>(queued_bytes_ + ring_bytes_) / bytes_per_s;
 }
 
 void SimSource::expect(double bytes_per_s, double bytes_per_frame) {

@@ -81,7 +81,8 @@ private:
 
     SourceIdentity identity_;
     bool realtime_;
-    std::unique_ptr<VirtualBoard> board_;
+    std::unique_ptr<VirtualBoard> board_;  // once started the source's thread's
+    std::size_t ring_bytes_;               // of the board
     Bytes buffer_;
     std::atomic<std::size_t> queued_bytes_;  // of the stream, by the host: real time
 

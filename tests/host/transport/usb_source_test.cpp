@@ -353,11 +353,11 @@ TEST_F(UsbSourceTest, TwoBoardsAreToldApartAndStreamSideBySide) {
     const Error ambiguous = refusal("");
     EXPECT_EQ(ambiguous.code, ErrorCode::invalid_argument);
     EXPECT_THAT(ambiguous.message, HasSubstr("usb:S1, usb:S2"));
+    CollectingSink beside_sink;
     auto beside = UsbSource::open(usb_, "S2", few_transfers);
     ASSERT_TRUE(beside.ok()) << beside.error().message;
     EXPECT_EQ((*beside)->identity().device_address, 3);
 
-    CollectingSink beside_sink;
     start();
     ASSERT_TRUE((*beside)->start(beside_sink).ok());
     raise_line();

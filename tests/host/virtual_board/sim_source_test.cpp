@@ -66,8 +66,8 @@ SimOptions at_rate(double rate_hz) {
 
 TEST(SimSource, EndsAfterExactlyTheSamplesAskedFor) {
     for (const double rate_hz : {100.0, 1000.0, 8000.0}) {
-        const auto source = source_of(at_rate(rate_hz), {.samples = 12'345, .duration_s = {}});
         Collector sink;
+        const auto source = source_of(at_rate(rate_hz), {.samples = 12'345, .duration_s = {}});
         ASSERT_TRUE(source->start(sink).ok());
         ASSERT_TRUE(source->set_line_state(false).ok());
         ASSERT_TRUE(source->set_line_state(true).ok());
@@ -81,8 +81,8 @@ TEST(SimSource, EndsAfterExactlyTheSamplesAskedFor) {
 }
 
 TEST(SimSource, EndsAfterTheDurationInSimulatedTime) {
-    const auto source = source_of(at_rate(1000.0), {.samples = {}, .duration_s = 60.0});
     Collector sink;
+    const auto source = source_of(at_rate(1000.0), {.samples = {}, .duration_s = 60.0});
     const std::int64_t start_ns = host_now().monotonic_ns;
     ASSERT_TRUE(source->start(sink).ok());
     ASSERT_TRUE(source->set_line_state(true).ok());
@@ -94,8 +94,8 @@ TEST(SimSource, EndsAfterTheDurationInSimulatedTime) {
 }
 
 TEST(SimSource, LosesNothingToASinkWithoutRoom) {
-    const auto source = source_of(at_rate(1000.0), {.samples = 100'000, .duration_s = {}});
     Collector sink;
+    const auto source = source_of(at_rate(1000.0), {.samples = 100'000, .duration_s = {}});
     sink.refuse_every = 3;
     ASSERT_TRUE(source->start(sink).ok());
     ASSERT_TRUE(source->set_line_state(true).ok());
@@ -106,8 +106,8 @@ TEST(SimSource, LosesNothingToASinkWithoutRoom) {
 }
 
 TEST(SimSource, ACommandBeforeTheStartIsAnsweredAndObeyed) {
-    const auto source = source_of(at_rate(100.0), {.samples = 500, .duration_s = {}});
     Collector sink;
+    const auto source = source_of(at_rate(100.0), {.samples = 500, .duration_s = {}});
     ASSERT_TRUE(source->start(sink).ok());
     ASSERT_TRUE(source->set_line_state(false).ok());
     ASSERT_TRUE(source->write(configure_bytes(500.0, 1000)).ok());
@@ -123,8 +123,8 @@ TEST(SimSource, ACommandBeforeTheStartIsAnsweredAndObeyed) {
 }
 
 TEST(SimSource, StopsWhenToldWhileItStreamsWithoutEnd) {
-    const auto source = source_of(at_rate(1000.0), {});
     Collector sink;
+    const auto source = source_of(at_rate(1000.0), {});
     ASSERT_TRUE(source->start(sink).ok());
     ASSERT_TRUE(source->set_line_state(true).ok());
     while (true) {
@@ -142,8 +142,8 @@ TEST(SimSource, StopsWhenToldWhileItStreamsWithoutEnd) {
 TEST(SimSource, AnUnpluggedBoardEndsAsALostDevice) {
     SimOptions options = at_rate(100.0);
     options.faults = {{.kind = BoardFault::Kind::unplug, .at_s = 2.0, .duration_s = 0.0}};
-    const auto source = source_of(options, {});
     Collector sink;
+    const auto source = source_of(options, {});
     ASSERT_TRUE(source->start(sink).ok());
     ASSERT_TRUE(source->set_line_state(true).ok());
     EXPECT_EQ(sink.wait_for_end(), SourceEnd::device_lost);
@@ -155,8 +155,8 @@ TEST(SimSource, AnUnpluggedBoardEndsAsALostDevice) {
 TEST(SimSource, KeepsToTheClockInRealTime) {
     SimOptions options = at_rate(1000.0);
     options.realtime = true;
-    const auto source = source_of(options, {.samples = 300, .duration_s = {}});
     Collector sink;
+    const auto source = source_of(options, {.samples = 300, .duration_s = {}});
     const std::int64_t start_ns = host_now().monotonic_ns;
     ASSERT_TRUE(source->start(sink).ok());
     ASSERT_TRUE(source->set_line_state(true).ok());
