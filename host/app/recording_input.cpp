@@ -51,8 +51,8 @@ Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
     options.lsb_dps = input.lsb_dps;
     options.allow_unscaled_counts = true;
     options.rows_most = input.samples_most;
+    options.samples_per_row = input.samples_per_row;
     GYROLOG_TRY(Recording recording, read_recording_csv(input.path, options));
-    if (input.samples_per_row > 1) { recording = means_of(recording, input.samples_per_row); }
     return TimedRecording{std::move(recording), std::nullopt};
 }
 

@@ -19,7 +19,7 @@ struct RecordingInput {
     StageObserver on_stage{};       // of "read", and for a capture "decode", "place"
     // Reading ends soon after so many samples.
     std::size_t samples_most = std::numeric_limits<std::size_t>::max() - 1;
-    // More: means_of() so many. Of a capture no more than those are ever held.
+    // More: means of so many, as means_of() has them but for samples that are missing; no more is ever held.
     std::size_t samples_per_row = 1;
 };
 

@@ -67,7 +67,30 @@ Status CsvTable::feed(std::string_view piece) {
 Status CsvTable::finish() {
     if (!rest_.empty()) { GYROLOG_CHECK(line(rest_)); }
     if (columns_.empty()) { return malformed("empty: line 1 must name the columns, such as " + example_); }
+    for (CsvTableColumn& column : columns_) {
+        if (column.used) { column.values.resize(column.values.size() - lines_of_row_); }
+    }
+    lines_of_row_ = 0;
     return {};
+}
+
+void CsvTable::end_line() {
+    if (lines_per_row_ < 2 || ++lines_of_row_ < lines_per_row_) { return; }
+    lines_of_row_ = 0;
+    for (CsvTableColumn& column : columns_) {
+        if (!column.used) { continue; }
+        const std::size_t row = column.values.size() - lines_per_row_;
+        double sum = 0.0;
+        std::size_t known = 0;
+        for (std::size_t i = row; i < column.values.size(); ++i) {
+            if (std::isnan(column.values[i])) { continue; }
+            sum += column.values[i];
+            ++known;
+        }
+        const std::size_t needed = column.needs_half ? (lines_per_row_ + 1) / 2 : 1;
+        column.values[row] = known < needed ? missing : sum / static_cast<double>(known);
+        column.values.resize(row + 1);
+    }
 }
 
 Status CsvTable::line(std::string_view text) {
@@ -85,7 +108,9 @@ Status CsvTable::line(std::string_view text) {
         }
         GYROLOG_CHECK(field(columns_[c], at, end));
     }
-    return at == end ? Status() : wrong_count(text);
+    if (at != end) { return wrong_count(text); }
+    end_line();
+    return {};
 }
 
 // Reads one field and leaves `at` on the comma after it, or the end of the line.
@@ -148,7 +173,10 @@ std::string CsvTable::place(const CsvTableColumn& column) const {
 Status read_csv_file(CsvTable& table, const std::string& path, std::size_t lines_most) {
     GYROLOG_TRY(TextReader reader, TextReader::open(path));
     while (true) {
-        if (table.lines() >= lines_most) { return {}; }
+        if (table.lines() >= lines_most) {
+            table.drop_unfinished_line();
+            return table.finish();
+        }
         GYROLOG_TRY(const std::string_view piece, reader.read());
         if (piece.empty()) { return table.finish(); }
         GYROLOG_CHECK(table.feed(piece));

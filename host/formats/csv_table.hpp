@@ -18,6 +18,7 @@ struct CsvTableColumn {
     std::string mend_if_empty{};
     double lowest = -std::numeric_limits<double>::max();
     double highest = std::numeric_limits<double>::max();
+    bool needs_half = false;       // of the lines of a row, for their mean not to be NaN; else one is enough
     std::vector<double> values{};  // a row each; NaN for an empty field or "nan"
 };
 
@@ -28,10 +29,13 @@ public:
     // Sees the columns' names and says which are used and how.
     using HeaderRule = std::function<Status(std::vector<CsvTableColumn>& columns)>;
 
-    // `example`: a header line, for the message about an empty file.
-    CsvTable(std::string example, HeaderRule rule) : example_(std::move(example)), rule_(std::move(rule)) {}
+    // `example`: a header line, for the message about an empty file. With more than one line a row, a row
+    // holds the means of so many lines, and what is left at the end is none; only rows take memory.
+    CsvTable(std::string example, HeaderRule rule, std::size_t lines_per_row = 1)
+        : example_(std::move(example)), rule_(std::move(rule)), lines_per_row_(lines_per_row) {}
 
     Status feed(std::string_view piece);
+    void drop_unfinished_line() { rest_.clear(); }
     Status finish();
 
     std::vector<CsvTableColumn>& columns() { return columns_; }
@@ -41,11 +45,14 @@ private:
     Status line(std::string_view text);
     Status header(std::string_view text);
     Status field(CsvTableColumn& column, const char*& at, const char* end) const;
+    void end_line();
     Status wrong_count(std::string_view text) const;
     std::string place(const CsvTableColumn& column) const;
 
     std::string example_;
     HeaderRule rule_;
+    std::size_t lines_per_row_;
+    std::size_t lines_of_row_ = 0;  // of the last row, while it is not whole: each has its values yet
     std::vector<CsvTableColumn> columns_;
     std::string rest_;
     std::size_t number_ = 0;  // of the line

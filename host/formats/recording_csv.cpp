@@ -29,8 +29,9 @@ struct InputColumn {
 // Beyond any gyro in any unit; squares of squares of it are still numbers.
 constexpr double most_rate = 1e15;
 
-// With `needs_stamps` an empty field of t_s is an error.
-CsvTable recording_table(bool needs_stamps) {
+// Without a given rate an empty field of t_s is an error.
+CsvTable recording_table(const CsvReadOptions& options) {
+    const bool needs_stamps = !options.rate_hz;
     const auto rule = [needs_stamps](std::vector<CsvTableColumn>& columns) -> Status {
         bool any_gyro = false;
         for (CsvTableColumn& column : columns) {
@@ -39,6 +40,7 @@ CsvTable recording_table(bool needs_stamps) {
             if (meaning && meaning->is_gyro()) {
                 column.lowest = -most_rate;
                 column.highest = most_rate;
+                column.needs_half = true;
             }
             any_gyro = any_gyro || (meaning && meaning->is_gyro());
             if (needs_stamps && meaning && meaning->kind == CsvColumn::Kind::time_stamp) {
@@ -50,7 +52,7 @@ CsvTable recording_table(bool needs_stamps) {
             "line 1: no gyro column; it must name the columns with their units, such as "
             "t_s,gx_dps,gy_dps,gz_dps (or _rad_s, _lsb, _deg, _rad)");
     };
-    return {"t_s,gx_dps,gy_dps,gz_dps", rule};
+    return {"t_s,gx_dps,gy_dps,gz_dps", rule, options.samples_per_row};
 }
 
 std::vector<InputColumn> input_columns(CsvTable& table) {
@@ -84,21 +86,22 @@ struct Gridded {
 };
 
 // How long a period lasts is what was asked for; where samples are missing, stamps tell all the same.
-void use_given_rate(Gridded& gridded, std::size_t rows, double rate_hz) {
+void use_given_rate(Gridded& gridded, std::size_t rows, double rate_hz, double samples_per_row) {
     Grid& grid = gridded.grid;
     if (!grid.failure.empty()) {
         const std::string warning = "missing samples cannot be seen: " + grid.failure;
         gridded.t_s.clear();
-        grid = grid_from_rate(rows, rate_hz);
+        grid = grid_from_rate(rows, rate_hz / samples_per_row);
         grid.warnings.push_back(warning);
         return;
     }
     constexpr double same = 1e-3;
-    if (std::abs(rate_hz / grid.rate_hz - 1.0) > same) {
+    const double stamped_hz = grid.rate_hz * samples_per_row;
+    if (std::abs(rate_hz / stamped_hz - 1.0) > same) {
         grid.warnings.push_back(fmt::format(
-            "the rate is taken as {:g} Hz, as given; the time stamps say {:.6g} Hz", rate_hz, grid.rate_hz));
+            "the rate is taken as {:g} Hz, as given; the time stamps say {:.6g} Hz", rate_hz, stamped_hz));
     }
-    grid.rate_hz = rate_hz;
+    grid.rate_hz = rate_hz / samples_per_row;
     grid.rate_sd_hz.reset();
 }
 
@@ -115,8 +118,9 @@ Result<Gridded> on_grid(std::vector<InputColumn> columns, const CsvReadOptions& 
         }
     }
     if (rows == 0) { return malformed("no samples after the header line"); }
+    const auto samples_per_row = static_cast<double>(options.samples_per_row);
     if (options.rate_hz && gridded.t_s.empty()) {
-        gridded.grid = grid_from_rate(rows, *options.rate_hz);
+        gridded.grid = grid_from_rate(rows, *options.rate_hz / samples_per_row);
         return gridded;
     }
     if (gridded.t_s.empty()) {
@@ -126,7 +130,7 @@ Result<Gridded> on_grid(std::vector<InputColumn> columns, const CsvReadOptions& 
     gridded.grid = stamped ? grid_from_stamps(gridded.t_s) : Grid{};
     if (!stamped) { gridded.grid.failure = "time stamps are missing"; }
     if (options.rate_hz) {
-        use_given_rate(gridded, rows, *options.rate_hz);
+        use_given_rate(gridded, rows, *options.rate_hz, samples_per_row);
     } else if (!gridded.grid.failure.empty()) {
         return malformed(gridded.grid.failure);
     }
@@ -145,7 +149,7 @@ void drop_missing_samples(Gridded& gridded) {
 }
 
 // An angle, or an increment after a hole, gives no rate at the first sample of a segment.
-void differentiate_angles(Gridded& gridded) {
+void differentiate_angles(Gridded& gridded, std::size_t samples_per_row) {
     bool any_angle = false;
     bool any_increment = false;
     for (InputColumn& column : gridded.columns) {
@@ -156,7 +160,8 @@ void differentiate_angles(Gridded& gridded) {
             }
         } else if (column.is(CsvColumn::Kind::angle_increment)) {
             any_increment = true;
-            for (double& value : column.values) { value *= gridded.grid.rate_hz; }
+            const double sample_rate_hz = gridded.grid.rate_hz * static_cast<double>(samples_per_row);
+            for (double& value : column.values) { value *= sample_rate_hz; }
         }
     }
     if (!any_angle && !any_increment) { return; }
@@ -214,7 +219,7 @@ Result<Recording> recording_of(std::vector<InputColumn> columns, std::string nam
     }
     GYROLOG_TRY(Gridded gridded, on_grid(std::move(columns), options));
     drop_missing_samples(gridded);
-    differentiate_angles(gridded);
+    differentiate_angles(gridded, options.samples_per_row);
     if (gridded.columns.front().values.empty()) { return malformed("no complete sample"); }
     std::stable_partition(gridded.columns.begin(), gridded.columns.end(),
                           [](const InputColumn& column) { return column.is_gyro(); });
@@ -224,9 +229,12 @@ Result<Recording> recording_of(std::vector<InputColumn> columns, std::string nam
     }
     recording.rate_hz = gridded.grid.rate_hz;
     recording.rate_sd_hz = gridded.grid.rate_sd_hz;
-    recording.stamp_jitter_s = gridded.grid.stamp_jitter_s;
-    recording.stamps = gridded.grid.stamps;
-    recording.t_s = std::move(gridded.t_s);
+    recording.samples_per_row = options.samples_per_row;
+    if (options.samples_per_row == 1) {
+        recording.stamp_jitter_s = gridded.grid.stamp_jitter_s;
+        recording.stamps = gridded.grid.stamps;
+        recording.t_s = std::move(gridded.t_s);
+    }
     recording.segments = std::move(gridded.grid.segments);
     recording.dropouts = std::move(gridded.grid.dropouts);
     recording.warnings.insert(recording.warnings.end(), gridded.grid.warnings.begin(),
@@ -235,7 +243,7 @@ Result<Recording> recording_of(std::vector<InputColumn> columns, std::string nam
 }
 
 Result<Recording> read_file(const std::string& path, const CsvReadOptions& options) {
-    CsvTable table = recording_table(!options.rate_hz);
+    CsvTable table = recording_table(options);
     GYROLOG_CHECK(read_csv_file(table, path, options.rows_most + 1));
     return recording_of(input_columns(table), path.substr(path.find_last_of('/') + 1), options);
 }
@@ -250,7 +258,7 @@ Result<Recording> read_recording_csv(const std::string& path, const CsvReadOptio
 
 Result<Recording> parse_recording_csv(std::string_view text, std::string name,
                                       const CsvReadOptions& options) {
-    CsvTable table = recording_table(!options.rate_hz);
+    CsvTable table = recording_table(options);
     GYROLOG_CHECK(table.feed(text));
     GYROLOG_CHECK(table.finish());
     return recording_of(input_columns(table), std::move(name), options);

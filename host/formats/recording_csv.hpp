@@ -24,6 +24,10 @@ struct CsvReadOptions {
     bool allow_unscaled_counts = false;
     // Reading ends soon after so many.
     std::size_t rows_most = std::numeric_limits<std::size_t>::max() - 1;
+    // More: means of so many lines, whether or not samples are missing between them, of those that have
+    // all; a row is missing where fewer than half have. Otherwise as means_of() has them. Only rows take
+    // memory.
+    std::size_t samples_per_row = 1;
 };
 
 // Numbers keep the unit and the digits that the text has (Column::source_unit). Counts that are whole numbers

@@ -37,7 +37,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     gyrolog::CsvReadOptions options;
     options.lsb_dps = 0.015;
-    for (const bool with_rate : {false, true}) {
+    for (const bool with_rate : {false, true, true}) {
+        // The third time, in means.
+        if (options.rate_hz) { options.samples_per_row = 2; }
         if (with_rate) { options.rate_hz = 100.0; }
         const auto recording = gyrolog::parse_recording_csv(text, "fuzz", options);
         if (recording.ok()) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numeric>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -125,6 +126,54 @@ TEST(RecordingCsv, TheRateGivenKeepsTheHolesThatTheStampsShow) {
 TEST(RecordingCsv, TheRateGivenWarnsWhereStampsAreNone) {
     const Recording r = parsed("t_s,gx_dps\n0,1\n0,2\n-50,3\n", {.rate_hz = 200.0});
     EXPECT_THAT(r.warnings, ElementsAre(HasSubstr("missing samples cannot be seen")));
+}
+
+TEST(RecordingCsv, MeansOfLinesAreThoseOfSamples) {
+    std::string text = "t_s,gx_dps,gy_lsb,gz_rad,temp_C\n";
+    for (int i = 0; i < 1001; ++i) {
+        text += fmt::format("{},{},{},{},{}\n", 0.001 * i, 0.01 * (i % 17), i % 5, 1e-3 * i * i,
+                            i % 10 == 3 ? "" : "25");
+    }
+    CsvReadOptions options{.lsb_dps = 0.5};
+    options.samples_per_row = 10;
+    const Recording means = parsed(text, options);
+    // The angle's first row has no rate.
+    EXPECT_EQ(means.rows(), 99U);
+    EXPECT_EQ(means.samples_per_row, 10U);
+    EXPECT_NEAR(means.rate_hz, 100.0, 1e-9);
+    EXPECT_EQ(means.stamps, StampKind::none);
+    EXPECT_THAT(means.t_s, IsEmpty());
+    EXPECT_THAT(means.find("temp")->values(), testing::Each(25.0));
+    for (std::size_t row = 0; row < means.rows(); ++row) {
+        double sum = 0.0;
+        for (std::size_t i = 10 * (row + 1); i < 10 * (row + 2); ++i) {
+            sum += 0.01 * static_cast<double>(i % 17);
+        }
+        EXPECT_NEAR(means.find("gx")->value(row), 0.1 * sum * rad_per_deg, 1e-15) << row;
+        EXPECT_NEAR(means.find("gy")->value(row), rad_per_deg, 1e-12) << row;
+    }
+    // From the mean of the angle over lines 0 to 9 to that over the next ten.
+    EXPECT_NEAR(means.find("gz")->value(0), 1e-3 * (14.5 * 14.5 - 4.5 * 4.5) * 100.0, 1e-9);
+}
+
+TEST(RecordingCsv, MeansOfIncrementsAreRates) {
+    CsvReadOptions options{.rate_hz = 100.0};
+    options.samples_per_row = 2;
+    const Recording means = parsed("dgx_rad\n0.01\n0.03\n0.05\n0.07\n0.09\n", options);
+    ASSERT_EQ(means.rows(), 2U);
+    EXPECT_DOUBLE_EQ(means.find("gx")->value(0), 2.0);
+    EXPECT_DOUBLE_EQ(means.find("gx")->value(1), 6.0);
+    EXPECT_DOUBLE_EQ(means.rate_hz, 50.0);
+}
+
+TEST(RecordingCsv, MeansAreOfTheLinesThatHaveAGyro) {
+    CsvReadOptions options{.rate_hz = 100.0};
+    options.samples_per_row = 3;
+    const Recording means = parsed(
+        "gx_dps,temp_C\n1,20\n2,\n3,\n5,20\nnan,20\n7,20\nnan,20\nnan,20\n9,20\n9,\n10,30\n11,\n", options);
+    EXPECT_THAT(reals(means, "gx"), ElementsAre(2.0, 6.0, 10.0));
+    EXPECT_THAT(reals(means, "temp"), ElementsAre(20.0, 20.0, 30.0));
+    EXPECT_EQ(means.segments.back().first_index, 3);
 }
 
 TEST(RecordingCsv, RatesBeyondAnyGyroAreRefused) {
@@ -266,10 +315,13 @@ TEST(RecordingCsv, ReadsNoFurtherThanWanted) {
     }
     EXPECT_FALSE(read_recording_csv(path).ok());
     const Result<Recording> recording = read_recording_csv(path, {.rows_most = 1000});
+    const Result<Recording> means = read_recording_csv(path, {.rows_most = 1000, .samples_per_row = 7});
     std::filesystem::remove(path);
     ASSERT_TRUE(recording.ok()) << recording.error().message;
     EXPECT_GE(recording.value().rows(), 1000U);
     EXPECT_LT(recording.value().rows(), static_cast<std::size_t>(rows));
+    ASSERT_TRUE(means.ok()) << means.error().message;
+    EXPECT_EQ(means.value().rows(), recording.value().rows() / 7);
 }
 
 }  // namespace
