@@ -18,7 +18,7 @@ namespace gyrolog {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds time_limit(100);
+constexpr std::chrono::seconds time_limit(240);  // for a day of samples beside other work
 
 struct SignalPlan {
     std::chrono::milliseconds after;

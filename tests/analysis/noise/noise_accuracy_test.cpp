@@ -38,7 +38,7 @@ constexpr Bound bounds[] = {{NoiseTerm::N, truth.N_rad_per_sqrt_s, 0.00158, 1.15
                             {NoiseTerm::K, truth.K_rad_per_s_sqrt_s, 0.211, 1.3}};
 
 const std::vector<NoiseFit>& fits() {
-    static const std::vector<NoiseFit> all = test::over_seeds(test::realisations(60), [](std::uint64_t seed) {
+    static const std::vector<NoiseFit> all = test::over_seeds(test::realisations(40), [](std::uint64_t seed) {
         const Column column{"gx", "rad/s", test::shaped_noise(truth, samples, rate_hz, seed),
                             1.0,  0.0,     "rad_s"};
         const std::vector<Segment> whole = {{0, samples, 0}};
