@@ -208,7 +208,7 @@ private:
         if (!blocks.has_noise()) { return std::nullopt; }
         AxisSamples samples;
         samples.axis = axis;
-        samples.per_dps = rad_per_deg * white_share(*baseline_, axis).per_rad_s / blocks.level;
+        samples.per_dps = rad_per_deg * whitened_per_rad_s(observation, axis) / blocks.level;
         samples.histogram = whitened_histogram(blocks, observation, axis);
         drop_runs(blocks, observation, axis, samples.histogram);
         samples.noise = noise_[axis].get();

@@ -24,9 +24,21 @@ WhiteShare white_share(const Baseline& baseline, std::size_t axis) {
     if (count == 0.0) { return share; }
     share.variance = variance / count;
     share.own_variance = amplitude * amplitude / (count * count);
-    share.per_rad_s = gain / count;
-    share.lattice = baseline.model().lsb_rad_s * share.per_rad_s;
+    share.lattice = baseline.model().lsb_rad_s * gain / count;
     return share;
+}
+
+double whitened_per_rad_s(const Observation& observation, std::size_t axis) {
+    const Baseline& baseline = observation.baseline();
+    const std::vector<double>& density = observation.axis(axis).density;
+    double count = 0.0;
+    double gain = 0.0;
+    for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
+        if (!(density[i] > 0.0)) { continue; }
+        count += baseline.bins()[i].count();
+        gain += baseline.bins()[i].count() / std::sqrt(density[i] * baseline.rate_hz());
+    }
+    return count > 0.0 ? gain / count : 0.0;
 }
 
 double level_cost_nats(const Observation& observation, std::size_t axis, double level) {

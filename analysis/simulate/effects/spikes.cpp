@@ -130,7 +130,7 @@ constexpr EffectSignature signature = {
     .place = PlaceKind::structure,
     .structure = "isolated_samples",
     .unjudged = unjudged,
-    .words = "Single samples are off by {smallest_dps} to {largest_dps}, {per_hour} an hour.",
+    .words = "Single samples are off by {smallest_dps} to {largest_dps}, {per_hour}.",
     .decided_by = "a longer recording at rest, of raw samples",
 };
 

@@ -36,6 +36,18 @@ TEST(OutlierEvidence, CountsTheSpikes) {
     EXPECT_GT(found->gain_nats, 40.0 * 0.5 * std::pow(1.0 / 0.08, 2.0));
 }
 
+// Spikes that double the power of the noise pass for more of it where the model leaves that open: their
+// sizes are what they are.
+TEST(OutlierEvidence, KeepsTheSizesWhereTheNoiseGivesWay) {
+    SensorModel model = known_sensor();
+    for (AxisModel& axis : model.axes) { axis.sd_rel["N"] = 0.5; }
+    const auto seen = seen_effects(model, {spikes(360.0, 3.0, 5.0, {"y"})}, half_hour, 26);
+    const auto found = seen.find("spikes", make_outlier_test);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->entries.at(0).params.at("smallest_dps"), 3.0, 0.2);
+    EXPECT_NEAR(found->entries.at(0).params.at("largest_dps"), 5.0, 0.2);
+}
+
 TEST(OutlierEvidence, SharesWhatAxesHaveInCommon) {
     const auto seen = seen_effects(known_sensor(), {spikes(40.0, 1.0, 3.0, {})}, half_hour, 24);
     const auto found = seen.find("spikes", make_outlier_test);
