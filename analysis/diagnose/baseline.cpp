@@ -177,8 +177,11 @@ void Baseline::read_motion() {
 
     const TransformPool::Lease transform = this->transform();
     const double gain_sd = stated(model_.sd_abs, "M", 0.0);
-    const double latency_sd_s = stated(model_.sd_abs, "latency_s", 0.0);
-    const double clock_sd = stated(model_.sd_abs, "rate_rel", clock_sd_rel);
+    // One latency and one clock for all axes, each of which is fitted by itself: so much wider, all of them
+    // off alike pay together what one parameter pays.
+    const double alike = std::sqrt(static_cast<double>(axes_.size()));
+    const double latency_sd_s = alike * stated(model_.sd_abs, "latency_s", 0.0);
+    const double clock_sd = alike * stated(model_.sd_abs, "rate_rel", clock_sd_rel);
     const bool is_shaped = gain_sd > 0.0 && shapes_the_motion(model_);
     std::array<std::array<std::vector<float>, 3>, 3> per_gain;  // by the rate's axis, then the answer's
     for (const std::size_t from : axes_) {

@@ -5,7 +5,7 @@ import zlib
 
 import numpy as np
 
-from evidence import Bins, dct, fitted_levels
+from evidence import AXES, Bins, dct, fitted_levels
 from world import Motion, Temperature, specific_force
 
 LSB_DPS = 1.0 / 65.5
@@ -150,7 +150,9 @@ class Context:
         weight = np.repeat(1.0 / (density * self.rate_hz), self.bins.count.astype(int))
         weight = np.concatenate([[0.0], weight])
         sd = self.model["sd_abs"]
-        prior = np.diag(1.0 / np.array([sd["M"]] * 3 + [sd["latency_s"], sd["rate_rel"]]) ** 2)
+        # One latency and one clock for the axes, each of which is charged a share.
+        alike = np.sqrt(len(AXES))
+        prior = np.diag(1.0 / np.array([sd["M"]] * 3 + [alike * sd["latency_s"], alike * sd["rate_rel"]]) ** 2)
         XW = X * weight
         beta = np.linalg.solve(XW @ X.T + prior, XW @ d)
         return self.bins.power((d - beta @ X)), 0.5 * beta @ prior @ beta

@@ -105,8 +105,9 @@ TEST(MotionEvidence, OfALatencyIsWhatTheStatedOneDoesNotCover) {
     const Finding* found = of(seen, "latency");
     ASSERT_NE(found, nullptr);
     EXPECT_NEAR(found->entries.front().params.at("delay_s"), delay_s, 2e-4) << "as far as it is stated";
-    // The motion knows the delay far better than the model states it: the gain is the prior's, on each axis.
-    const double expected_nats = 3.0 * 0.5 * delay_s * delay_s / (1e-4 * 1e-4);
+    // The motion knows the delay far better than the model states it: the gain is the prior's, once for all
+    // axes.
+    const double expected_nats = 0.5 * delay_s * delay_s / (1e-4 * 1e-4);
     EXPECT_NEAR(found->gain_nats, expected_nats, 0.1 * expected_nats);
     EXPECT_EQ(seen.best(), found) << seen.best()->effect;
 }
@@ -122,6 +123,16 @@ void expect_low_pass_alone(const std::shared_ptr<const World>& world) {
     const Finding& cause = found->causes.front().finding;
     EXPECT_EQ(cause.effect, "lowpass");
     EXPECT_NEAR(cause.entries.front().params.at("fc_hz"), 15.77, 4.0 * cause.sd.front().at("fc_hz"));
+}
+
+// Of a hundred units that are what their models say, two are as late as that: on all axes.
+TEST(MotionEvidence, OfALatencyWithinItsUncertaintyIsNone) {
+    const SensorModel model = moving_sensor();
+    SensorModel sensor = model;
+    sensor.latency_s += 2.4e-4;
+    const Hypotheses seen = examined(sensor, model, 37);
+    const Finding* found = of(seen, "latency");
+    if (found != nullptr) { EXPECT_LT(found->evidence_nats, 2.0); }
 }
 
 // Its lag looks like latency, what it takes off the motion like noise; only with it nothing else is left.
