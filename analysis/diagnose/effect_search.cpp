@@ -30,6 +30,9 @@ constexpr double worth_refitting_nats = 100.0;
 // Of responses, to fit them better than one by one.
 constexpr double worth_settling_nats = 1000.0;
 
+// No cause that is dropped as needless explained so much.
+constexpr double lost_nats = 100.0;
+
 class Search {
 public:
     Search(const Hypotheses& first, std::shared_ptr<const Recording> recording, const SearchOptions& options)
@@ -55,8 +58,7 @@ public:
             if (!freed && (next == nullptr || causes_.size() == options_.causes_most)) { break; }
             // What is next is not known before the noise is.
             if (!freed && !add_response(*latest, *next)) { causes_.push_back({*next, findings_of(*latest)}); }
-            if (!told() || !refit()) { return std::nullopt; }
-            static_cast<void>(settle_responses());
+            if (!told() || !refit_all()) { return std::nullopt; }
             forget_apparent_evidence();
             latest = with_causes();
         }
@@ -179,6 +181,12 @@ private:
         return places;
     }
 
+    double evidence_nats_of(const std::vector<std::size_t>& places) const {
+        double nats = 0.0;
+        for (const std::size_t i : places) { nats += causes_[i].finding.evidence_nats; }
+        return nats;
+    }
+
     // These and `more` fitted together, the other causes in the model.
     ResponseRefit fitted_together(const std::vector<std::size_t>& places, const Finding* more) const {
         SensorModel model = model_;
@@ -198,9 +206,7 @@ private:
     // are without it. Where it changes much of the motion they do not. Whether parameters moved.
     bool settle_responses() {
         const std::vector<std::size_t> places = fast_responses();
-        double nats = 0.0;
-        for (const std::size_t i : places) { nats += causes_[i].finding.evidence_nats; }
-        if (places.empty() || nats < worth_settling_nats) { return false; }
+        if (evidence_nats_of(places) < worth_settling_nats) { return false; }
         const ResponseRefit refit = fitted_together(places, nullptr);
         for (std::size_t i = 0; i < places.size(); ++i) { causes_[places[i]].finding = refit.findings[i]; }
         return refit.moved;
@@ -211,9 +217,10 @@ private:
     // `next`.
     bool add_response(const Hypotheses& latest, const Finding& next) {
         const std::vector<std::size_t> places = fast_responses();
-        if (places.empty() || next.evidence_nats < worth_refitting_nats) { return false; }
+        const bool is_fast = is_fast_response(next);
+        if (places.empty() || (!is_fast && next.evidence_nats < worth_refitting_nats)) { return false; }
         const double before_nats = log_likelihood_nats(*latest.observation);
-        double best_nats = is_fast_response(next) ? -1e300 : evidence_beyond_apparent_nats(next);
+        double best_nats = is_fast ? -1e300 : evidence_beyond_apparent_nats(next);
         std::vector<Finding> best;
         for (const std::optional<Finding>& other : latest.findings) {
             if (!other || !is_fast_response(*other) || !is_new(*other)) { continue; }
@@ -252,24 +259,38 @@ private:
         std::optional<Hypotheses> best;
         std::vector<FoundCause> best_causes;
         double best_nats = 0.0;
-        for (const Finding& finding : beginnings()) {
+        bool best_leaves_nothing = false;
+        const std::vector<Finding> first = beginnings();
+        // What each then has is measured by what the other leaves: of huge ones the sum says nothing.
+        const bool is_huge = !first.empty() && first.front().evidence_nats >= huge_nats;
+        const double better_by_nats =
+            is_huge ? std::max(margin_nats, formulas_share * first.front().evidence_nats) : margin_nats;
+        for (const Finding& finding : first) {
             causes_ = {{finding, is_of_codes(finding) ? std::vector{finding} : findings_of(first_)}};
             Hypotheses with_it = with_causes();
             const Finding* next = further(with_it);
-            const double nats = finding.evidence_nats + (next != nullptr ? next->evidence_nats : 0.0);
+            const double nats = is_huge ? likelihood_with(with_it, next)
+                                        : finding.evidence_nats + (next ? next->evidence_nats : 0.0);
             // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one,
-            // unless the noise does far better.
-            const bool explains_all =
-                next == nullptr && !is_noise(finding) && (!best || nats > best_nats - far_better_nats);
-            if (!best || explains_all || nats > best_nats + margin_nats) {
+            // unless noise that leaves nothing either does far better.
+            const bool explains_all = next == nullptr && !is_noise(finding) &&
+                                      (!best_leaves_nothing || nats > best_nats - far_better_nats);
+            if (!best || explains_all || nats > best_nats + better_by_nats) {
                 best = std::move(with_it);
                 best_causes = causes_;
                 best_nats = nats;
+                best_leaves_nothing = next == nullptr;
             }
             if (explains_all) { break; }
         }
         causes_ = std::move(best_causes);
         return best;
+    }
+
+    double likelihood_with(const Hypotheses& hypotheses, const Finding* next) const {
+        if (next == nullptr) { return log_likelihood_nats(*hypotheses.observation); }
+        const auto baseline = hypotheses.baseline->with(with_cause(hypotheses.baseline->model(), *next));
+        return log_likelihood_nats({baseline, recording_, options_.seed});
     }
 
     bool told() const {
@@ -380,6 +401,23 @@ private:
             if (!told()) { return false; }
         }
         return true;
+    }
+
+    // The responses among the causes together, too. One by one each is fitted to what the others' errors
+    // leave, and noise may take its place: what explains far less than before all of them together is no
+    // better.
+    bool refit_all() {
+        const std::vector<FoundCause> before = causes_;
+        const bool may_get_lost = evidence_nats_of(fast_responses()) >= worth_settling_nats;
+        const double before_nats = may_get_lost ? log_likelihood_nats(observed()) : 0.0;
+        if (!refit()) { return false; }
+        static_cast<void>(settle_responses());
+        if (may_get_lost && log_likelihood_nats(observed()) < before_nats - lost_nats) { causes_ = before; }
+        return true;
+    }
+
+    Observation observed() const {
+        return {first_.baseline->with(model_with_all_but(causes_.size())), recording_, options_.seed};
     }
 
     const Hypotheses& first_;

@@ -20,7 +20,10 @@ constexpr int shortenings_most = 4;
 constexpr double settled_nats = 0.2;
 // Of a parameter's size, over which the answer is taken for straight.
 constexpr double straight = 1e-3;
-constexpr double step_most = 0.5;
+// In one step a parameter falls to half at the most, or grows to three times: what was found beside others
+// that took most of it is far too small.
+constexpr double falls_most = 0.5;
+constexpr double grows_most = 2.0;
 
 // One fitted parameter.
 struct Parameter {
@@ -93,8 +96,10 @@ private:
         std::vector<Finding> moved = best_;
         for (std::size_t i = 0; i < places_.size(); ++i) {
             double& value = value_at(moved, places_[i]);
-            const double most = step_most * std::fabs(value);
-            value += std::clamp(by[static_cast<Eigen::Index>(i)], -most, most);
+            const double outwards = value < 0.0 ? -1.0 : 1.0;
+            const double size = std::fabs(value);
+            const double step = outwards * by[static_cast<Eigen::Index>(i)];
+            value += outwards * std::clamp(step, -falls_most * size, grows_most * size);
         }
         return moved;
     }
