@@ -59,6 +59,7 @@ public:
         std::optional<Finding> finding;
         for (const auto& [group, trial] : best_of_group) {
             std::optional<Finding> of_group = best_near(observation, quick, trial);
+            if (of_group && is_within_noise(*of_group)) { continue; }
             if (of_group && (!finding || of_group->evidence_nats > finding->evidence_nats)) {
                 finding = std::move(of_group);
             }
@@ -472,14 +473,29 @@ private:
         finding.where.tau_s = {0.37 / band.to, std::min(0.37 / band.from, 0.5 * baseline_->duration_s())};
     }
 
+    double most_rate_rad_s(const Finding& finding) const {
+        double most_dps = 0.0;
+        for (const EffectModel& entry : finding.entries) {
+            most_dps = std::max(most_dps, entry.params.at(std::string(signature_.rates_up_to)));
+        }
+        return most_dps * rad_per_deg;
+    }
+
+    // What is left of the reference's noise where the sensor rests is no rate: without an answer to it the
+    // sensor would seem to fit better.
+    bool is_within_noise(const Finding& finding) const {
+        if (signature_.rates_up_to.empty()) { return false; }
+        double noise_rad_s = 0.0;
+        for (const std::size_t axis : finding.where.axes) {
+            noise_rad_s = std::max(noise_rad_s, baseline_->reference_noise_rad_s(axis));
+        }
+        return most_rate_rad_s(finding) < noise_rad_s;
+    }
+
     // Up to the rate that the effect says, or the upper half of all by size.
     void locate_rates(Finding& finding) const {
         if (!signature_.rates_up_to.empty()) {
-            double most_dps = 0.0;
-            for (const EffectModel& entry : finding.entries) {
-                most_dps = std::max(most_dps, entry.params.at(std::string(signature_.rates_up_to)));
-            }
-            finding.where.rate_rad_s = {0.0, most_dps * rad_per_deg};
+            finding.where.rate_rad_s = {0.0, most_rate_rad_s(finding)};
             return;
         }
         std::vector<float> sizes;

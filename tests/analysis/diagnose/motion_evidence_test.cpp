@@ -11,6 +11,7 @@
 #include "analysis/diagnose/ceiling_test.hpp"
 #include "analysis/diagnose/effect_search.hpp"
 #include "analysis/diagnose/quiet_reference.hpp"
+#include "analysis/diagnose/response_test.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -258,6 +259,22 @@ TEST(MotionEvidence, TakesTheReferencesNoiseForNoDeadZone) {
     if (found != nullptr) { EXPECT_LT(found->evidence_nats, 3.0); }
     const Finding* best = seen.best();
     if (best != nullptr) { EXPECT_LT(best->evidence_nats, 6.0) << best->effect; }
+}
+
+// That is not told from what is left of the noise, whatever it gains.
+TEST(MotionEvidence, OfADeadZoneWithinTheReferencesNoiseIsNone) {
+    const auto world = world_turning([](double t_s) {
+        const double rate_rad_s = 0.03 * rad_per_deg * std::sin(2.0 * pi * t_s / 31.0);
+        return Vector3{rate_rad_s, rate_rad_s, rate_rad_s};
+    });
+    const SensorModel model = moving_sensor();
+    for (const double width_dps : {0.016, 0.028}) {
+        const SensorModel sensor =
+            with_effect(model, "dead_zone", {{"width_dps", width_dps}, {"jump", 1.0}}, {"x", "y", "z"});
+        const auto recording = recorded(sensor, 48000, 45, world);
+        const auto finding = found(make_response_test, "dead_zone", recording, model);
+        EXPECT_EQ(finding.has_value(), width_dps > 0.02) << width_dps;
+    }
 }
 
 std::shared_ptr<const Recording> moved(const SensorModel& sensor, std::uint64_t seed) {
