@@ -1,12 +1,8 @@
 #include "analysis/diagnose/null_simulations.hpp"
 
 #include <algorithm>
-#include <mutex>
 
-#include "analysis/compare/model_draw.hpp"
-#include "analysis/parallel/parallel_for.hpp"
-#include "analysis/simulate/counter_random.hpp"
-#include "analysis/simulate/recording_simulator.hpp"
+#include "analysis/diagnose/drawn_recordings.hpp"
 
 namespace gyrolog {
 
@@ -42,31 +38,16 @@ std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Baselin
     NullSimulations null;
     null.curves.resize(options.simulations);
     if (catalogue != nullptr) { null.evidence_nats.resize(options.simulations); }
-    const RandomStream seeds(options.seed, seed_stream);
-    std::mutex mutex;
-    std::size_t done = 0;
-    bool stopped = false;
-    parallel_for(options.simulations, options.threads, [&](std::size_t i) {
-        {
-            const std::lock_guard lock(mutex);
-            if (stopped) { return; }
-        }
-        const auto seed = static_cast<std::uint64_t>(seeds.uniform(i) * 0x1p32);
-        SimulationRequest request;
-        request.like = baseline->quiet_world();
-        request.seed = seed;
-        SensorModel model = draw_within_uncertainty(baseline->model(), seed);
-        model.ref_noise_rad_s = 0.0;  // the observation draws it
-        const auto recording = std::make_shared<const Recording>(simulate_recording(model, request));
+    const DrawOptions draws{options.simulations, options.seed, seed_stream, options.threads,
+                            options.on_progress};
+    const bool done = for_each_draw(draws, [&](std::size_t i, std::uint64_t seed) {
+        const auto recording =
+            std::make_shared<const Recording>(drawn_recording(*baseline, baseline->model(), seed));
         const Observation observation(baseline, recording, seed, Observation::ReferenceNoise::drawn);
         null.curves[i] = gap_curves(observation);
         if (catalogue != nullptr) { null.evidence_nats[i] = evidence_of_all(*catalogue, observation); }
-        const std::lock_guard lock(mutex);
-        ++done;
-        const double share = static_cast<double>(done) / static_cast<double>(options.simulations);
-        if (options.on_progress && !options.on_progress(share)) { stopped = true; }
     });
-    if (stopped) { return std::nullopt; }
+    if (!done) { return std::nullopt; }
     return null;
 }
 

@@ -1,0 +1,41 @@
+#include "analysis/diagnose/drawn_recordings.hpp"
+
+#include <mutex>
+
+#include "analysis/compare/model_draw.hpp"
+#include "analysis/parallel/parallel_for.hpp"
+#include "analysis/simulate/counter_random.hpp"
+#include "analysis/simulate/recording_simulator.hpp"
+
+namespace gyrolog {
+
+Recording drawn_recording(const Baseline& baseline, const SensorModel& model, std::uint64_t seed) {
+    SimulationRequest request;
+    request.like = baseline.quiet_world();
+    request.seed = seed;
+    SensorModel drawn = draw_within_uncertainty(model, seed);
+    drawn.ref_noise_rad_s = 0.0;
+    return simulate_recording(drawn, request);
+}
+
+bool for_each_draw(const DrawOptions& options,
+                   const std::function<void(std::size_t i, std::uint64_t seed)>& task) {
+    const RandomStream seeds(options.seed, options.stream);
+    std::mutex mutex;
+    std::size_t done = 0;
+    bool stopped = false;
+    parallel_for(options.count, options.threads, [&](std::size_t i) {
+        {
+            const std::lock_guard lock(mutex);
+            if (stopped) { return; }
+        }
+        task(i, static_cast<std::uint64_t>(seeds.uniform(i) * 0x1p32));
+        const std::lock_guard lock(mutex);
+        ++done;
+        const double share = static_cast<double>(done) / static_cast<double>(options.count);
+        if (options.on_progress && !options.on_progress(share)) { stopped = true; }
+    });
+    return !stopped;
+}
+
+}  // namespace gyrolog
