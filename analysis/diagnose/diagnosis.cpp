@@ -18,7 +18,9 @@
 #include "analysis/diagnose/gap_report.hpp"
 #include "analysis/diagnose/halves_check.hpp"
 #include "analysis/diagnose/null_simulations.hpp"
+#include "analysis/diagnose/parameter_spread.hpp"
 #include "analysis/diagnose/seen_line.hpp"
+#include "analysis/diagnose/swallowed_noise.hpp"
 #include "analysis/diagnose/unspecific_rivals.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -94,6 +96,7 @@ public:
         if (!simulate_before() || !search() || !simulate_after()) { return std::nullopt; }
         if (found_) { compare_shapes(); }
         decide();
+        if (!widen_uncertainties()) { return std::nullopt; }
         if (options_.holdout && !measure_on_holdout()) { return std::nullopt; }
         return std::move(answer_);
     }
@@ -398,6 +401,24 @@ private:
         for (const FoundCause& found : found_->causes) { causes.push_back(found.finding); }
         answer_.halves = check_by_halves(baseline_->with(found_->without_causes), recording_, causes,
                                          options_.seed, options_.threads);
+    }
+
+    // Of a gap that is not explained the causes are no more than a guess.
+    bool widen_uncertainties() {
+        if (answer_.verdict != Verdict::known) { return true; }
+        SpreadOptions options{.seed = options_.seed + 3, .threads = options_.threads};
+        options.on_progress = [&](double share) {
+            return told("looking how well the parameters are known", share);
+        };
+        std::vector<Finding> causes;
+        for (const Cause& cause : answer_.causes) { causes.push_back(cause.finding); }
+        std::optional<std::vector<Finding>> known = with_spread(
+            baseline_->with(found_->without_causes), answer_.corrected, std::move(causes), options);
+        if (!known) { return false; }
+        for (std::size_t i = 0; i < known->size(); ++i) {
+            answer_.causes[i].finding = std::move((*known)[i]);
+        }
+        return true;
     }
 
     // Along what the causes change, the distance of a recording is sqrt(2 gain / parameters), a simulation's
