@@ -21,7 +21,7 @@
 namespace gyrolog {
 
 inline constexpr std::size_t diagnosable_samples_min = 2048;
-// 24 h at 100 Hz; several copies of each axis are held at once.
+// 24 h at 100 Hz; several copies of each axis are held at once. Of longer ones: long_diagnosis.hpp.
 inline constexpr std::size_t diagnosable_samples_max = 9'000'000;
 
 // Why a recording cannot be diagnosed: no axis x, y or z, counts without a scale, too short, more holes than

@@ -29,10 +29,9 @@ namespace gyrolog {
 
 namespace {
 
-// A gap is called where chance would have it in no more than one recording of a hundred.
-constexpr double none_above_p = 0.01;
-// What the causes leave is called unexplained below this,
-constexpr double unexplained_below_p = 0.005;
+// What the causes leave is called unexplained where chance leaves it in fewer than so many of the recordings
+// in which chance has a gap,
+constexpr double unexplained_share = 0.5;
 // unless it is so little of the gap, 4 % of its size, that the approximations of a fit may leave it, and
 // chance nearly.
 constexpr double tolerated_share = 1.6e-3;
@@ -55,13 +54,12 @@ constexpr double faint_line_share = 0.5;
 // as its model.
 constexpr double square_of_motion = 1000.0;
 
-// What a simulation and its observation hold at once, and how much of it all threads together may.
+// What a simulation and its observation hold at once.
 constexpr double bytes_per_sample_and_thread = 160.0;
-constexpr double bytes_of_threads_most = 4e9;
 
-unsigned affordable_threads(std::size_t samples) {
+unsigned affordable_threads(std::size_t samples, double bytes_most) {
     const double each = bytes_per_sample_and_thread * static_cast<double>(samples);
-    const double affordable = std::max(1.0, bytes_of_threads_most / each);
+    const double affordable = std::max(1.0, bytes_most / each);
     const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
     return affordable < processors ? static_cast<unsigned>(affordable) : processors;
 }
@@ -80,7 +78,9 @@ public:
         const auto world = std::make_shared<const RecordedWorld>(recording_);
         answer_.warnings = world->warnings();
         baseline_ = with_own_start(std::make_shared<const Baseline>(world, model), recording_);
-        if (options_.threads == 0) { options_.threads = affordable_threads(baseline_->length()); }
+        if (options_.threads == 0) {
+            options_.threads = affordable_threads(baseline_->length(), options_.simulations_bytes_most);
+        }
     }
 
     std::optional<Diagnosis> run(const std::string& model_name) {
@@ -220,7 +220,7 @@ private:
         options.seed = options_.seed;
         options.threads = options_.threads;
         options.on_progress = [&](double share) { return told("looking for causes", 0.6 + 0.2 * share); };
-        if (answer_.p_none >= none_above_p) {
+        if (answer_.p_none >= options_.false_alarms_most) {
             answer_.corrected = baseline_->model();
             return true;
         }
@@ -327,7 +327,7 @@ private:
         answer_.gap_before = before.gap;
         answer_.gap_after = after.gap;
         describe_domains();
-        if (answer_.p_none >= none_above_p) {
+        if (answer_.p_none >= options_.false_alarms_most) {
             answer_.verdict = Verdict::none;
             return;
         }
@@ -336,8 +336,9 @@ private:
         const bool next_to_chance =
             answer_.p_left >= tolerated_above_p || surprise_left_nats_ < formulas_share * found_gain_nats();
         const bool tolerable = excess_after < tolerated_share * excess_before && next_to_chance;
-        const bool explained = after_ && !answer_.better_shape && effects_found() < many_effects &&
-                               (answer_.p_left >= unexplained_below_p || tolerable);
+        const bool explained =
+            after_ && !answer_.better_shape && effects_found() < many_effects &&
+            (answer_.p_left >= unexplained_share * options_.false_alarms_most || tolerable);
         answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
         if (found_) {
             for (const FoundCause& found : found_->causes) {
@@ -376,7 +377,7 @@ private:
             if (cause.decided_by.empty()) { continue; }
             const Rival& rival = cause.tie_group[1];
             std::string proposal =
-                "to tell " + cause.finding.effect + " from " + rival.effect + ": " + cause.decided_by;
+                telling_apart(cause.finding.effect) + rival.effect + ": " + cause.decided_by;
             // What noise tells grows with the time that it is listened to.
             const EvidenceMethod method = find_effect(cause.finding.effect)->signature->method;
             if (method == EvidenceMethod::spectrum || method == EvidenceMethod::two_levels ||
@@ -527,6 +528,23 @@ private:
 };
 
 }  // namespace
+
+std::string telling_apart(const std::string& effect) { return "to tell " + effect + " from "; }
+
+SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const SensorModel& centred) {
+    model = with_noise(std::move(model), diagnosis.swallowed);
+    for (const Cause& cause : diagnosis.causes) { model = with_cause(std::move(model), cause.finding); }
+    for (const std::size_t axis : diagnosis.axes) {
+        model.axes[axis].bias_rad_s = centred.axes[axis].bias_rad_s;
+    }
+    return model;
+}
+
+void append_new(std::vector<std::string>& to, const std::vector<std::string>& from) {
+    for (const std::string& sentence : from) {
+        if (std::ranges::count(to, sentence) == 0) { to.push_back(sentence); }
+    }
+}
 
 std::optional<Diagnosis> diagnose(std::shared_ptr<const Recording> recording, const SensorModel& model,
                                   const std::string& model_name, const DiagnosisOptions& options) {

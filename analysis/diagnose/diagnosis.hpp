@@ -75,6 +75,15 @@ struct BetterShape {
     double evidence_nats = 0.0;     // by how much its log Bayes factor is more
 };
 
+// One of two ways to see a long recording (long_diagnosis.hpp).
+struct Look {
+    double duration_s = 0.0;
+    std::size_t rows = 0;
+    std::size_t samples_per_row = 1;
+    Verdict verdict = Verdict::none;
+    double p_none = 1.0;
+};
+
 struct Diagnosis {
     std::string recording_name;
     std::string model_name;
@@ -85,6 +94,7 @@ struct Diagnosis {
     double band_probability = 0.95;
     std::uint64_t seed = 1;
     std::vector<std::size_t> axes;
+    std::vector<Look> looks;  // empty: it was seen as a whole, at once
 
     Verdict verdict = Verdict::none;
     double p_none = 1.0;
@@ -106,12 +116,25 @@ struct Diagnosis {
     SensorModel corrected;  // the model with the causes added and the swallowed noise taken off
 };
 
+// How a next recording begins that would settle a tie of the effect.
+std::string telling_apart(const std::string& effect);
+
+// `model` with what the diagnosis found: its swallowed noise, its causes, and on its axes the bias of
+// `centred`.
+SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const SensorModel& centred);
+
+// Sentences that are not there yet.
+void append_new(std::vector<std::string>& to, const std::vector<std::string>& from);
+
 struct DiagnosisOptions {
     std::uint64_t seed = 1;
     std::size_t simulations = 200;
-    // 0: all processors, fewer for long recordings whose simulations would take more than 4 GB at a time. The
-    // result is the same for any number.
+    // A gap is called where chance would have it no more often; what causes leave, half as often.
+    double false_alarms_most = 0.01;
+    // 0: all processors, fewer where their simulations would take more than `simulations_bytes_most` at a
+    // time. The result is the same for any number.
     unsigned threads = 0;
+    double simulations_bytes_most = 4e9;
     std::shared_ptr<const Recording> holdout{};
     // With what is being done and its share from 0 to 1; false ends the work.
     std::function<bool(const char*, double)> on_progress{};

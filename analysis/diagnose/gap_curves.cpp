@@ -181,14 +181,19 @@ GapCurve correlation_curve(const Observation& observation, std::size_t axis, std
 
 std::vector<GapCurve> gap_curves(const Observation& observation) {
     const Baseline& baseline = observation.baseline();
+    // Means of codes are equal now and then, those of a simulation never; and how samples are distributed
+    // their means do not tell, but a spike among them is far from the others.
+    const bool are_samples = baseline.world().recording().samples_per_row == 1;
     std::vector<GapCurve> curves;
     for (const std::size_t axis : baseline.axes()) {
         curves.push_back(allan_curve(observation, axis));
         curves.push_back(spectrum_curve(observation, axis));
         curves.push_back(narrow_curve(observation, axis, band_edges(baseline.bins())));
         course_and_drift(observation, axis, curves);
-        curves.push_back(amplitude_curve(observation, axis));
-        curves.push_back(repeats_curve(observation, axis));
+        if (are_samples) {
+            curves.push_back(amplitude_curve(observation, axis));
+            curves.push_back(repeats_curve(observation, axis));
+        }
         curves.push_back(period_curve(observation, axis));
         curves.push_back(codes_curve(observation, axis));
         if (varies(baseline.temperature_C())) { curves.push_back(temperature_curve(observation, axis)); }

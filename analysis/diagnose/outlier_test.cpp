@@ -237,13 +237,15 @@ private:
     }
 
     std::vector<Limits> limits_to_try(const std::vector<AxisSamples>& all) const {
-        double largest_dps = above_plausible * effect_.params[2].plausible_to;
+        // Of one sample, in means of several.
+        const auto in_rows = static_cast<double>(baseline_->world().recording().samples_per_row);
+        double largest_dps = above_plausible * effect_.params[2].plausible_to / in_rows;
         for (const AxisSamples& samples : all) {
             for (const std::size_t i : samples.far) {
                 largest_dps = std::max(largest_dps, 1.1 * samples.histogram.at[i] / samples.per_dps);
             }
         }
-        std::vector<double> sizes = {below_plausible * effect_.params[1].plausible_from};
+        std::vector<double> sizes = {below_plausible * effect_.params[1].plausible_from / in_rows};
         while (sizes.back() < largest_dps) { sizes.push_back(sizes.back() * size_step); }
         std::vector<Limits> limits;
         for (std::size_t from = 0; from < sizes.size(); ++from) {

@@ -10,15 +10,14 @@
 
 #include <fmt/format.h>
 
-#include "analysis/diagnose/baseline.hpp"
 #include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/long_diagnosis.hpp"
 #include "analysis/diagnose/means_model.hpp"
-#include "analysis/diagnose/swallowed_noise.hpp"
 #include "host/app/command.hpp"
+#include "host/app/diagnosis_input.hpp"
 #include "host/app/diagnosis_output.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
-#include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
 #include "host/formats/diagnosis_json.hpp"
 #include "host/formats/diagnosis_text.hpp"
@@ -27,29 +26,6 @@
 
 namespace gyrolog {
 namespace {
-
-Result<std::shared_ptr<const Recording>> diagnosable(const RecordingDiagnosisRequest& request,
-                                                     const std::string& path) {
-    RecordingInput input{path, std::nullopt, request.lsb_dps};
-    input.samples_most = (diagnosable_samples_max + 1) * request.average;
-    input.samples_per_row = request.average;
-    GYROLOG_TRY(Recording recording, read_recording(input));
-    if (const auto refusal = diagnosis_refusal(recording)) {
-        return Error{ErrorCode::failed, request.average > 1
-                                            ? fmt::format("diagnose '{}': in means of {} samples it {}", path,
-                                                          request.average, *refusal)
-                                            : "diagnose '" + path + "': " + *refusal};
-    }
-    if (recording.rows() > diagnosable_samples_max) {
-        recording = first_rows(std::move(recording), diagnosable_samples_max);
-        recording.warnings.push_back(fmt::format(
-            "'{}' is looked at from its beginning to {}: a diagnosis takes no more than {} samples; "
-            "`--average {}` looks at {} times as much for what is slow, in means of so many samples",
-            path, format_duration(recording.duration_s()), diagnosable_samples_max, 10 * request.average,
-            10));
-    }
-    return std::make_shared<const Recording>(std::move(recording));
-}
 
 // Of a model that is held against means.
 std::vector<std::string> left_out(const SensorModel& of_samples, const SensorModel& of_means) {
@@ -62,43 +38,64 @@ std::vector<std::string> left_out(const SensorModel& of_samples, const SensorMod
     return warnings;
 }
 
-// What was found in means, in a model of samples.
-SensorModel corrected(SensorModel model, const Diagnosis& diagnosis) {
-    model = with_noise(std::move(model), diagnosis.swallowed);
-    for (const Cause& cause : diagnosis.causes) { model = with_cause(std::move(model), cause.finding); }
-    for (const std::size_t axis : diagnosis.axes) {
-        model.axes[axis].bias_rad_s = diagnosis.corrected.axes[axis].bias_rad_s;
+void append_warnings(std::vector<std::string>& to, const DiagnosisInput& of) {
+    for (const auto& recording : {of.means, of.samples}) {
+        if (recording != nullptr) { append_new(to, recording->warnings); }
     }
-    return model;
 }
 
-Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& request) {
-    GYROLOG_TRY(const ModelFile file, read_single_model(request.model_path));
-    GYROLOG_TRY(const std::shared_ptr<const Recording> recording,
-                diagnosable(request, request.recording_path));
+// In means that were asked for.
+std::optional<Diagnosis> diagnose_means(const DiagnosisInput& read, const SensorModel& model,
+                                        const std::string& name, const DiagnosisOptions& options) {
+    const std::size_t samples = read.samples->samples_per_row;
+    const double rate_hz = read.samples->rate_hz * static_cast<double>(samples);
+    const SensorModel of_means = model_of_means(model, samples, rate_hz);
+    std::optional<Diagnosis> diagnosis = diagnose(read.samples, of_means, name, options);
+    if (!diagnosis) { return std::nullopt; }
+    for (Cause& cause : diagnosis->causes) {
+        cause.finding = finding_of_samples(std::move(cause.finding), samples, rate_hz);
+    }
+    diagnosis->corrected = corrected_model(model, *diagnosis, diagnosis->corrected);
+    append_new(diagnosis->warnings, left_out(model, of_means));
+    return diagnosis;
+}
+
+DiagnosisOptions options_of(Console& console, const RecordingDiagnosisRequest& request) {
     DiagnosisOptions options;
     options.seed = request.seed;
     options.simulations = request.simulations;
     options.threads = request.threads;
-    if (!request.holdout_path.empty()) {
-        GYROLOG_TRY(options.holdout, diagnosable(request, request.holdout_path));
-    }
-    options.on_progress = [&](const char* what, double share) {
+    options.on_progress = [&console](const char* what, double share) {
         if (console.progress) {
             console.err << fmt::format("\r\x1b[K  {}  {:.0f} %", what, 100.0 * share) << std::flush;
         }
         return !console.stop_wanted();
     };
-    const SensorModel model = model_of_means(file.model, request.average);
-    auto diagnosis =
-        diagnose(recording, model, std::filesystem::path(request.model_path).filename().string(), options);
+    return options;
+}
+
+Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& request) {
+    GYROLOG_TRY(const ModelFile file, read_single_model(request.model_path));
+    RecordingInput input{request.recording_path, std::nullopt, request.lsb_dps};
+    input.samples_per_row = request.average;
+    GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
+    DiagnosisInput second;
+    if (!request.holdout_path.empty()) {
+        input.path = request.holdout_path;
+        GYROLOG_TRY(second, read_for_diagnosis(input, read));
+    }
+    DiagnosisOptions options = options_of(console, request);
+    options.holdout = second.samples;
+    const std::string name = std::filesystem::path(request.model_path).filename().string();
+    auto diagnosis = read.means != nullptr
+                         ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
+                     : request.average > 1 ? diagnose_means(read, file.model, name, options)
+                                           : diagnose(read.samples, file.model, name, options);
     if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
     if (!diagnosis) { return Error{ErrorCode::failed, "interrupted; nothing is written"}; }
-    if (request.average > 1) { diagnosis->corrected = corrected(file.model, *diagnosis); }
-    for (const std::vector<std::string>& more :
-         {recording->warnings, file.notes, left_out(file.model, model)}) {
-        diagnosis->warnings.insert(diagnosis->warnings.end(), more.begin(), more.end());
-    }
+    append_warnings(diagnosis->warnings, read);
+    append_new(diagnosis->warnings, file.notes);
+    append_warnings(diagnosis->warnings, second);
     return *std::move(diagnosis);
 }
 
@@ -106,6 +103,7 @@ std::vector<std::string> facts_of(const Diagnosis& diagnosis) {
     std::vector<std::string> facts{
         fmt::format("{} simulations, seed {}", diagnosis.simulations, diagnosis.seed),
         fmt::format("{:.6g} Hz, {}", diagnosis.rate_hz, format_duration(diagnosis.duration_s))};
+    if (!diagnosis.looks.empty()) { facts.push_back(looks_text(diagnosis)); }
     for (const Cause& cause : diagnosis.causes) {
         facts.push_back(
             fmt::format("{}: {}", axes_text(cause.finding.where.axes), effect_words(cause.finding)));

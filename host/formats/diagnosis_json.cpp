@@ -149,6 +149,13 @@ void put_circumstances(Json& json, const Diagnosis& diagnosis) {
     json["duration_s"] = diagnosis.duration_s;
     json["samples"] = diagnosis.samples;
     json["axes"] = axes_json(diagnosis.axes);
+    for (const Look& look : diagnosis.looks) {
+        json["looks"].push_back({{"duration_s", look.duration_s},
+                                 {"rows", look.rows},
+                                 {"samples_per_row", look.samples_per_row},
+                                 {"verdict", name_of(look.verdict)},
+                                 {"p_none", look.p_none}});
+    }
     json["simulations"] = diagnosis.simulations;
     json["band_probability"] = diagnosis.band_probability;
     json["seed"] = diagnosis.seed;

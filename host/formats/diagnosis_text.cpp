@@ -99,14 +99,15 @@ std::string halves_clause(const HalvesResult& halves) {
                "(--holdout takes a second recording)";
     }
     const std::string what = listed(halves.judged);
+    const char* leave = halves.judged.size() == 1 ? "leaves" : "leave";
     if (halves.excess_nats > 0.0) {
         return fmt::format(
-            "{}, fitted to one half of the recording, leaves more in the other than chance does "
+            "{}, fitted to one half of the recording, {} more in the other than chance does "
             "({:.3g} nats), which is counted",
-            what, halves.evidence_left_nats);
+            what, leave, halves.evidence_left_nats);
     }
-    return fmt::format(
-        "{}, fitted to one half of the recording, leaves no more in the other than chance does", what);
+    return fmt::format("{}, fitted to one half of the recording, {} no more in the other than chance does",
+                       what, leave);
 }
 
 std::string gap_after_sentence(const Diagnosis& diagnosis) {
@@ -176,10 +177,12 @@ std::string summary_text(const Diagnosis& diagnosis) {
 }
 
 std::string heading_text(const Diagnosis& diagnosis) {
-    return wrapped_text(
-        "", fmt::format("{} against {} simulations of {} (seed {}): {} samples at {:.6g} Hz, {}",
-                        diagnosis.recording_name, diagnosis.simulations, diagnosis.model_name, diagnosis.seed,
-                        diagnosis.samples, diagnosis.rate_hz, duration_text(diagnosis.duration_s)));
+    std::string text =
+        fmt::format("{} against {} simulations of {} (seed {}): {} samples at {:.6g} Hz, {}",
+                    diagnosis.recording_name, diagnosis.simulations, diagnosis.model_name, diagnosis.seed,
+                    diagnosis.samples, diagnosis.rate_hz, duration_text(diagnosis.duration_s));
+    if (!diagnosis.looks.empty()) { text += "; " + looks_text(diagnosis); }
+    return wrapped_text("", text);
 }
 
 // Parameters that were not fitted stand with those that were: the entry needs both.
@@ -329,6 +332,16 @@ std::string place_text(const Place& place) {
         parts.push_back(structure);
     }
     return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string looks_text(const Diagnosis& diagnosis) {
+    std::vector<std::string> looks;
+    for (const Look& look : diagnosis.looks) {
+        looks.push_back(look.samples_per_row == 1
+                            ? fmt::format("at the first {} sample by sample", duration_text(look.duration_s))
+                            : fmt::format("at all of it in means of {} samples", look.samples_per_row));
+    }
+    return "looked " + listed(looks);
 }
 
 std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of) {

@@ -1,9 +1,13 @@
 // Test side only: recordings of a simulated sensor, and what a test finds in them.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "analysis/diagnose/effect_test.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -20,6 +24,16 @@ inline std::shared_ptr<const Recording> recorded(const SensorModel& model, std::
     request.seed = seed;
     request.world = std::move(world);
     return std::make_shared<const Recording>(simulate_recording(model, request));
+}
+
+// Without x, with y that says one code all the time.
+inline std::shared_ptr<const Recording> few_samples_with_a_dead_axis(const SensorModel& model,
+                                                                     std::uint64_t seed) {
+    Recording recording = *recorded(model, 2048, seed);
+    auto& counts = std::get<std::vector<std::int16_t>>(recording.columns[1].data);
+    std::ranges::fill(counts, std::int16_t{3});
+    recording.columns.erase(recording.columns.begin());
+    return std::make_shared<const Recording>(std::move(recording));
 }
 
 inline std::shared_ptr<const Baseline> baseline_of(const std::shared_ptr<const Recording>& recording,

@@ -131,12 +131,7 @@ TEST(StepTest, YieldsToARandomWalk) {
 
 TEST(StepTest, AnswersForOneDeadAxisAndFewSamples) {
     const SensorModel model = calibrated_sensor();
-    Recording recording = *recorded(model, 2048, 10);
-    auto& counts = std::get<std::vector<std::int16_t>>(recording.columns[1].data);
-    std::fill(counts.begin(), counts.end(), std::int16_t{3});
-    recording.columns.erase(recording.columns.begin());
-    const auto finding =
-        found(make_step_test, "bias_step", std::make_shared<const Recording>(recording), model);
+    const auto finding = found(make_step_test, "bias_step", few_samples_with_a_dead_axis(model, 10), model);
     if (finding) { EXPECT_TRUE(std::isfinite(finding->evidence_nats)); }
     EXPECT_LT(evidence(finding), 3.0);
 }

@@ -157,12 +157,7 @@ TEST(TwoLevelTest, IsWorthAsMuchWhereTheLevelsDrownInNoise) {
 
 TEST(TwoLevelTest, AnswersForOneDeadAxisAndFewSamples) {
     const SensorModel model = calibrated_sensor();
-    Recording recording = *recorded(model, 2048, 10);
-    auto& counts = std::get<std::vector<std::int16_t>>(recording.columns[1].data);
-    std::fill(counts.begin(), counts.end(), std::int16_t{3});
-    recording.columns.erase(recording.columns.begin());
-    const auto finding =
-        found(make_two_level_test, "rtn", std::make_shared<const Recording>(recording), model);
+    const auto finding = found(make_two_level_test, "rtn", few_samples_with_a_dead_axis(model, 10), model);
     if (finding) { EXPECT_TRUE(std::isfinite(finding->evidence_nats)); }
     EXPECT_LT(evidence(finding), 3.0);
 }

@@ -397,6 +397,22 @@ TEST(DiagnosisText, SaysWhatTheModelsNoiseIsWithoutTheCauses) {
     EXPECT_NEAR(entry.at("sd").get<double>(), 0.0002, 1e-12);
 }
 
+TEST(DiagnosisText, SaysHowALongRecordingWasLookedAt) {
+    EXPECT_THAT(diagnosis_text(known()), Not(HasSubstr("looked")));
+    EXPECT_FALSE(json::parse(diagnosis_json(known())).contains("looks"));
+    Diagnosis diagnosis = known();
+    diagnosis.looks = {{1200.0, 1'200'000, 1, Verdict::none, 0.4},
+                       {86400.0, 864'000, 100, Verdict::known, 1e-9}};
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)),
+                HasSubstr("; looked at the first 20 min sample by sample and at all of it in means of 100 "
+                          "samples"));
+    const json looks = json::parse(diagnosis_json(diagnosis)).at("looks");
+    EXPECT_EQ(looks.at(0), json::parse(R"({"duration_s": 1200.0, "rows": 1200000, "samples_per_row": 1,
+                                           "verdict": "none", "p_none": 0.4})"));
+    EXPECT_EQ(looks.at(1).at("verdict"), "known");
+    EXPECT_EQ(looks.at(1).at("samples_per_row"), 100);
+}
+
 TEST(DiagnosisText, OfManyPlacesListsThoseThatStandOut) {
     Diagnosis diagnosis = known();
     diagnosis.domains.assign(9, allan_domain());

@@ -1,0 +1,154 @@
+#include "host/app/diagnosis_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "analysis/diagnose/baseline.hpp"
+#include "analysis/diagnose/long_diagnosis.hpp"
+#include "host/app/quantity.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr double row_of_means_s = 0.1;
+// As far as one sensor's clock may stray.
+constexpr double same_rate_rel = 0.03;
+
+bool moves(const Recording& recording) {
+    return std::ranges::any_of(recording.columns,
+                               [](const Column& column) { return column.name.starts_with("ref_"); });
+}
+
+std::optional<Error> refused(const Recording& recording, const std::string& path) {
+    const auto refusal = diagnosis_refusal(recording);
+    if (!refusal) { return std::nullopt; }
+    const std::size_t samples = recording.samples_per_row;
+    const std::string as = samples > 1 ? fmt::format("in means of {} samples it ", samples) : "";
+    return Error{ErrorCode::failed, fmt::format("diagnose '{}': {}{}", path, as, *refusal)};
+}
+
+// Sampling instants, whether or not a sample is there.
+std::size_t slots(const Recording& recording) {
+    return recording.rows() + static_cast<std::size_t>(recording.missing_samples());
+}
+
+Recording first_slots(Recording recording, std::size_t most) {
+    if (slots(recording) <= most) { return recording; }
+    const std::int64_t end = recording.segments.front().first_index + static_cast<std::int64_t>(most);
+    std::size_t rows = 0;
+    for (const Segment& segment : recording.segments) {
+        const std::int64_t within = end - segment.first_index;
+        if (within > 0) { rows += std::min(segment.count, static_cast<std::size_t>(within)); }
+    }
+    return first_rows(std::move(recording), rows);
+}
+
+std::string beginning_warning(const Recording& beginning, const std::string& path, const std::string& why) {
+    return fmt::format("'{}' is looked at from its beginning to {}: {}", path,
+                       format_duration(beginning.duration_s()), why);
+}
+
+std::string most_warning(const Recording& beginning, const std::string& path, std::size_t most) {
+    const std::size_t samples = beginning.samples_per_row;
+    return beginning_warning(
+        beginning, path,
+        samples == 1
+            ? fmt::format("a diagnosis takes no more than {} samples of it", most)
+            : fmt::format(
+                  "a diagnosis takes no more than {} means; `--average {}` looks at ten times as much", most,
+                  10 * samples));
+}
+
+struct Read {
+    Recording samples;
+    bool is_long = false;  // there are more than these
+};
+
+Result<Read> read_samples(RecordingInput input, std::size_t most) {
+    input.samples_most = (most + 1) * input.samples_per_row;
+    GYROLOG_TRY(Recording samples, read_recording(input));
+    Read read{std::move(samples)};
+    read.is_long = slots(read.samples) > most;
+    if (read.is_long) { read.samples = first_slots(std::move(read.samples), most); }
+    if (auto refusal = refused(read.samples, input.path)) { return *std::move(refusal); }
+    return read;
+}
+
+std::shared_ptr<const Recording> shared(Recording recording) {
+    return std::make_shared<const Recording>(std::move(recording));
+}
+
+// As much as one look takes; `warnings` are told with it.
+Result<DiagnosisInput> read_for_one_look(const RecordingInput& input,
+                                         const std::vector<std::string>& warnings = {}) {
+    GYROLOG_TRY(Read read, read_samples(input, diagnosable_samples_max));
+    if (read.is_long) {
+        read.samples.warnings.push_back(most_warning(read.samples, input.path, diagnosable_samples_max));
+    }
+    read.samples.warnings.insert(read.samples.warnings.end(), warnings.begin(), warnings.end());
+    return DiagnosisInput{shared(std::move(read.samples)), nullptr};
+}
+
+// Why means cannot be held beside the samples of the same file; empty when they can.
+std::string unusable(const Recording& means, const Recording& samples, const std::string& path) {
+    if (const auto refusal = refused(means, path)) { return refusal->message; }
+    const double rate_hz = means.rate_hz * static_cast<double>(means.samples_per_row);
+    if (std::abs(rate_hz / samples.rate_hz - 1.0) < same_rate_rel) { return {}; }
+    return fmt::format("it begins with {:.6g} Hz, and its longest stretch has {:.6g} Hz", samples.rate_hz,
+                       rate_hz);
+}
+
+struct Means {
+    std::shared_ptr<const Recording> rows;  // null: they cannot be held beside the samples
+    std::string why_not;
+};
+
+Result<Means> read_means(RecordingInput input, std::size_t samples_per_row, const Recording& samples) {
+    input.samples_most = RecordingInput{}.samples_most;
+    input.samples_per_row = samples_per_row;
+    GYROLOG_TRY(Recording means, read_recording(input));
+    if (std::string why = unusable(means, samples, input.path); !why.empty()) {
+        return Means{nullptr, std::move(why)};
+    }
+    return Means{shared(std::move(means)), {}};
+}
+
+}  // namespace
+
+Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& input) {
+    if (input.samples_per_row > 1) { return read_for_one_look(input); }
+    GYROLOG_TRY(Read beginning, read_samples(input, beginning_max));
+    if (!beginning.is_long) { return DiagnosisInput{shared(std::move(beginning.samples)), nullptr}; }
+    if (moves(beginning.samples)) { return read_for_one_look(input); }
+    const double samples = std::max(2.0, std::round(beginning.samples.rate_hz * row_of_means_s));
+    GYROLOG_TRY(Means means, read_means(input, static_cast<std::size_t>(samples), beginning.samples));
+    if (means.rows == nullptr) {
+        return read_for_one_look(
+            input, {fmt::format("'{}' is looked at sample by sample only: {}", input.path, means.why_not)});
+    }
+    const std::size_t rows = slots(*means.rows);
+    if (rows * means.rows->samples_per_row <= diagnosable_samples_max) { return read_for_one_look(input); }
+    if (rows > means_max) { means.rows = shared(means_of(*means.rows, (rows + means_max - 1) / means_max)); }
+    return DiagnosisInput{shared(std::move(beginning.samples)), std::move(means.rows)};
+}
+
+Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& input, const DiagnosisInput& like) {
+    if (like.means == nullptr) { return read_for_one_look(input); }
+    GYROLOG_TRY(Read beginning, read_samples(input, beginning_max));
+    GYROLOG_TRY(Means means, read_means(input, like.means->samples_per_row, beginning.samples));
+    if (means.rows == nullptr) {
+        beginning.samples.warnings.push_back(beginning_warning(beginning.samples, input.path, means.why_not));
+    } else if (slots(*means.rows) > means_max) {
+        means.rows = shared(first_slots(*means.rows, means_max));
+        beginning.samples.warnings.push_back(most_warning(*means.rows, input.path, means_max));
+    }
+    return DiagnosisInput{shared(std::move(beginning.samples)), std::move(means.rows)};
+}
+
+}  // namespace gyrolog

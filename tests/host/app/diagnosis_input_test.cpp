@@ -1,0 +1,106 @@
+#include "host/app/diagnosis_input.hpp"
+
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/baseline.hpp"
+#include "analysis/diagnose/long_diagnosis.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::size_t rows_of_long = diagnosable_samples_max + 3000;
+constexpr std::size_t rows_of_one_look = beginning_max + 3000;
+
+class DiagnosisInputTest : public testing::Test {
+protected:
+    RecordingInput written(const std::string& name, const std::string& columns, const std::string& line,
+                           std::size_t rows) {
+        RecordingInput input{folder_.path(name), 1000.0, std::nullopt};
+        std::ofstream file(input.path);
+        file << columns << '\n';
+        for (std::size_t i = 0; i < rows; ++i) { file << (i % 2) << line << '\n'; }
+        return input;
+    }
+
+    DiagnosisInput read(const RecordingInput& input) {
+        const Result<DiagnosisInput> result = read_for_diagnosis(input);
+        EXPECT_TRUE(result.ok()) << result.error().message;
+        return result.ok() ? *result : DiagnosisInput{};
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(DiagnosisInputTest, IsTheWholeOfWhatOneLookTakes) {
+    for (const std::size_t rows : {std::size_t{5000}, rows_of_one_look}) {
+        const DiagnosisInput input = read(written("short.csv", "gx_dps", "", rows));
+        EXPECT_EQ(input.samples->rows(), rows);
+        EXPECT_EQ(input.means, nullptr);
+        EXPECT_THAT(input.samples->warnings, IsEmpty());
+    }
+}
+
+TEST_F(DiagnosisInputTest, IsTheBeginningAndMeansOfAllOfALongRecordingAtRest) {
+    const RecordingInput long_one = written("long.csv", "gx_dps", "", rows_of_long);
+    const DiagnosisInput input = read(long_one);
+    EXPECT_EQ(input.samples->rows(), beginning_max);
+    ASSERT_NE(input.means, nullptr);
+    EXPECT_EQ(input.means->samples_per_row, 100U);
+    EXPECT_EQ(input.means->rows(), rows_of_long / 100);
+    EXPECT_NEAR(input.means->rate_hz, 10.0, 1e-9);
+    EXPECT_THAT(input.samples->warnings, IsEmpty());
+
+    // A second recording is read like the first; as far as it is long enough.
+    const Result<DiagnosisInput> second = read_for_diagnosis(long_one, input);
+    ASSERT_TRUE(second.ok());
+    EXPECT_EQ(second->means->rows(), input.means->rows());
+    const Result<DiagnosisInput> brief = read_for_diagnosis(written("brief.csv", "gx_dps", "", 5000), input);
+    ASSERT_TRUE(brief.ok());
+    EXPECT_EQ(brief->samples->rows(), 5000U);
+    EXPECT_EQ(brief->means, nullptr);
+    EXPECT_THAT(brief->samples->warnings,
+                ElementsAre(HasSubstr("in means of 100 samples it has 50 samples")));
+}
+
+TEST_F(DiagnosisInputTest, IsTheBeginningOfALongRecordingInMotionWithAWarning) {
+    const DiagnosisInput input = read(written("moving.csv", "gx_dps,ref_x_dps", ",1", rows_of_long));
+    EXPECT_EQ(input.samples->rows(), diagnosable_samples_max);
+    EXPECT_EQ(input.means, nullptr);
+    EXPECT_THAT(input.samples->warnings, ElementsAre(HasSubstr("is looked at from its beginning to 2.5 h")));
+}
+
+TEST_F(DiagnosisInputTest, CountsLinesWithoutAGyroAsSamples) {
+    const RecordingInput input{folder_.path("holes.csv"), 1000.0, std::nullopt};
+    {
+        std::ofstream file(input.path);
+        file << "gx_dps\n";
+        for (std::size_t i = 0; i < rows_of_long; ++i) { file << (i % 8 == 3 ? "nan\n" : "1\n"); }
+    }
+    const DiagnosisInput holes = read(input);
+    EXPECT_LT(holes.samples->rows(), beginning_max);
+    EXPECT_NEAR(holes.samples->duration_s(), 1e-3 * beginning_max, 0.1);
+    ASSERT_NE(holes.means, nullptr);
+    EXPECT_EQ(holes.means->rows(), rows_of_long / 100);
+}
+
+TEST_F(DiagnosisInputTest, IsTheMeansThatWereAskedFor) {
+    RecordingInput input = written("asked.csv", "gx_dps", "", 10000);
+    input.samples_per_row = 4;
+    EXPECT_EQ(read(input).samples->rows(), 2500U);
+    input.samples_per_row = 10;
+    const Result<DiagnosisInput> few = read_for_diagnosis(input);
+    ASSERT_FALSE(few.ok());
+    EXPECT_THAT(few.error().message, HasSubstr("in means of 10 samples it has 1000 samples"));
+}
+
+}  // namespace
+}  // namespace gyrolog
