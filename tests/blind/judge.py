@@ -172,3 +172,19 @@ def true_shrink(truth, model, answer, corrected):
     claimed, unread = claimed_description(context, answer, corrected)
     left = nats(context, made, claimed, free=free, apart=True, perfect=truth["refitted"])
     return float(np.clip(1.0 - left / max(whole, 1e-9), 0.0, 1.0)), unread
+
+
+def deviations(effect, cause):
+    """By parameter, how many of its stated standard deviations the cause's lies beside the truth. Left out: what one
+    recording does not tell (from which frequency a line is folded, how a common noise is shared out between its size
+    and its gains), and what is a choice."""
+    off = {}
+    for name, sd in cause.get("sd", {}).items():
+        true, said = effect["params"].get(name), cause["params"].get(name)
+        numbers = all(isinstance(v, (int, float)) for v in (true, said, sd))
+        free = effect["effect"] == "common_mode" or (effect["effect"] == "tone" and name == "f_hz")
+        if not numbers or sd <= 0.0 or free:
+            continue
+        turned = math.remainder(said - true, 2.0 * math.pi) if name == "phase_rad" else said - true
+        off[name] = turned / sd
+    return off

@@ -74,6 +74,8 @@ def judged(directory, case_id, truth, outcome):
         if row["named"]:
             duration_s = truth["made"]["minutes"] * 60.0
             row["place"], row["place_fair"] = judge.place_right(effect, answer, causes[0], duration_s)
+    row["off"] = [{"effect": e["effect"], "param": name, "sds": sds} for e in effects if known and not truth["refitted"]
+                  for c in causes if c["effect"] == e["effect"] for name, sds in judge.deviations(e, c).items()]
     if truth["pair"]:
         left = [e["effect"] for e in effects]
         for cause in causes[:3]:
@@ -188,6 +190,10 @@ def summary(rows):
                              worst=float(errors.max()), coverage=rate(covered, "in"),
                              true=float(np.mean([r["shrink"] for r in claims])),
                              claimed=float(np.mean([r["claimed"][0] for r in claims])))
+    off = [p for r in rows for p in r.get("off", [])]
+    for p in off:
+        p["one"], p["two"] = abs(p["sds"]) <= 1.0, abs(p["sds"]) <= 2.0
+    out["parameters"] = {"one": rate(off, "one"), "two": rate(off, "two")}
     seconds = [r["seconds"] for r in rows if r["seconds"] is not None]
     out["seconds"] = {"mean": float(np.mean(seconds)), "most": float(max(seconds))} if seconds else None
     return out
@@ -234,6 +240,10 @@ def tables(s):
             ["the same, a wrong cause shrinks nothing", f"{shrink['error_strict']:.3f}", ""],
             ["true shrink within its interval", percent(shrink["coverage"]), "85 to 95 %"],
         ]
+    rows += [
+        ["parameters within their standard deviation", percent(s["parameters"]["one"]), "68 %"],
+        ["within two", percent(s["parameters"]["two"]), "95 %"],
+    ]
     out.append(("Figures", ["", "measured", "goal"], rows))
     out.append(("p_none on recordings without a gap", ["p_none <=", "share"],
                 [[f"{r['level']:g}", percent(r)] for r in s["p_none"]]))
