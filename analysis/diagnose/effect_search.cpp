@@ -118,6 +118,11 @@ private:
         return find_effect(finding.effect)->signature->method == EvidenceMethod::code_grid;
     }
 
+    // Each of its jumps is a step that noise of its spectrum does not have.
+    static bool is_telegraph(const Finding& finding) {
+        return find_effect(finding.effect)->signature->method == EvidenceMethod::two_levels;
+    }
+
     // Null without causes.
     const Finding* main_cause() const {
         if (causes_.empty()) { return nullptr; }
@@ -140,7 +145,7 @@ private:
     bool has_new_main_cause(const Hypotheses& with_causes) const {
         if (causes_.empty() || (causes_.size() == 1 && further(with_causes) == nullptr)) { return false; }
         const Finding* main = main_cause();
-        if (!is_of_codes(*main) && main->evidence_nats < huge_nats) { return false; }
+        if (!is_of_codes(*main) && !is_telegraph(*main) && main->evidence_nats < huge_nats) { return false; }
         return main->effect != apparent_beside_ && main_causes_ < main_causes_most;
     }
 
