@@ -79,6 +79,9 @@ class Acting:
     def whitened(self, axis, white, around, rng):
         return white
 
+    def drifted(self, axis, drift):
+        return drift
+
     def noise(self, axis, rng, around):
         return 0.0
 
@@ -289,6 +292,9 @@ class Lowpass(Acting):
         power = folded_lowpass(grid, self.of("fc_hz", axis), self.of("order", axis, 1), rate)
         gain = np.interp(f, grid, np.sqrt(power))
         return np.fft.irfft(np.fft.rfft(white) * gain, length)
+
+    def drifted(self, axis, drift):
+        return filtered(drift, lambda f: self._response(f, axis), self.context.rate_hz)
 
     def added(self, axis, around):
         """What the filter takes off the motion, which has nothing near half the rate, as the other effects left it."""

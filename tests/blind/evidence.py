@@ -140,13 +140,15 @@ def _spectrum(context, description, axis, N, B, K):
     if axis in description.level:
         white = white * np.mean(description.level[axis])
     if description.filter[axis]:
-        white = white * folded_lowpass(f, *description.filter[axis], context.rate_hz)
+        fc_hz, order = description.filter[axis]
+        white = white * folded_lowpass(f, fc_hz, order, context.rate_hz)
     fixed = np.full_like(f, context.floor_density)
     for density in description.extra[axis]:
         fixed = fixed + density(f)
     for square, gains in description.common:
         fixed = fixed + square * gains[axis] ** 2
-    return white, B**2 / (2.0 * np.pi * f), (K / (2.0 * np.pi * f)) ** 2, fixed
+    slow = 1.0 / (1.0 + (f / fc_hz) ** (2 * order)) if description.filter[axis] else 1.0
+    return white, slow * B**2 / (2.0 * np.pi * f), slow * (K / (2.0 * np.pi * f)) ** 2, fixed
 
 
 def _spectral_nats(context, true, other, axis, free, apart, perfect):

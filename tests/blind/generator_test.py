@@ -123,6 +123,14 @@ class Noise(unittest.TestCase):
             self.assertLess(abs(np.var(x) / variance - 1.0), error + 0.003)
             self.assertLess(abs(np.mean(x[:-1] * x[1:]) / np.var(x) - lag), error + 0.003)
 
+    def test_filtered_drift_keeps_its_slow_part_and_loses_its_fast_one(self):
+        context = Context(3, False, 60.0)
+        t = np.arange(context.n) / 100.0
+        low = Lowpass(context, {"fc_hz": 10.0, "order": 2}, ["x"])
+        for f, gain in ((0.5, 1.0), (10.0, np.sqrt(0.5)), (40.0, 1.0 / np.sqrt(257.0))):
+            x = low.drifted(0, np.cos(2.0 * np.pi * f * t))
+            self.assertAlmostEqual(np.sqrt(2.0 * np.var(x)), gain, delta=0.003)
+
     def test_skewed_noise_is_askew_and_no_more(self):
         context = Context(4, False, 120.0)
         x = SkewedNoise(context, {"skewness": 0.4}, ["x"]).whitened(0, np.empty(context.n), None, stream(1, "skew"))

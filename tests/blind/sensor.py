@@ -235,10 +235,15 @@ def record(context, effects, noise_name="noise"):
             if e.on(axis):
                 white = e.whitened(axis, white, around, stream(context.seed, noise_name, "w" + e.name, axis))
         value += sensor.N[axis] * np.sqrt(rate) * white
+        drift = np.zeros(n)
         if sensor.B[axis] > 0.0:
-            value += flicker(rng, n, sensor.B[axis])
+            drift += flicker(rng, n, sensor.B[axis])
         if sensor.K[axis] > 0.0:
-            value += walk(rng, n, sensor.K[axis], rate)
+            drift += walk(rng, n, sensor.K[axis], rate)
+        for e in effects:
+            if e.on(axis):
+                drift = e.drifted(axis, drift)
+        value += drift
         for e in effects:
             if e.on(axis):
                 own = stream(context.seed, noise_name, "n" + e.name, "" if e.shared else axis)
