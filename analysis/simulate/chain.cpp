@@ -49,7 +49,6 @@ constexpr ChainLink links[] = {
     effect(angle_noise_effect),
     effect(gauss_markov_effect),
     effect(rtn_effect),
-    effect(tone_effect),
     own(make_white_noise),
     // what acts on the white noise alone
     effect(heavy_tail_effect),
@@ -61,6 +60,8 @@ constexpr ChainLink links[] = {
     // the sensor's bandwidth
     effect(lowpass_effect),
     own(make_noise_sum),
+    // a line as high as it shows: the filter passed it at its true frequency, not at the one it folds to
+    effect(tone_effect),
     own(make_temperature_scale),
     effect(temp_scale_effect),
     effect(saturation_effect),

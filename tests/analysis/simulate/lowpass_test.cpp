@@ -95,6 +95,14 @@ TEST_P(Lowpass, WhiteNoiseIsStationaryFromTheFirstSample) {
     }
 }
 
+// Its amplitude is what the samples show, whatever the filter left of it at its true frequency.
+TEST_P(Lowpass, LineIsAsHighAsWithout) {
+    const SensorModel line = with_effect(
+        ideal_model(), "tone", {{"f_hz", 0.7 * rate_hz}, {"amplitude_dps", 1.0}, {"phase_rad", 0.4}});
+    EXPECT_EQ(simulate(filtered(line, GetParam(), rate_hz), rate_hz, 1, 2).rate_rad_s,
+              simulate(line, rate_hz, 1, 2).rate_rad_s);
+}
+
 // Lagrange's cubic through four samples a unit apart, at `s` from the third.
 double cubic_at(const std::array<double, 4>& samples, double s) {
     return -samples[0] * (s + 1.0) * s * (s - 1.0) / 6.0 + samples[1] * (s + 2.0) * s * (s - 1.0) / 2.0 -
