@@ -11,6 +11,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "analysis/diagnose/drawn_recordings.hpp"
 #include "analysis/diagnose/effect_search.hpp"
 #include "analysis/diagnose/evidence_tail.hpp"
 #include "analysis/diagnose/gap_domains.hpp"
@@ -49,6 +50,11 @@ constexpr std::size_t tie_most = 4;
 // A difference of this evidence is no tie any more, whatever chance does to it.
 constexpr double decided_nats = 8.0;
 constexpr std::size_t simulations_after_most = 50;
+// Their tail, of five, is known to half of its length. Where it says that chance hardly leaves so much, but
+// might, so many times more are asked; of what moves fewer, each measured anew.
+constexpr double hopeless_p = 1e-6;
+constexpr std::size_t times_more_in_doubt = 4;
+constexpr std::size_t times_more_in_motion = 2;
 constexpr double faint_line_share = 0.5;
 // Of the Allan variance at a second, which is the white noise's density: none is thirty times as strong
 // as its model.
@@ -235,16 +241,33 @@ private:
 
     bool simulate_after() {
         if (!found_ || found_->causes.empty()) { return true; }
+        after_curves_ = gap_curves(*found_->last.observation);
         NullSimulationOptions options{
             std::min(options_.simulations, simulations_after_most), options_.seed + 1, options_.threads, {}};
+        if (!judge_what_is_left(options)) { return false; }
+        if (answer_.p_left >= unexplained_below_p() || answer_.p_left < hopeless_p) { return true; }
+        const bool moves = baseline_->moves();
+        options.simulations *= moves ? times_more_in_motion : times_more_in_doubt;
+        options.seed = options_.seed + 4;
+        options.measure_anew = moves && baseline_->length() <= samples_measured_anew_most;
+        return judge_what_is_left(options);
+    }
+
+    double unexplained_below_p() const { return unexplained_share * options_.false_alarms_most; }
+
+    bool judge_what_is_left(NullSimulationOptions options) {
         options.on_progress = [&](double share) {
             return told("simulating the corrected model", 0.8 + 0.2 * share);
         };
         const std::optional<NullSimulations> null =
             simulate_null(found_->last.baseline->with(answer_.corrected), nullptr, options);
         if (!null) { return false; }
+        // One that rests in some simulations, and in others not quite, has other curves.
+        const auto has_other_curves = [&](const auto& curves) {
+            return curves.size() != after_curves_.size();
+        };
+        if (std::ranges::any_of(null->curves, has_other_curves)) { return true; }
         after_ = gap_reference(null->curves);
-        after_curves_ = gap_curves(*found_->last.observation);
         surprise_left_nats_ = worst_surprise_nats(after_curves_, *after_);
         answer_.p_left =
             EvidenceTail(simulated_surprises_nats(null->curves)).probability(surprise_left_nats_);
@@ -336,9 +359,8 @@ private:
         const bool next_to_chance =
             answer_.p_left >= tolerated_above_p || surprise_left_nats_ < formulas_share * found_gain_nats();
         const bool tolerable = excess_after < tolerated_share * excess_before && next_to_chance;
-        const bool explained =
-            after_ && !answer_.better_shape && effects_found() < many_effects &&
-            (answer_.p_left >= unexplained_share * options_.false_alarms_most || tolerable);
+        const bool explained = after_ && !answer_.better_shape && effects_found() < many_effects &&
+                               (answer_.p_left >= unexplained_below_p() || tolerable);
         answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
         if (found_) {
             for (const FoundCause& found : found_->causes) {

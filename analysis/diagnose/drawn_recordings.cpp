@@ -1,6 +1,8 @@
 #include "analysis/diagnose/drawn_recordings.hpp"
 
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "analysis/compare/model_draw.hpp"
 #include "analysis/parallel/parallel_for.hpp"
@@ -9,6 +11,12 @@
 
 namespace gyrolog {
 
+namespace {
+
+constexpr std::uint32_t noise_stream = 0x05000001;
+
+}  // namespace
+
 Recording drawn_recording(const Baseline& baseline, const SensorModel& model, std::uint64_t seed) {
     SimulationRequest request;
     request.like = baseline.quiet_world();
@@ -16,6 +24,23 @@ Recording drawn_recording(const Baseline& baseline, const SensorModel& model, st
     SensorModel drawn = draw_within_uncertainty(model, seed);
     drawn.ref_noise_rad_s = 0.0;
     return simulate_recording(drawn, request);
+}
+
+Recording measured_anew(Recording recording, const SensorModel& model, std::uint64_t seed) {
+    std::uint32_t stream = noise_stream;
+    for (Column& column : recording.columns) {
+        const bool is_rate = column.name == "ref_x" || column.name == "ref_y" || column.name == "ref_z";
+        const bool is_force = column.name == "ax" || column.name == "ay" || column.name == "az";
+        if (!is_rate && !is_force) { continue; }
+        const double sd = is_rate ? model.ref_noise_rad_s : model.acc_noise_m_s2;
+        const RandomStream noise(seed, stream++);
+        std::vector<double> values = column.values();
+        for (std::size_t row = 0; row < values.size(); ++row) { values[row] += sd * noise.normal(row); }
+        column.data = std::move(values);
+        column.scale = 1.0;
+        column.offset = 0.0;
+    }
+    return recording;
 }
 
 bool for_each_draw(const DrawOptions& options,

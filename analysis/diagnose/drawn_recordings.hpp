@@ -13,6 +13,13 @@ namespace gyrolog {
 // motion, as it was measured without noise.
 Recording drawn_recording(const Baseline& baseline, const SensorModel& model, std::uint64_t seed);
 
+// The columns of what is taken for the truth, the reference rate and the specific force, as `model` measures
+// them: with noise anew.
+Recording measured_anew(Recording recording, const SensorModel& model, std::uint64_t seed);
+
+// Of longer ones the world stays as the recording has it, for its memory.
+inline constexpr std::size_t samples_measured_anew_most = 2'000'000;
+
 struct DrawOptions {
     std::size_t count = 0;
     std::uint64_t seed = 1;

@@ -1,6 +1,7 @@
 #include "analysis/diagnose/null_simulations.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "analysis/diagnose/drawn_recordings.hpp"
 
@@ -19,6 +20,15 @@ std::vector<double> evidence_of_all(const std::vector<CatalogueEntry>& catalogue
         if (finding) { evidence_nats[i] = std::max(finding->evidence_nats, no_evidence_nats); }
     }
     return evidence_nats;
+}
+
+std::vector<GapCurve> curves_measured_anew(const Baseline& baseline, Recording simulated,
+                                           std::uint64_t seed) {
+    const SensorModel& model = baseline.model();
+    const auto recording =
+        std::make_shared<const Recording>(measured_anew(std::move(simulated), model, seed));
+    const auto world = std::make_shared<const RecordedWorld>(recording);
+    return gap_curves(Observation(std::make_shared<const Baseline>(world, model), recording, seed));
 }
 
 }  // namespace
@@ -41,8 +51,12 @@ std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Baselin
     const DrawOptions draws{options.simulations, options.seed, seed_stream, options.threads,
                             options.on_progress};
     const bool done = for_each_draw(draws, [&](std::size_t i, std::uint64_t seed) {
-        const auto recording =
-            std::make_shared<const Recording>(drawn_recording(*baseline, baseline->model(), seed));
+        Recording simulated = drawn_recording(*baseline, baseline->model(), seed);
+        if (options.measure_anew && baseline->moves()) {
+            null.curves[i] = curves_measured_anew(*baseline, std::move(simulated), seed);
+            return;
+        }
+        const auto recording = std::make_shared<const Recording>(std::move(simulated));
         const Observation observation(baseline, recording, seed, Observation::ReferenceNoise::drawn);
         null.curves[i] = gap_curves(observation);
         if (catalogue != nullptr) { null.evidence_nats[i] = evidence_of_all(*catalogue, observation); }

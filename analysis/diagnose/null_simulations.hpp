@@ -29,6 +29,10 @@ struct NullSimulationOptions {
     std::uint64_t seed = 1;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // with the share that is done; false ends the work
+    // Where the sensor moves, each with its reference measured anew and looked at like the recording's: what
+    // the reference's noise does at a dead zone's edge no likelihood knows. Several times as slow; curves
+    // only.
+    bool measure_anew = false;
 };
 
 // Sensors are drawn within the model's stated uncertainty. `catalogue`: of the same baseline, or null where

@@ -17,7 +17,6 @@ namespace gyrolog {
 namespace {
 
 constexpr std::uint32_t seed_stream = 0x05000000;
-constexpr std::uint32_t noise_stream = 0x05000001;
 
 // Sixteen know a standard deviation to 18 %. Of long recordings fewer, for their time; of a new world, where
 // the sensor moves, the sooner.
@@ -26,25 +25,6 @@ constexpr double samples_of_all_at_rest = 6e6;
 constexpr std::size_t simulations_least_at_rest = 6;
 constexpr double samples_of_all_in_motion = 1.5e6;
 constexpr std::size_t simulations_least_in_motion = 4;
-// Of longer ones the world stays as the recording has it, for its memory.
-constexpr std::size_t samples_of_new_world_most = 2'000'000;
-
-// The columns of what is taken for the truth, with the noise with which they are measured.
-void measure(Recording& recording, const SensorModel& model, std::uint64_t seed) {
-    std::uint32_t stream = noise_stream;
-    for (Column& column : recording.columns) {
-        const bool is_rate = column.name == "ref_x" || column.name == "ref_y" || column.name == "ref_z";
-        const bool is_force = column.name == "ax" || column.name == "ay" || column.name == "az";
-        if (!is_rate && !is_force) { continue; }
-        const double sd = is_rate ? model.ref_noise_rad_s : model.acc_noise_m_s2;
-        const RandomStream noise(seed, stream++);
-        std::vector<double> values = column.values();
-        for (std::size_t row = 0; row < values.size(); ++row) { values[row] += sd * noise.normal(row); }
-        column.data = std::move(values);
-        column.scale = 1.0;
-        column.offset = 0.0;
-    }
-}
 
 double difference(const std::string& param, double a, double b) {
     return param.ends_with("phase_rad") ? std::remainder(a - b, 2.0 * std::numbers::pi) : a - b;
@@ -90,7 +70,7 @@ public:
           causes_(causes),
           options_(options),
           simulations_(simulations_of(*without)),
-          new_worlds_(without->moves() && without->length() <= samples_of_new_world_most) {
+          new_worlds_(without->moves() && without->length() <= samples_measured_anew_most) {
         for (std::size_t i = 0; i < causes_.size(); ++i) {
             SensorModel model = without_->model();
             for (std::size_t other = 0; other < causes_.size(); ++other) {
@@ -127,7 +107,7 @@ private:
 
     std::vector<std::optional<Finding>> in_simulation(std::uint64_t seed) const {
         Recording simulated = drawn_recording(*without_, corrected_, seed);
-        if (new_worlds_) { measure(simulated, corrected_, seed); }
+        if (new_worlds_) { simulated = measured_anew(std::move(simulated), corrected_, seed); }
         const auto recording = std::make_shared<const Recording>(std::move(simulated));
         const auto world = new_worlds_ ? std::make_shared<const RecordedWorld>(recording) : nullptr;
         const auto noise =
