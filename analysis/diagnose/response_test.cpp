@@ -354,20 +354,33 @@ private:
         NormalEquations equations;
     };
 
+    // What filters the motion filters the noise as well.
+    std::vector<SpectralParts> expected_parts(std::size_t axis, const Trial& trial) const {
+        std::vector<SpectralParts> parts = baseline_->parts(axis);
+        if (signature_.spectrum != nullptr) {
+            const EffectModel entry = entry_of(with_linear(trial.point.params));
+            signature_.spectrum(baseline_->bin_frequencies_hz(), baseline_->rate_hz(), EffectValues(entry),
+                                parts);
+        }
+        return parts;
+    }
+
     AxisFit refitted(const Observation& observation, std::size_t axis, const Trial& trial,
                      const Eigen::VectorXd* given) const {
         const AxisObservation& seen = observation.axis(axis);
         const MeanRegression regression(observation, axis, trial.responses[axis]);
         const std::array<double, 3> sd_rel = noise_uncertainty(baseline_->model(), axis);
-        std::vector<double> density = seen.density;
+        const std::vector<SpectralParts> parts = expected_parts(axis, trial);
         NoiseNuisance noise = seen.noise;
+        std::vector<double> density(parts.size());
+        expected_density(parts, sd_rel, noise.z, density);
         AxisFit fit;
         for (int round = 0; round < 3; ++round) {
             fit.equations = regression.equations(density);
             fit.c = given != nullptr ? *given : solved(fit.equations);
             const MeanRegression::Rest rest = regression.rest(fit.equations, fit.c);
-            noise = fit_nuisance(baseline_->bins(), baseline_->parts(axis), rest.power, sd_rel, noise);
-            expected_density(baseline_->parts(axis), sd_rel, noise.z, density);
+            noise = fit_nuisance(baseline_->bins(), parts, rest.power, sd_rel, noise);
+            expected_density(parts, sd_rel, noise.z, density);
             fit.gain_nats = noise.log_likelihood_nats - seen.noise.log_likelihood_nats - rest.charge_nats;
         }
         if (!signature_.linear.empty()) { fit.sd = linear_sd(fit.equations); }

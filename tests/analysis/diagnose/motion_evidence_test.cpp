@@ -113,6 +113,21 @@ TEST(MotionEvidence, OfALatencyIsWhatTheStatedOneDoesNotCover) {
     EXPECT_EQ(seen.best(), found) << seen.best()->effect;
 }
 
+// A filter so fast would be as late, and fold several times the noise.
+TEST(MotionEvidence, OfALatencyInSlowMotionIsNoLowPass) {
+    const auto slow = world_turning([](double t_s) {
+        return Vector3{0.8 * std::sin(1.9 * t_s), 0.7 * std::sin(1.3 * t_s), 0.6 * std::sin(2.3 * t_s)};
+    });
+    const SensorModel model = moving_sensor();
+    const auto recording =
+        recorded(with_effect(model, "latency", {{"delay_s", 0.0009}}, {}), 48000, 39, slow);
+    const Hypotheses seen = examine(baseline_of(recording, model), recording, 1, 1);
+    const Finding* low_pass = of(seen, "lowpass");
+    if (low_pass != nullptr) { EXPECT_LT(low_pass->evidence_nats, 0.0); }
+    ASSERT_NE(seen.best(), nullptr);
+    EXPECT_EQ(seen.best()->effect, "latency");
+}
+
 void expect_low_pass_alone(const std::shared_ptr<const World>& world) {
     const SensorModel model = moving_sensor();
     const SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 15.77}, {"order", 1.0}}, {});
