@@ -43,7 +43,10 @@ SpectralParts own_parts(const SensorModel& model, std::size_t axis, bool moves, 
     parts.white = noise.N_rad_per_sqrt_s * noise.N_rad_per_sqrt_s;
     parts.flicker = noise.B_rad_per_s * noise.B_rad_per_s / omega;
     parts.walk = noise.K_rad_per_s_sqrt_s * noise.K_rad_per_s_sqrt_s / (sampled_omega * sampled_omega);
-    parts.other = model.lsb_rad_s * model.lsb_rad_s / (12.0 * rate_hz) +
+    // A step in the model's place has its own effect's part.
+    const bool own_step = converter_step_rad_s(model, axis) == model.lsb_rad_s;
+    const double step_rad_s = own_step ? model.lsb_rad_s : 0.0;
+    parts.other = step_rad_s * step_rad_s / (12.0 * rate_hz) +
                   sampled_omega * sampled_omega * noise.Q_rad * noise.Q_rad / rate_hz;
     // What the reference does not know of the motion is taken for the sensor's.
     if (moves) { parts.other += std::pow(reference_noise(model, axis), 2.0) / rate_hz; }

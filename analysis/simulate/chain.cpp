@@ -1,5 +1,8 @@
 #include "analysis/simulate/chain.hpp"
 
+#include <cmath>
+
+#include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/stages/stages.hpp"
 
@@ -91,6 +94,20 @@ double true_rate_hz(const SensorModel& model, double nominal_hz) {
         rate_hz *= 1.0 + entry.params.at(std::string(definition->rate_error));
     }
     return rate_hz;
+}
+
+double converter_step_rad_s(const SensorModel& model, std::size_t axis) {
+    constexpr double whole = 1e-4;
+    double step_rad_s = model.lsb_rad_s;
+    if (step_rad_s == 0.0) { return 0.0; }
+    for (const EffectModel& entry : model.effects) {
+        const std::string_view param = find_effect(entry.effect)->converter_step;
+        if (param.empty() || !acts_on(entry, axis)) { continue; }
+        const double coarser_rad_s = entry.params.at(std::string(param)) * rad_per_deg;
+        const double codes = coarser_rad_s / model.lsb_rad_s;
+        if (std::fabs(codes - std::round(codes)) > whole * codes) { step_rad_s = coarser_rad_s; }
+    }
+    return step_rad_s;
 }
 
 std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& nominal) {

@@ -1,6 +1,7 @@
 // The signal chain of the simulated sensor: its own stages and all effects, in the order of their action.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -24,6 +25,10 @@ const EffectDefinition* find_effect(std::string_view name);
 
 // The rate at which a sensor really samples that is set to `nominal_hz`.
 double true_rate_hz(const SensorModel& model, double nominal_hz);
+
+// What the numbers of an axis are multiples of: the model's lsb, or the step of an effect that is no multiple
+// of it; 0 of a model without an lsb.
+double converter_step_rad_s(const SensorModel& model, std::size_t axis);
 
 // The stages that the context's model needs; it has no simulation_refusal(). They run at the true rate:
 // sample k of all of them is that of the time k / rate.

@@ -44,6 +44,8 @@ struct EffectDefinition {
     std::unique_ptr<Stage> (*make)(const EffectUse&);
     // The parameter, if any, by which the sensor's true rate exceeds the nominal one, relative.
     std::string_view rate_error{};
+    // The parameter, if any, in deg/s, that is the converter's step on its axes; see converter_step_rad_s().
+    std::string_view converter_step{};
     // It changes the temperature itself: a recorded one has it already.
     bool warms = false;
     // It has no part in the noise-free answer to the world.

@@ -158,7 +158,8 @@ RecordingSimulator::RecordingSimulator(const SensorModel& model, const Simulatio
       world_(request.world),
       like_(request.like),
       rate_hz_(like_ ? like_->recording().rate_hz : request.rate_hz.value_or(model.rate_hz)),
-      lsb_rad_s_(model.lsb_rad_s),
+      lsb_rad_s_{converter_step_rad_s(model, 0), converter_step_rad_s(model, 1),
+                 converter_step_rad_s(model, 2)},
       reference_sd_rad_s_(model.ref_noise_rad_s),
       accelerometer_sd_m_s2_(model.acc_noise_m_s2),
       instrument_noise_([&] {
@@ -231,12 +232,12 @@ void RecordingSimulator::make_columns(Recording& piece) const {
     if (!piece.columns.empty()) { return; }
     piece.rate_hz = rate_hz_;
     piece.stamps = StampKind::sampling;
-    for (const char* axis : axis_names) {
-        const std::string name = std::string("g") + axis;
-        if (lsb_rad_s_ == 0.0) {
+    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+        const std::string name = std::string("g") + axis_names[axis];
+        if (lsb_rad_s_[axis] == 0.0) {
             piece.columns.push_back(real_column(name, "rad/s"));
         } else {
-            piece.columns.push_back({name, "rad/s", std::vector<std::int16_t>{}, lsb_rad_s_, 0.0, {}});
+            piece.columns.push_back({name, "rad/s", std::vector<std::int16_t>{}, lsb_rad_s_[axis], 0.0, {}});
         }
     }
     if (simulates_temperature()) { piece.columns.push_back(real_column("temp", "degC")); }
@@ -263,7 +264,7 @@ void RecordingSimulator::fill_gyro(const SampleBlock& block, Recording& piece) c
             data.resize(rows_.size());
             for (std::size_t i = 0; i < rows_.size(); ++i) { data[i] = source[rows_[i].place]; }
         };
-        if (lsb_rad_s_ == 0.0) {
+        if (lsb_rad_s_[axis] == 0.0) {
             fill(std::get<std::vector<double>>(piece.columns[axis].data), block.rate_rad_s[axis]);
         } else {
             fill(std::get<std::vector<std::int16_t>>(piece.columns[axis].data), block.counts[axis]);

@@ -4,6 +4,7 @@
 // gives (host/formats/recording_csv.hpp), but for the digits that the file leaves out.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -75,7 +76,7 @@ private:
     std::shared_ptr<const World> world_;
     std::shared_ptr<const RecordedWorld> like_;
     double rate_hz_;
-    double lsb_rad_s_;
+    std::array<double, 3> lsb_rad_s_;
     double reference_sd_rad_s_;
     double accelerometer_sd_m_s2_;
     std::array<RandomStream, 6> instrument_noise_;  // of the reference's axes, then the accelerometer's

@@ -16,7 +16,8 @@ std::optional<std::string> simulation_refusal(const SensorModel& model) {
 
 SensorSimulator::SensorSimulator(const SensorModel& model, double rate_hz, std::uint64_t seed,
                                  std::shared_ptr<const World> world)
-    : lsb_rad_s_(model.lsb_rad_s),
+    : lsb_rad_s_{converter_step_rad_s(model, 0), converter_step_rad_s(model, 1),
+                 converter_step_rad_s(model, 2)},
       saturation_rad_s_(model.saturation_rad_s),
       world_(std::move(world)),
       stages_(make_chain({model, rate_hz, seed, world_.get()})),
@@ -34,15 +35,16 @@ const SampleBlock& SensorSimulator::next_block() {
 
 void SensorSimulator::convert() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (lsb_rad_s_ == 0.0) {
+        const double lsb_rad_s = lsb_rad_s_[axis];
+        if (lsb_rad_s == 0.0) {
             for (double& rate : block_->rate_rad_s[axis]) {
                 rate = std::clamp(rate, -saturation_rad_s_, saturation_rad_s_);
             }
             continue;
         }
-        Converter(lsb_rad_s_, saturation_rad_s_)(block_->rate_rad_s[axis], block_->counts[axis]);
+        Converter(lsb_rad_s, saturation_rad_s_)(block_->rate_rad_s[axis], block_->counts[axis]);
         for (std::size_t i = 0; i < block_samples; ++i) {
-            block_->rate_rad_s[axis][i] = block_->counts[axis][i] * lsb_rad_s_;
+            block_->rate_rad_s[axis][i] = block_->counts[axis][i] * lsb_rad_s;
         }
     }
 }

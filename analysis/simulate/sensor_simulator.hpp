@@ -3,6 +3,7 @@
 // The same model, rate, world and seed give the same samples, bit for bit, whatever the machine.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,7 +31,7 @@ public:
 private:
     void convert();
 
-    double lsb_rad_s_;
+    std::array<double, 3> lsb_rad_s_;
     double saturation_rad_s_;
     std::shared_ptr<const World> world_;
     std::vector<std::unique_ptr<Stage>> stages_;

@@ -43,10 +43,14 @@ constexpr EffectSignature signature = {
 
 constinit const EffectDefinition quantization_effect = {
     .name = "quantization",
-    .model = "rate, rounded to a multiple of lsb_dps, half away from zero; the model's own converter follows",
+    .model =
+        "rate, rounded to a multiple of lsb_dps, half away from zero; the model's own step follows if "
+        "lsb_dps is "
+        "a multiple of it",
     .source = "",
     .params = params,
     .make = make,
+    .converter_step = "lsb_dps",
     .noise_only = true,
     .signature = &signature,
 };

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/simulate/chain.hpp"
 #include "tests/analysis/simulate/simulated.hpp"
 
 namespace gyrolog {
@@ -256,6 +257,24 @@ TEST(Quantization, RatesLieOnItsGridWithTheErrorOfRounding) {
     }
     const auto n = static_cast<double>(fine.size());
     EXPECT_NEAR(squares / n / (lsb * lsb / 12.0), 1.0, 4.0 * std::sqrt(0.8 / n));
+}
+
+// The model's own step follows only where the coarser one is made of it.
+TEST(Quantization, StepThatIsNoMultipleTakesTheModelsPlace) {
+    SensorModel model = white_model(0.01);
+    model.lsb_rad_s = 0.01 * rad_per_deg;
+    model.saturation_rad_s = 500.0 * rad_per_deg;
+    for (const double lsb_dps : {0.03, 0.025}) {
+        const SensorModel coarse = with_effect(model, "quantization", {{"lsb_dps", lsb_dps}}, {"y"});
+        const bool is_multiple = lsb_dps == 0.03;
+        EXPECT_EQ(converter_step_rad_s(coarse, 0), model.lsb_rad_s);
+        EXPECT_DOUBLE_EQ(converter_step_rad_s(coarse, 1), (is_multiple ? 0.01 : lsb_dps) * rad_per_deg);
+        const Simulated run = simulate(coarse, rate_hz, 1, 2);
+        for (const double rate_rad_s : run.rate_rad_s[1]) {
+            const double steps = rate_rad_s / (lsb_dps * rad_per_deg);
+            ASSERT_NEAR(steps, std::round(steps), 1e-6) << lsb_dps;
+        }
+    }
 }
 
 TEST(Quantization, RoundsHalfAwayFromZero) {
