@@ -495,14 +495,24 @@ private:
     }
 
     // What is left of the reference's noise where the sensor rests is no rate: without an answer to it the
-    // sensor would seem to fit better.
+    // sensor would seem to fit better. Whether half of what the effect changes is at such rates.
     bool is_within_noise(const Finding& finding) const {
         if (signature_.rates_up_to.empty()) { return false; }
-        double noise_rad_s = 0.0;
+        const auto changed = noise_free_response(*baseline_, baseline_->quiet_world(),
+                                                 with_cause(baseline_->model(), finding));
+        double within = 0.0;
+        double beyond = 0.0;
         for (const std::size_t axis : finding.where.axes) {
-            noise_rad_s = std::max(noise_rad_s, baseline_->reference_noise_rad_s(axis));
+            const double noise_rad_s = baseline_->reference_noise_rad_s(axis);
+            const std::vector<float>& rate_rad_s = baseline_->true_rate_rad_s(axis);
+            const std::vector<float>& without = baseline_->quiet_response_rad_s(axis);
+            for (std::size_t slot = 0; slot < rate_rad_s.size(); ++slot) {
+                const double change_rad_s = static_cast<double>(changed[axis][slot] - without[slot]);
+                const bool is_noise = std::fabs(static_cast<double>(rate_rad_s[slot])) < noise_rad_s;
+                (is_noise ? within : beyond) += change_rad_s * change_rad_s;
+            }
         }
-        return most_rate_rad_s(finding) < noise_rad_s;
+        return within > beyond;
     }
 
     // Up to the rate that the effect says, or the upper half of all by size.

@@ -276,8 +276,9 @@ TEST(MotionEvidence, TakesTheReferencesNoiseForNoDeadZone) {
     if (best != nullptr) { EXPECT_LT(best->evidence_nats, 6.0) << best->effect; }
 }
 
-// That is not told from what is left of the noise, whatever it gains.
-TEST(MotionEvidence, OfADeadZoneWithinTheReferencesNoiseIsNone) {
+// One whose answer jumps to the full rate within the noise is not told from what is left of that: it is said
+// to be another one, whose answer lacks the width at all rates.
+TEST(MotionEvidence, OfADeadZoneIsWhatShowsBeyondTheReferencesNoise) {
     const auto world = world_turning([](double t_s) {
         const double rate_rad_s = 0.03 * rad_per_deg * std::sin(2.0 * pi * t_s / 31.0);
         return Vector3{rate_rad_s, rate_rad_s, rate_rad_s};
@@ -288,7 +289,8 @@ TEST(MotionEvidence, OfADeadZoneWithinTheReferencesNoiseIsNone) {
             with_effect(model, "dead_zone", {{"width_dps", width_dps}, {"jump", 1.0}}, {"x", "y", "z"});
         const auto recording = recorded(sensor, 48000, 45, world);
         const auto finding = found(make_response_test, "dead_zone", recording, model);
-        EXPECT_EQ(finding.has_value(), width_dps > 0.02) << width_dps;
+        ASSERT_TRUE(finding) << width_dps;
+        EXPECT_EQ(finding->entries[0].params.at("jump"), width_dps > 0.02 ? 1.0 : 0.0) << width_dps;
     }
 }
 
