@@ -118,9 +118,12 @@ private:
         return find_effect(finding.effect)->signature->method == EvidenceMethod::code_grid;
     }
 
-    // Each of its jumps is a step that noise of its spectrum does not have.
-    static bool is_telegraph(const Finding& finding) {
-        return find_effect(finding.effect)->signature->method == EvidenceMethod::two_levels;
+    // To the spectra's likelihood it is normal noise. A telegraph's jumps are steps that such noise does not
+    // have; the power of heavy tails and of spikes varies by more than its does.
+    static bool is_not_normal(const Finding& finding) {
+        const EvidenceMethod method = find_effect(finding.effect)->signature->method;
+        return method == EvidenceMethod::two_levels || method == EvidenceMethod::tails ||
+               method == EvidenceMethod::outliers;
     }
 
     // Null without causes.
@@ -145,7 +148,7 @@ private:
     bool has_new_main_cause(const Hypotheses& with_causes) const {
         if (causes_.empty() || (causes_.size() == 1 && further(with_causes) == nullptr)) { return false; }
         const Finding* main = main_cause();
-        if (!is_of_codes(*main) && !is_telegraph(*main) && main->evidence_nats < huge_nats) { return false; }
+        if (!is_of_codes(*main) && !is_not_normal(*main) && main->evidence_nats < huge_nats) { return false; }
         return main->effect != apparent_beside_ && main_causes_ < main_causes_most;
     }
 

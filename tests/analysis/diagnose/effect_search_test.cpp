@@ -43,6 +43,16 @@ TEST(EffectSearch, OfClearTelegraphNoiseFindsNoStepsBeside) {
     EXPECT_EQ(result.causes.size(), 1U);
 }
 
+// Their power varies by more than normal noise's does, and a few lie farther out than the rest.
+TEST(EffectSearch, OfHeavyTailsFindsNothingBeside) {
+    const SensorModel model = calibrated_sensor();
+    for (const double nu : {3.5, 4.0, 5.0, 6.0}) {
+        const EffectSearchResult result =
+            searched(with_effect(model, "heavy_tail", {{"nu", nu}}, {}), model, 13);
+        EXPECT_EQ(effects_of(result), (std::set<std::string>{"heavy_tail"})) << nu;
+    }
+}
+
 // On the axis of the line both share a band; neither is found well before the other is.
 TEST(EffectSearch, OfALineBeyondALowPassFindsBoth) {
     const SensorModel model = calibrated_sensor();
