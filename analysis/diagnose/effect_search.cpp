@@ -162,6 +162,7 @@ private:
         if (!apparent_nats) { return false; }
         apparent_nats_ = *std::move(apparent_nats);
         apparent_beside_ = main->effect;
+        apparent_axes_ = main->where.axes;
         ++main_causes_;
         return true;
     }
@@ -246,8 +247,11 @@ private:
         return true;
     }
 
+    // On other axes nothing is apparent.
     double evidence_beyond_apparent_nats(const Finding& finding) const {
-        const auto apparent = apparent_nats_.find(finding.effect);
+        const std::vector<std::size_t>& axes = finding.where.axes;
+        const bool is_beside = axes.empty() || std::ranges::find_first_of(axes, apparent_axes_) != axes.end();
+        const auto apparent = is_beside ? apparent_nats_.find(finding.effect) : apparent_nats_.end();
         return finding.evidence_nats - (apparent == apparent_nats_.end() ? 0.0 : apparent->second);
     }
 
@@ -436,6 +440,7 @@ private:
     std::vector<std::size_t> free_axes_;
     std::map<std::string, double> apparent_nats_;  // by effect
     std::string apparent_beside_;                  // the effect that was in the model then
+    std::vector<std::size_t> apparent_axes_;       // its axes
     int main_causes_ = 0;
 };
 
