@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -35,11 +36,13 @@ public:
     std::atomic<bool> breaks{false};  // EIO at the next write
     std::atomic<bool> sync_breaks{false};
     std::atomic<std::uint64_t> told_free_bytes{~std::uint64_t{0}};
+    std::atomic<int> files_with_room{std::numeric_limits<int>::max()};  // then 50 kB are left
     std::atomic<int> syncs{0};
     std::atomic<std::uint64_t> written_bytes{0};
 
     Result<std::unique_ptr<AppendFile>> create(const std::string& path, IfExists if_exists) override {
         GYROLOG_TRY(std::unique_ptr<AppendFile> file, create_append_file(path, if_exists));
+        if (--files_with_room == 0) { room_bytes = 50'000; }
         return std::unique_ptr<AppendFile>(new File(*this, std::move(file)));
     }
     Result<std::uint64_t> free_bytes(const std::string& /*path*/) override { return told_free_bytes.load(); }
@@ -296,10 +299,8 @@ TEST_F(CaptureOverFaults, DiskThatRefusesTheNextFileLeavesTheOnesBefore) {
     const auto source = BoardSource::create({});
     request_.duration_s = 600.0;
     request_.rotate_bytes = 100'000;
-    const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& progress) {
-        if (progress.path.find(".3.") != std::string::npos) { disk_.room_bytes = 50'000; }
-        return true;
-    });
+    disk_.files_with_room = 3;
+    const auto outcome = run_capture(*source, request_, go_on);
     ASSERT_TRUE(outcome.ok()) << outcome.error().message;
     expect_readable_prefix(*source, *outcome);
     EXPECT_GE(outcome->paths.size(), 3U);
