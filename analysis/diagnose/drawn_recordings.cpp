@@ -43,6 +43,13 @@ Recording measured_anew(Recording recording, const SensorModel& model, std::uint
     return recording;
 }
 
+bool can_be_measured_anew(const Recording& recording) {
+    constexpr std::size_t rows_most = 1'000'000;
+    const bool has_rate = recording.find("ref_x") != nullptr || recording.find("ref_y") != nullptr ||
+                          recording.find("ref_z") != nullptr;
+    return has_rate && recording.rows() <= rows_most;
+}
+
 bool for_each_draw(const DrawOptions& options,
                    const std::function<void(std::size_t i, std::uint64_t seed)>& task) {
     const RandomStream seeds(options.seed, options.stream);

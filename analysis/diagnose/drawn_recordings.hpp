@@ -17,8 +17,9 @@ Recording drawn_recording(const Baseline& baseline, const SensorModel& model, st
 // them: with noise anew.
 Recording measured_anew(Recording recording, const SensorModel& model, std::uint64_t seed);
 
-// Of longer ones the world stays as the recording has it, for its memory.
-inline constexpr std::size_t samples_measured_anew_most = 2'000'000;
+// Not where the reference is an orientation, whose noise no model states, nor, for the memory that a world of
+// their own takes, of more than a million samples.
+bool can_be_measured_anew(const Recording& recording);
 
 struct DrawOptions {
     std::size_t count = 0;

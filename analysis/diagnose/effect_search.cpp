@@ -78,7 +78,7 @@ private:
             latest = with_causes();
         }
         result.corrected = model_with_all_but(causes_.size());
-        result.apparent_nats = apparent_nats_;
+        result.apparent = apparent_;
         result.causes = std::move(causes_);
         std::ranges::sort(result.causes, std::greater{},
                           [](const FoundCause& cause) { return cause.finding.evidence_nats; });
@@ -149,7 +149,8 @@ private:
         if (causes_.empty() || (causes_.size() == 1 && further(with_causes) == nullptr)) { return false; }
         const Finding* main = main_cause();
         if (!is_of_codes(*main) && !is_not_normal(*main) && main->evidence_nats < huge_nats) { return false; }
-        return main->effect != apparent_beside_ && main_causes_ < main_causes_most;
+        const bool is_new = main->effect != apparent_.beside || main->where.axes != apparent_.axes;
+        return is_new && main_causes_ < main_causes_most;
     }
 
     // False when ended early.
@@ -157,12 +158,10 @@ private:
         const Finding* main = main_cause();
         const Hypotheses with_main = examine(first_.baseline->with(with_cause(model_, *main)), recording_,
                                              options_.seed, options_.threads);
-        auto apparent_nats =
+        auto nats =
             apparent_evidence_nats(with_main, options_.seed, options_.threads, [&] { return told(); });
-        if (!apparent_nats) { return false; }
-        apparent_nats_ = *std::move(apparent_nats);
-        apparent_beside_ = main->effect;
-        apparent_axes_ = main->where.axes;
+        if (!nats) { return false; }
+        apparent_ = {*std::move(nats), main->effect, main->where.axes};
         ++main_causes_;
         return true;
     }
@@ -170,10 +169,8 @@ private:
     // Where the cause that it was beside is one no more.
     void forget_apparent_evidence() {
         const bool is_there = std::ranges::any_of(
-            causes_, [&](const FoundCause& cause) { return cause.finding.effect == apparent_beside_; });
-        if (is_there) { return; }
-        apparent_nats_.clear();
-        apparent_beside_.clear();
+            causes_, [&](const FoundCause& cause) { return cause.finding.effect == apparent_.beside; });
+        if (!is_there) { apparent_ = {}; }
     }
 
     bool is_fast_response(const Finding& finding) const {
@@ -247,12 +244,8 @@ private:
         return true;
     }
 
-    // On other axes nothing is apparent.
     double evidence_beyond_apparent_nats(const Finding& finding) const {
-        const std::vector<std::size_t>& axes = finding.where.axes;
-        const bool is_beside = axes.empty() || std::ranges::find_first_of(axes, apparent_axes_) != axes.end();
-        const auto apparent = is_beside ? apparent_nats_.find(finding.effect) : apparent_nats_.end();
-        return finding.evidence_nats - (apparent == apparent_nats_.end() ? 0.0 : apparent->second);
+        return finding.evidence_nats - apparent_.of(finding);
     }
 
     EvidenceMethod method_of(const Finding& finding) const {
@@ -311,13 +304,13 @@ private:
         return !options_.on_progress || options_.on_progress(share);
     }
 
-    // The best first, by what is more than apparent.
-    std::vector<Finding> findings_of(const Hypotheses& hypotheses) const {
+    // The best first, by what is more than apparent beside a main cause.
+    std::vector<Finding> findings_of(const Hypotheses& hypotheses, bool has_main_cause = true) const {
         std::vector<Finding> findings;
         for (const std::optional<Finding>& finding : hypotheses.findings) {
             if (!finding) { continue; }
             findings.push_back(*finding);
-            findings.back().evidence_nats = evidence_beyond_apparent_nats(*finding);
+            if (has_main_cause) { findings.back().evidence_nats = evidence_beyond_apparent_nats(*finding); }
         }
         std::ranges::sort(findings, std::greater{}, &Finding::evidence_nats);
         return findings;
@@ -386,7 +379,8 @@ private:
         for (std::size_t i = 0; i < causes_.size();) {
             const Hypotheses without = examine(first_.baseline->with(model_with_all_but(i)), recording_,
                                                options_.seed, options_.threads);
-            const std::vector<Finding> findings = findings_of(without);
+            const std::vector<Finding> findings =
+                findings_of(without, causes_[i].finding.effect != apparent_.beside);
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
             const double least_nats =
                 &causes_[i].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
@@ -438,13 +432,18 @@ private:
     SearchOptions options_;
     std::vector<FoundCause> causes_;
     std::vector<std::size_t> free_axes_;
-    std::map<std::string, double> apparent_nats_;  // by effect
-    std::string apparent_beside_;                  // the effect that was in the model then
-    std::vector<std::size_t> apparent_axes_;       // its axes
+    ApparentEvidence apparent_;
     int main_causes_ = 0;
 };
 
 }  // namespace
+
+double ApparentEvidence::of(const Finding& finding) const {
+    const std::vector<std::size_t>& on = finding.where.axes;
+    const bool is_beside = on.empty() || std::ranges::find_first_of(on, axes) != on.end();
+    const auto apparent = is_beside ? nats.find(finding.effect) : nats.end();
+    return apparent == nats.end() ? 0.0 : apparent->second;
+}
 
 const Finding* Hypotheses::best() const {
     const Finding* best = nullptr;

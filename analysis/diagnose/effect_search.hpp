@@ -36,14 +36,22 @@ struct FoundCause {
 // Of the main cause's evidence: two right formulas of one filter differ by as much.
 inline constexpr double formulas_share = 5e-5;
 
+// What effects seem to have beside the main cause.
+struct ApparentEvidence {
+    std::map<std::string, double> nats;  // by effect
+    std::string beside;                  // the effect that is the main cause, empty without one
+    std::vector<std::size_t> axes;       // the main cause's; on others nothing is apparent
+
+    double of(const Finding& finding) const;
+};
+
 struct EffectSearchResult {
     std::vector<FoundCause> causes;         // by evidence
     std::vector<SwallowedNoise> swallowed;  // where the model that was given held part of the causes
     SensorModel without_causes;             // noise that held part of them is free
     SensorModel corrected;
-    // By effect, evidence that was taken off its findings: it seems to have as much beside the main cause.
-    std::map<std::string, double> apparent_nats;
-    Hypotheses last;  // under the corrected model
+    ApparentEvidence apparent;  // was taken off the findings beside the main cause
+    Hypotheses last;            // under the corrected model
 };
 
 struct SearchOptions {

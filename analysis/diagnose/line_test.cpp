@@ -313,7 +313,7 @@ private:
         return fit;
     }
 
-    // What else the model has, a delay or a filter, acts on what is added: entries are such that the line
+    // What else the model has, a delay or a scale, acts on what is added: entries are such that the line
     // comes out as it was seen.
     void refer_to_model(Finding& finding) const {
         SensorModel model = without_noise(without_what_is_recorded(baseline_->model(), baseline_->world()));

@@ -9,7 +9,6 @@
 #include "analysis/diagnose/drawn_recordings.hpp"
 #include "analysis/diagnose/observation.hpp"
 #include "analysis/simulate/chain.hpp"
-#include "analysis/simulate/counter_random.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
@@ -70,7 +69,7 @@ public:
           causes_(causes),
           options_(options),
           simulations_(simulations_of(*without)),
-          new_worlds_(without->moves() && without->length() <= samples_measured_anew_most) {
+          new_worlds_(without->moves() && can_be_measured_anew(without->world().recording())) {
         for (std::size_t i = 0; i < causes_.size(); ++i) {
             SensorModel model = without_->model();
             for (std::size_t other = 0; other < causes_.size(); ++other) {

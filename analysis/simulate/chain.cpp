@@ -105,7 +105,9 @@ double converter_step_rad_s(const SensorModel& model, std::size_t axis) {
         if (param.empty() || !acts_on(entry, axis)) { continue; }
         const double coarser_rad_s = entry.params.at(std::string(param)) * rad_per_deg;
         const double codes = coarser_rad_s / model.lsb_rad_s;
-        if (std::fabs(codes - std::round(codes)) > whole * codes) { step_rad_s = coarser_rad_s; }
+        if (codes > 1.0 && std::fabs(codes - std::round(codes)) > whole * codes) {
+            step_rad_s = coarser_rad_s;
+        }
     }
     return step_rad_s;
 }

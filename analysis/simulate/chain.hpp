@@ -26,8 +26,8 @@ const EffectDefinition* find_effect(std::string_view name);
 // The rate at which a sensor really samples that is set to `nominal_hz`.
 double true_rate_hz(const SensorModel& model, double nominal_hz);
 
-// What the numbers of an axis are multiples of: the model's lsb, or the step of an effect that is no multiple
-// of it; 0 of a model without an lsb.
+// What the numbers of an axis are multiples of: the model's lsb, or the coarser step of an effect that is no
+// multiple of it; 0 of a model without an lsb.
 double converter_step_rad_s(const SensorModel& model, std::size_t axis);
 
 // The stages that the context's model needs; it has no simulation_refusal(). They run at the true rate:

@@ -9,8 +9,9 @@
 //             cannot count it: the next sample is flagged as a discontinuity of time, the host's accounts
 //             miss nothing, and the recording has a hole by the ticks.
 //   gyro      The counts are SensorSimulator's own, bit for bit, where the registers set the model's full
-//             scale and the model's step is the register's to 0.1 % (files round it). Otherwise the
-//             registers' step and range convert the same rates.
+//             scale and the model's step is the register's to 0.1 % (files round it), but for an
+//             effect's step that is no multiple of it. Otherwise the registers' step and range convert
+//             the same rates.
 //   accel     The specific force in the sensor's axes, with acc_noise_m_s2.
 //   DLPF_CFG  Chooses the rates only. The model's noise holds at the output; what filters is the model's own
 //             `lowpass` effect.

@@ -44,9 +44,8 @@ constexpr EffectSignature signature = {
 constinit const EffectDefinition quantization_effect = {
     .name = "quantization",
     .model =
-        "rate, rounded to a multiple of lsb_dps, half away from zero; the model's own step follows if "
-        "lsb_dps is "
-        "a multiple of it",
+        "rate, rounded to a multiple of lsb_dps, half away from zero; the model's own step follows unless "
+        "lsb_dps is coarser and no multiple of it",
     .source = "",
     .params = params,
     .make = make,
