@@ -304,13 +304,13 @@ private:
         return !options_.on_progress || options_.on_progress(share);
     }
 
-    // The best first, by what is more than apparent beside a main cause.
-    std::vector<Finding> findings_of(const Hypotheses& hypotheses, bool has_main_cause = true) const {
+    // The best first, by what is more than apparent.
+    std::vector<Finding> findings_of(const Hypotheses& hypotheses) const {
         std::vector<Finding> findings;
         for (const std::optional<Finding>& finding : hypotheses.findings) {
             if (!finding) { continue; }
             findings.push_back(*finding);
-            if (has_main_cause) { findings.back().evidence_nats = evidence_beyond_apparent_nats(*finding); }
+            findings.back().evidence_nats = evidence_beyond_apparent_nats(*finding);
         }
         std::ranges::sort(findings, std::greater{}, &Finding::evidence_nats);
         return findings;
@@ -379,8 +379,7 @@ private:
         for (std::size_t i = 0; i < causes_.size();) {
             const Hypotheses without = examine(first_.baseline->with(model_with_all_but(i)), recording_,
                                                options_.seed, options_.threads);
-            const std::vector<Finding> findings =
-                findings_of(without, causes_[i].finding.effect != apparent_.beside);
+            const std::vector<Finding> findings = findings_of(without);
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
             const double least_nats =
                 &causes_[i].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
