@@ -85,11 +85,11 @@ TEST(LineTest, ReportsWhereALineAboveHalfTheRateAppears) {
     EXPECT_NEAR(finding->entries.front().params.at("f_hz"), 40.02, 1e-3);
 }
 
-// With a delay and a filter in the model, which the line must come through as it was seen.
+// With a delay and a scale in the model, which the line must come through as it was seen.
 TEST(LineTest, LeavesNothingOfALineThatIsAddedToTheModel) {
     SensorModel model = calibrated_sensor();
     model.latency_s = 0.004;
-    model = with_effect(model, "lowpass", {{"order", 1.0}, {"fc_hz", 20.0}});
+    model = with_effect(model, "temp_scale", {{"per_C", 0.02}, {"reference_C", 15.0}});
     const SensorModel truth =
         with_effect(model, "tone", {{"f_hz", 31.4}, {"amplitude_dps", 0.05}, {"phase_rad", 0.3}}, {"y"});
     const auto recording = recorded(truth, 60000, 7);
