@@ -112,6 +112,10 @@ double converter_step_rad_s(const SensorModel& model, std::size_t axis) {
     return step_rad_s;
 }
 
+std::array<double, 3> converter_steps_rad_s(const SensorModel& model) {
+    return {converter_step_rad_s(model, 0), converter_step_rad_s(model, 1), converter_step_rad_s(model, 2)};
+}
+
 std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& nominal) {
     const StageContext context{nominal.model, true_rate_hz(nominal.model, nominal.rate_hz), nominal.seed,
                                nominal.world};

@@ -1,6 +1,7 @@
 // The signal chain of the simulated sensor: its own stages and all effects, in the order of their action.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -29,6 +30,7 @@ double true_rate_hz(const SensorModel& model, double nominal_hz);
 // What the numbers of an axis are multiples of: the model's lsb, or the coarser step of an effect that is no
 // multiple of it; 0 of a model without an lsb.
 double converter_step_rad_s(const SensorModel& model, std::size_t axis);
+std::array<double, 3> converter_steps_rad_s(const SensorModel& model);
 
 // The stages that the context's model needs; it has no simulation_refusal(). They run at the true rate:
 // sample k of all of them is that of the time k / rate.

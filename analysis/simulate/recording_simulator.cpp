@@ -158,8 +158,7 @@ RecordingSimulator::RecordingSimulator(const SensorModel& model, const Simulatio
       world_(request.world),
       like_(request.like),
       rate_hz_(like_ ? like_->recording().rate_hz : request.rate_hz.value_or(model.rate_hz)),
-      lsb_rad_s_{converter_step_rad_s(model, 0), converter_step_rad_s(model, 1),
-                 converter_step_rad_s(model, 2)},
+      lsb_rad_s_(converter_steps_rad_s(model)),
       reference_sd_rad_s_(model.ref_noise_rad_s),
       accelerometer_sd_m_s2_(model.acc_noise_m_s2),
       instrument_noise_([&] {

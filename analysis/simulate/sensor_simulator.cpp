@@ -16,8 +16,7 @@ std::optional<std::string> simulation_refusal(const SensorModel& model) {
 
 SensorSimulator::SensorSimulator(const SensorModel& model, double rate_hz, std::uint64_t seed,
                                  std::shared_ptr<const World> world)
-    : lsb_rad_s_{converter_step_rad_s(model, 0), converter_step_rad_s(model, 1),
-                 converter_step_rad_s(model, 2)},
+    : lsb_rad_s_(converter_steps_rad_s(model)),
       saturation_rad_s_(model.saturation_rad_s),
       world_(std::move(world)),
       stages_(make_chain({model, rate_hz, seed, world_.get()})),
