@@ -5,6 +5,7 @@ Headers take most of the time of compilers and checkers; sources that share them
 
 usage: tools/source_groups.py DIRECTORY SOURCE...     writes the texts there; prints what to compile, ;-separated
 """
+import os
 import re
 import subprocess
 import sys
@@ -12,12 +13,15 @@ from pathlib import Path
 
 SOURCES_A_GROUP = 12
 ROOT = Path(__file__).resolve().parent.parent
+INCLUDE_FOLDERS = (Path("."), Path("firmware_protocol/include"))
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 
 # What stands at the beginning of a line in this layout is declared in a namespace's own scope.
 TYPE = r"^(?:struct|class|union|enum(?: class)?|using) (?:[\w:]+::)?(\w+)"
 NAMED = r"^(?!return |template|using|struct|class|enum|TEST)[\w\[][\w:<>,&*\[\] ]*[ &*](\w+)"
 TYPES_AND_VALUES = re.compile(TYPE + "|" + NAMED + "(?: = |[{;])", re.MULTILINE)
 FUNCTIONS_AND_TESTS = re.compile(NAMED + r"\(|^TEST\w*\((\w+, \w+)\)", re.MULTILINE)
+DEFINED_TYPES = re.compile(r"^(?:struct|class|union|enum(?: class)?) (\w+)[^;\n]*\{", re.MULTILINE)
 LOCAL = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 ONCE_A_PROGRAM = ("int main(", "LLVMFuzzerTestOneInput(")
 
@@ -31,27 +35,89 @@ def tracked(*patterns):
                           cwd=ROOT).stdout.split()
 
 
-def groups_of(sources):
-    """Groups of C++ sources; one whose local types or values have a name that a header declares is alone."""
-    headers = "\n".join((ROOT / header).read_text() for header in tracked("*.hpp", "*.h"))
-    of_headers = names(TYPES_AND_VALUES, headers) | names(FUNCTIONS_AND_TESTS, headers)
-    groups = []  # with their names
-    alone = []
-    for source in sources:
-        text = (ROOT / source).read_text()
+class Tree:
+    """The texts below a folder, each read once."""
+
+    def __init__(self, root):
+        self.root = root
+        self.texts = {}
+        self.direct = {}
+        self.names_of_headers = {}
+
+    def text(self, path):
+        if path not in self.texts:
+            self.texts[path] = (self.root / path).read_text()
+        return self.texts[path]
+
+    def included_by(self, path, folders):
+        if (path, folders) not in self.direct:
+            found = []
+            for quote, name in INCLUDE.findall(self.text(path)):
+                near = (path.parent,) if quote == '"' else ()
+                places = (Path(os.path.normpath(folder / name)) for folder in near + folders)
+                found += [place for place in places if (self.root / place).is_file()][:1]
+            self.direct[path, folders] = found
+        return self.direct[path, folders]
+
+    def headers(self, path, folders=INCLUDE_FOLDERS, forced=()):
+        """The headers below the root that a source includes, also through others, and those that an #if leaves out."""
+        found = set(forced)
+        to_read = [path, *forced]
+        while to_read:
+            new = set(self.included_by(to_read.pop(), folders)) - found
+            found |= new
+            to_read += new
+        return found
+
+    def names_of_header(self, path):
+        """What a header declares, and which types it defines."""
+        if path not in self.names_of_headers:
+            text = self.text(path)
+            self.names_of_headers[path] = (names(TYPES_AND_VALUES, text) | names(FUNCTIONS_AND_TESTS, text),
+                                           set(DEFINED_TYPES.findall(text)))
+        return self.names_of_headers[path]
+
+
+class Joined:
+    """Sources that go together, or a single one, with what must differ between those that do."""
+
+    def __init__(self, tree, source):
+        text = tree.text(source)
         local = "".join(LOCAL.findall(text))
-        values = names(TYPES_AND_VALUES, local)
-        own = values | names(FUNCTIONS_AND_TESTS, local) | {once for once in ONCE_A_PROGRAM if once in text}
-        if values & of_headers:
-            alone.append([source])
-            continue
-        group = next((group for group in groups if len(group[0]) < SOURCES_A_GROUP and not group[1] & own), None)
-        if group is None:
-            group = ([], set())
-            groups.append(group)
-        group[0].append(source)
-        group[1].update(own)
-    return [group for group, _ in groups] + alone
+        self.sources = [source]
+        self.values = names(TYPES_AND_VALUES, local)
+        self.own = self.values | names(FUNCTIONS_AND_TESTS, local) | {once for once in ONCE_A_PROGRAM if once in text}
+        self.of_headers = set()
+        self.types = {}  # with the header that defines each
+        for header in tree.headers(source):
+            declared, types = tree.names_of_header(header)
+            self.of_headers |= declared
+            self.types.update(dict.fromkeys(types, header))
+
+    def fits(self, other):
+        return not (self.own & other.own or self.values & other.of_headers or self.of_headers & other.values
+                    or any(other.types.get(name, header) != header for name, header in self.types.items()))
+
+    def add(self, other):
+        self.sources += other.sources
+        self.values |= other.values
+        self.own |= other.own
+        self.of_headers |= other.of_headers
+        self.types.update(other.types)
+
+
+def groups_of(sources, largest=SOURCES_A_GROUP):
+    """Groups of C++ sources in which no local name is there twice or declared by a header that one of them includes."""
+    tree = Tree(ROOT)
+    groups = []
+    for source in sources:
+        one = Joined(tree, source)
+        group = next((group for group in groups if len(group.sources) < largest and group.fits(one)), None)
+        if group:
+            group.add(one)
+        else:
+            groups.append(one)
+    return [group.sources for group in groups]
 
 
 def write_group(directory, group):
