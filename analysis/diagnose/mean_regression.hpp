@@ -2,7 +2,6 @@
 // responses (Baseline::uncertain) projected out within their prior.
 #pragma once
 
-#include <Eigen/Dense>
 #include <span>
 #include <vector>
 
@@ -11,13 +10,23 @@
 
 namespace gyrolog {
 
-// Of c in Y = sum c_j G_j + noise: gain 1/2 b' A^-1 b at c = A^-1 b. The uncertain responses' parameters move
-// by give + shift c.
+// Of c in Y = sum c_j G_j + noise: the log likelihood gains b'c - 1/2 c'A c, most at A c = b. The parameters
+// of the uncertain responses move by give + shift c.
 struct NormalEquations {
-    Eigen::MatrixXd A;
-    Eigen::VectorXd b;
-    Eigen::MatrixXd shift;
-    Eigen::VectorXd give;
+    std::vector<double> A;  // row by row, symmetric
+    std::vector<double> b;
+    std::vector<double> shift;  // by response, the shifts of all uncertain parameters
+    std::vector<double> give;   // by uncertain parameter; empty where the model is certain
+
+    // Of other data on the same c; shift and give stay.
+    void add(const NormalEquations& other);
+    // Most likely c. A direction of which the data know nothing stays at zero.
+    std::vector<double> solution() const;
+    // Standard deviations of c; 0 in a direction of which the data know nothing.
+    std::vector<double> sd() const;
+    double gain_nats(std::span<const double> c) const;
+    // By uncertain parameter.
+    std::vector<double> moved(std::span<const double> c) const;
 };
 
 // Responses on one axis, and what every regression on them needs.
@@ -54,7 +63,7 @@ public:
         std::vector<double> power;
         double charge_nats = 0.0;
     };
-    Rest rest(const NormalEquations& equations, const Eigen::VectorXd& c) const;
+    Rest rest(const NormalEquations& equations, std::span<const double> c) const;
 
 private:
     const Baseline& baseline_;

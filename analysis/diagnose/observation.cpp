@@ -137,25 +137,23 @@ double take_mean_off(std::vector<float>& values, const std::vector<bool>& presen
 void give_way(const Baseline& baseline, std::size_t axis, AxisObservation& seen) {
     const UncertainMean& uncertain = baseline.uncertain(axis);
     const BinSums weights = bin_weights(seen.density, baseline.rate_hz());
-    const Eigen::VectorXd step = uncertain.information(weights).solve(
-        uncertain.pull(weights, seen.uncertain_products, seen.uncertain_fit));
-    BinSums change = BinSums::Zero(weights.size());
+    const std::vector<double> step = uncertain.step(weights, seen.uncertain_products, seen.uncertain_fit);
+    BinSums change(weights.size(), 0.0);
     for (std::size_t u = 0; u < uncertain.size(); ++u) {
-        const double by = step[static_cast<Eigen::Index>(u)];
-        seen.uncertain_fit[u] += by;
-        change -= 2.0 * by * seen.uncertain_products[u];
+        seen.uncertain_fit[u] += step[u];
+        add_multiple(change, -2.0 * step[u], seen.uncertain_products[u]);
         for (std::size_t v = 0; v < uncertain.size(); ++v) {
-            change += by * step[static_cast<Eigen::Index>(v)] * uncertain.products(u, v);
+            add_multiple(change, step[u] * step[v], uncertain.products(u, v));
         }
     }
     for (std::size_t u = 0; u < uncertain.size(); ++u) {
         for (std::size_t v = 0; v < uncertain.size(); ++v) {
-            seen.uncertain_products[u] -= step[static_cast<Eigen::Index>(v)] * uncertain.products(u, v);
+            add_multiple(seen.uncertain_products[u], -step[v], uncertain.products(u, v));
         }
     }
     for (std::size_t i = 0; i < seen.power.size(); ++i) {
-        const double by = change[static_cast<Eigen::Index>(i)];
-        seen.power[i] = std::max(0.0, seen.power[i] + by / (baseline.bins()[i].count() * baseline.rate_hz()));
+        const double by = change[i] / (baseline.bins()[i].count() * baseline.rate_hz());
+        seen.power[i] = std::max(0.0, seen.power[i] + by);
     }
 }
 

@@ -67,11 +67,11 @@ public:
         double nats = log_likelihood_nats(seen);
         for (int step = 0; step < steps_most; ++step) {
             const NormalEquations equations = linearised(seen);
-            const Eigen::VectorXd by = equations.A.completeOrthogonalDecomposition().solve(equations.b);
-            if (!(0.5 * by.dot(equations.b) > settled_nats)) { break; }
+            const std::vector<double> by = equations.solution();
+            if (!(equations.gain_nats(by) > settled_nats)) { break; }
             bool better = false;
             for (int i = 0; i < shortenings_most && !better; ++i) {
-                const std::vector<Finding> moved = moved_by(std::ldexp(1.0, -i) * by);
+                const std::vector<Finding> moved = moved_by(by, std::ldexp(1.0, -i));
                 if (!can_be_simulated(moved)) { continue; }
                 Observation there = observed(moved);
                 const double nats_there = log_likelihood_nats(there);
@@ -92,13 +92,13 @@ private:
     }
 
     // Parameters keep their sign: of a size, or of what is found already.
-    std::vector<Finding> moved_by(const Eigen::VectorXd& by) const {
+    std::vector<Finding> moved_by(const std::vector<double>& by, double share) const {
         std::vector<Finding> moved = best_;
         for (std::size_t i = 0; i < places_.size(); ++i) {
             double& value = value_at(moved, places_[i]);
             const double outwards = value < 0.0 ? -1.0 : 1.0;
             const double size = std::fabs(value);
-            const double step = outwards * by[static_cast<Eigen::Index>(i)];
+            const double step = outwards * share * by[i];
             value += outwards * std::clamp(step, -falls_most * size, grows_most * size);
         }
         return moved;
@@ -127,14 +127,12 @@ private:
                 slopes[axis].emplace_back(slope.begin(), slope.end());
             }
         }
-        const auto count = static_cast<Eigen::Index>(places_.size());
-        NormalEquations sum{Eigen::MatrixXd::Zero(count, count), Eigen::VectorXd::Zero(count), {}, {}};
+        const std::size_t count = places_.size();
+        NormalEquations sum{std::vector<double>(count * count), std::vector<double>(count), {}, {}};
         for (const std::size_t axis : baseline.axes()) {
             const MeanResponses responses(baseline, axis, std::move(slopes[axis]));
             const MeanRegression regression(seen, axis, responses);
-            const NormalEquations own = regression.equations(seen.axis(axis).density);
-            sum.A += own.A;
-            sum.b += own.b;
+            sum.add(regression.equations(seen.axis(axis).density));
         }
         return sum;
     }

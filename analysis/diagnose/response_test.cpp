@@ -138,30 +138,23 @@ private:
     // Whether the linear parameters are known well enough to be worth their freedom.
     Quick quick_fit(NormalEquations equations) const {
         Quick quick{std::move(equations), 0.0, 0.0};
-        const Eigen::VectorXd c = solved(quick.equations);
-        quick.gain_nats = c.dot(quick.equations.b) - 0.5 * c.dot(quick.equations.A * c);
+        const std::vector<double> c = solved(quick.equations);
+        quick.gain_nats = quick.equations.gain_nats(c);
         quick.cost_nats = linear_cost(quick.equations, c);
         return quick;
     }
 
-    Eigen::VectorXd solved(const NormalEquations& equations) const {
-        if (signature_.linear.empty()) { return Eigen::VectorXd::Ones(1); }
-        // A direction of which the data know nothing stays at zero.
-        return equations.A.completeOrthogonalDecomposition().solve(equations.b);
+    std::vector<double> solved(const NormalEquations& equations) const {
+        if (signature_.linear.empty()) { return {1.0}; }
+        return equations.solution();
     }
 
-    Eigen::VectorXd linear_sd(const NormalEquations& equations) const {
-        const Eigen::MatrixXd covariance = equations.A.completeOrthogonalDecomposition().pseudoInverse();
-        return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    }
-
-    double linear_cost(const NormalEquations& equations, const Eigen::VectorXd& c) const {
+    double linear_cost(const NormalEquations& equations, const std::vector<double>& c) const {
         if (signature_.linear.empty()) { return 0.0; }
-        const Eigen::VectorXd sd = linear_sd(equations);
+        const std::vector<double> sd = equations.sd();
         double cost = 0.0;
         for (std::size_t j = 0; j < signature_.linear.size(); ++j) {
-            const auto at = static_cast<Eigen::Index>(j);
-            cost += occam_cost_nats(param_of(effect_, signature_.linear[j]), c[at], sd[at]);
+            cost += occam_cost_nats(param_of(effect_, signature_.linear[j]), c[j], sd[j]);
         }
         return cost;
     }
@@ -347,8 +340,8 @@ private:
 
     // The gain with N, B and K refitted, on one axis.
     struct AxisFit {
-        Eigen::VectorXd c;
-        Eigen::VectorXd sd;
+        std::vector<double> c;
+        std::vector<double> sd;
         double gain_nats = 0.0;
         double cost_nats = 0.0;
         NormalEquations equations;
@@ -366,7 +359,7 @@ private:
     }
 
     AxisFit refitted(const Observation& observation, std::size_t axis, const Trial& trial,
-                     const Eigen::VectorXd* given) const {
+                     const std::vector<double>* given) const {
         const AxisObservation& seen = observation.axis(axis);
         const MeanRegression regression(observation, axis, trial.responses[axis]);
         const std::array<double, 3> sd_rel = noise_uncertainty(baseline_->model(), axis);
@@ -383,7 +376,7 @@ private:
             expected_density(parts, sd_rel, noise.z, density);
             fit.gain_nats = noise.log_likelihood_nats - seen.noise.log_likelihood_nats - rest.charge_nats;
         }
-        if (!signature_.linear.empty()) { fit.sd = linear_sd(fit.equations); }
+        if (!signature_.linear.empty()) { fit.sd = fit.equations.sd(); }
         fit.cost_nats = linear_cost(fit.equations, fit.c);
         return fit;
     }
@@ -395,8 +388,8 @@ private:
         described.cost_nats = fit.cost_nats;
         for (std::size_t j = 0; j < signature_.linear.size(); ++j) {
             const std::string name(signature_.linear[j]);
-            described.params[name] = fit.c[static_cast<Eigen::Index>(j)];
-            described.sd[name] = fit.sd[static_cast<Eigen::Index>(j)];
+            described.params[name] = fit.c[j];
+            described.sd[name] = fit.sd[j];
         }
         return described;
     }
@@ -416,18 +409,17 @@ private:
             described_fit.gain_nats = {fit.gain_nats};
             described_fit.sd.insert(trial_sd.begin(), trial_sd.end());
             if (!only_shared) { single.push_back(std::move(described_fit)); }
-            if (pooled.A.size() == 0) {
+            if (pooled.b.empty()) {
                 pooled = fit.equations;
             } else {
-                pooled.A += fit.equations.A;
-                pooled.b += fit.equations.b;
+                pooled.add(fit.equations);
             }
         }
         std::optional<AxesFit> shared;
         if (baseline_->axes().size() > 1) {
             AxisFit common;
             common.c = solved(pooled);
-            if (!signature_.linear.empty()) { common.sd = linear_sd(pooled); }
+            if (!signature_.linear.empty()) { common.sd = pooled.sd(); }
             common.cost_nats = linear_cost(pooled, common.c) + common_cost;
             shared = described(baseline_->axes(), trial, common);
             shared->sd.insert(trial_sd.begin(), trial_sd.end());

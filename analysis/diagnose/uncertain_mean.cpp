@@ -1,5 +1,6 @@
 #include "analysis/diagnose/uncertain_mean.hpp"
 
+#include <Eigen/Cholesky>
 #include <utility>
 
 namespace gyrolog {
@@ -28,28 +29,35 @@ std::vector<BinSums> UncertainMean::products_with(const SpectralBins& bins,
     return products;
 }
 
-Eigen::LDLT<Eigen::MatrixXd> UncertainMean::information(const BinSums& weights) const {
-    const auto count = static_cast<Eigen::Index>(size());
-    Eigen::MatrixXd information(count, count);
+std::vector<double> UncertainMean::information(const BinSums& weights) const {
+    std::vector<double> information(size() * size());
     for (std::size_t u = 0; u < size(); ++u) {
-        const auto row = static_cast<Eigen::Index>(u);
         for (std::size_t v = 0; v <= u; ++v) {
-            const auto column = static_cast<Eigen::Index>(v);
-            information(row, column) = information(column, row) = (products(u, v) * weights).sum();
+            information[u * size() + v] = information[v * size() + u] = weighted_sum(products(u, v), weights);
         }
-        information(row, row) += 1.0 / (responses_[u].sd * responses_[u].sd);
+        information[u * size() + u] += 1.0 / (responses_[u].sd * responses_[u].sd);
     }
-    return information.ldlt();
+    return information;
 }
 
-Eigen::VectorXd UncertainMean::pull(const BinSums& weights, std::span<const BinSums> products,
-                                    std::span<const double> at) const {
-    Eigen::VectorXd pull(static_cast<Eigen::Index>(size()));
+std::vector<double> UncertainMean::pull(const BinSums& weights, std::span<const BinSums> products,
+                                        std::span<const double> at) const {
+    std::vector<double> pull(size());
     for (std::size_t u = 0; u < size(); ++u) {
         const double sd = responses_[u].sd;
-        pull[static_cast<Eigen::Index>(u)] = (products[u] * weights).sum() - at[u] / (sd * sd);
+        pull[u] = weighted_sum(products[u], weights) - at[u] / (sd * sd);
     }
     return pull;
+}
+
+std::vector<double> UncertainMean::step(const BinSums& weights, std::span<const BinSums> products,
+                                        std::span<const double> at) const {
+    const auto count = static_cast<Eigen::Index>(size());
+    const std::vector<double> matrix = information(weights);
+    std::vector<double> step = pull(weights, products, at);
+    Eigen::Map<Eigen::VectorXd> solved(step.data(), count);
+    solved = Eigen::Map<const Eigen::MatrixXd>(matrix.data(), count, count).ldlt().solve(solved).eval();
+    return step;
 }
 
 }  // namespace gyrolog

@@ -2,7 +2,6 @@
 // the clock.
 #pragma once
 
-#include <Eigen/Dense>
 #include <span>
 #include <vector>
 
@@ -29,12 +28,16 @@ public:
     // Of each response with other coefficients.
     std::vector<BinSums> products_with(const SpectralBins& bins, std::span<const float> cosines) const;
 
-    // Of the parameters, with their prior, where each bin's coefficients weigh so much.
-    Eigen::LDLT<Eigen::MatrixXd> information(const BinSums& weights) const;
-    // Towards which the parameters are pulled from where they are, `at`: what is left of the coefficients has
-    // these products with the responses.
-    Eigen::VectorXd pull(const BinSums& weights, std::span<const BinSums> products,
-                         std::span<const double> at) const;
+    // Information matrix of the parameters, with their prior, where each bin's coefficients weigh so much;
+    // row by row.
+    std::vector<double> information(const BinSums& weights) const;
+    // Gradient of the log posterior at the parameters `at`, where what is left of the coefficients has these
+    // products with the responses.
+    std::vector<double> pull(const BinSums& weights, std::span<const BinSums> products,
+                             std::span<const double> at) const;
+    // information^-1 pull: how far the parameters move to their most likely values.
+    std::vector<double> step(const BinSums& weights, std::span<const BinSums> products,
+                             std::span<const double> at) const;
 
 private:
     std::vector<UncertainResponse> responses_;

@@ -1,6 +1,7 @@
 // Regression on products summed by bin, against the coefficients themselves.
 #include "analysis/diagnose/mean_regression.hpp"
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 
@@ -49,9 +50,9 @@ TEST_F(MeanRegressionBySums, LeavesThePowerOfWhatIsLeft) {
     const MeanRegression regression(*observation_, axis, responses);
     const AxisObservation& seen = observation_->axis(axis);
     const NormalEquations equations = regression.equations(seen.density);
-    const Eigen::Vector2d c(0.3, -0.7);
+    const std::vector<double> c{0.3, -0.7};
     const MeanRegression::Rest rest = regression.rest(equations, c);
-    const Eigen::VectorXd moved = equations.shift * c + equations.give;
+    const std::vector<double> moved = equations.moved(c);
     const UncertainMean& uncertain = baseline_->uncertain(axis);
     ASSERT_EQ(uncertain.size(), 5U);
     for (std::size_t i = 0; i < baseline_->bins().size(); ++i) {
@@ -61,7 +62,7 @@ TEST_F(MeanRegressionBySums, LeavesThePowerOfWhatIsLeft) {
             double left = coefficient(k) - 0.3 * static_cast<double>(responses_[0][k]) +
                           0.7 * static_cast<double>(responses_[1][k]);
             for (std::size_t u = 0; u < uncertain.size(); ++u) {
-                left -= moved[static_cast<Eigen::Index>(u)] * static_cast<double>(uncertain[u].cosines[k]);
+                left -= moved[u] * static_cast<double>(uncertain[u].cosines[k]);
             }
             squares += left * left;
         }
@@ -77,7 +78,7 @@ TEST_F(MeanRegressionBySums, SolvesTheSameProblemAsAllResponsesTogether) {
     const MeanRegression regression(*observation_, axis, responses);
     const AxisObservation& seen = observation_->axis(axis);
     const NormalEquations equations = regression.equations(seen.density);
-    const Eigen::VectorXd c = equations.A.ldlt().solve(equations.b);
+    const std::vector<double> c = equations.solution();
 
     const UncertainMean& uncertain = baseline_->uncertain(axis);
     const auto directions = static_cast<Eigen::Index>(uncertain.size());
@@ -105,10 +106,11 @@ TEST_F(MeanRegressionBySums, SolvesTheSameProblemAsAllResponsesTogether) {
         target[length + row] = -seen.uncertain_fit[u] / uncertain[u].sd;
     }
     const Eigen::VectorXd direct = design.colPivHouseholderQr().solve(target);
-    const Eigen::VectorXd moved = equations.shift * c + equations.give;
-    for (Eigen::Index j = 0; j < 2; ++j) { EXPECT_NEAR(c[j], direct[j], 1e-6 * std::fabs(direct[j])); }
-    for (Eigen::Index u = 0; u < directions; ++u) {
-        EXPECT_NEAR(moved[u], direct[2 + u], 1e-4 * uncertain[static_cast<std::size_t>(u)].sd);
+    const std::vector<double> moved = equations.moved(c);
+    const auto direct_at = [&direct](std::size_t i) { return direct[static_cast<Eigen::Index>(i)]; };
+    for (std::size_t j = 0; j < 2; ++j) { EXPECT_NEAR(c[j], direct_at(j), 1e-6 * std::fabs(direct_at(j))); }
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        EXPECT_NEAR(moved[u], direct_at(2 + u), 1e-4 * uncertain[u].sd);
     }
 }
 
