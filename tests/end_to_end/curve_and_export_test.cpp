@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/needs.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -109,7 +110,7 @@ TEST(Analyze, RefusesAFigureThatIsNoPng) {
 }
 
 TEST(Analyze, AFullDiskIsTheSameForTextAndJson) {
-    if (!std::filesystem::exists("/dev/full")) { GTEST_SKIP() << "no /dev/full"; }
+    if (!has_full_disk()) { GTEST_SKIP() << needs_full_disk; }
     const TemporaryFolder folder;
     const std::string recording = write_recording(folder);
     const std::string program =

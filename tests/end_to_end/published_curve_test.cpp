@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +12,7 @@
 #include "analysis/simulate/recording_simulator.hpp"
 #include "host/formats/curve_csv.hpp"
 #include "host/formats/model_json.hpp"
+#include "tests/support/needs.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -49,17 +48,15 @@ AllanPoint at(const AllanCurve& curve, double tau_s) {
 }
 
 TEST(PublishedSensor, SimulatedFromTheModelOfItsCurvesLiesInTheirBandAtEveryAveragingTime) {
-    const std::filesystem::path printed =
-        std::filesystem::path(std::getenv("GYROLOG_SOURCE_DIR")) /
-        "../shared/data/published_mpu9250_curve/allan_deviation_deg_per_h.csv";
-    if (!std::filesystem::exists(printed)) { GTEST_SKIP() << printed << " is not there"; }
+    if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
+    const std::string printed = shared_data("published_mpu9250_curve/allan_deviation_deg_per_h.csv");
     const TemporaryFolder folder;
-    const ProgramResult fitted = run_gyrolog(
-        {"analyze", "--curve", printed.string(), "--rate", "100", "--model", folder.path("model.json")});
+    const ProgramResult fitted =
+        run_gyrolog({"analyze", "--curve", printed, "--rate", "100", "--model", folder.path("model.json")});
     ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
     const auto model = read_model(folder.path("model.json"));
     ASSERT_TRUE(model.ok());
-    const auto published = read_curve_csv(printed.string());
+    const auto published = read_curve_csv(printed);
     ASSERT_TRUE(published.ok());
     ASSERT_EQ(published->curves.size(), 3U);
     int compared = 0;

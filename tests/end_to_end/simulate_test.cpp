@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -16,6 +15,7 @@
 #include "analysis/simulate/sensor_model.hpp"
 #include "host/formats/model_json.hpp"
 #include "host/formats/recording_csv.hpp"
+#include "tests/support/needs.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -162,18 +162,17 @@ TEST(Simulate, LikeAnArrayOrASingleAxisIsOneGyroOfThreeAxesAndIsSaidToBe) {
 }
 
 TEST(Simulate, LikeAMotionTurnsAsItsOrientationReferenceDoes) {
-    const std::filesystem::path real =
-        std::filesystem::path(std::getenv("GYROLOG_SOURCE_DIR")) /
-        "../shared/data/broad_ref_motion/05_undisturbed_slow_rotation_with_breaks_B.csv.xz";
-    if (!std::filesystem::exists(real)) { GTEST_SKIP() << real << " is not there"; }
+    if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
+    const std::string real =
+        shared_data("broad_ref_motion/05_undisturbed_slow_rotation_with_breaks_B.csv.xz");
     const TemporaryFolder folder;
     SensorModel model;
     model.full_scale_rad_s = model.saturation_rad_s = 35.0;
-    const ProgramResult made = run_gyrolog(
-        {"simulate", write(model, folder), "-o", folder.path("like.csv"), "--like", real.string()});
+    const ProgramResult made =
+        run_gyrolog({"simulate", write(model, folder), "-o", folder.path("like.csv"), "--like", real});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     EXPECT_THAT(made.err, HasSubstr("the reference rate is not known in"));
-    const Recording original = read(real.string());
+    const Recording original = read(real);
     const Recording like = read(folder.path("like.csv"));
     ASSERT_EQ(like.t_s, original.t_s);
     // The real gyro's scale is good to 0.5 %, its misalignment to the markers about 1 %, and the gyro is by
@@ -297,7 +296,7 @@ TEST_F(Refusals, SayWhatIsWrongAndWriteNothing) {
 }
 
 TEST_F(Refusals, AFullDiskIsSaid) {
-    if (!std::filesystem::exists("/dev/full")) { GTEST_SKIP() << "no /dev/full"; }
+    if (!has_full_disk()) { GTEST_SKIP() << needs_full_disk; }
     const ProgramResult result = simulate({model_, "-o", "/dev/full"});
     EXPECT_EQ(result.exit_code, 6) << result.err;
 }

@@ -6,6 +6,7 @@
 
 #include "host/virtual_board/usb_function.hpp"
 #include "tests/end_to_end/soak.hpp"
+#include "tests/support/needs.hpp"
 #include "tests/support/umockdev_virtual_board.hpp"
 
 namespace gyrolog {
@@ -61,7 +62,7 @@ private:
 TEST(SoakUsb, DayAt1kHzLosesNothingInFlatMemory) {
     const double hours = soak_hours(0.4);
     test::UmockdevBus bus;
-    if (!bus.in_force()) { GTEST_SKIP() << "runs under umockdev-wrapper only"; }
+    if (!bus.in_force()) { GTEST_SKIP() << needs_umockdev_wrapper; }
     VirtualBoardOptions options;
     options.rate_hz = 1000.0;
     options.dlpf_hz = 184;

@@ -48,7 +48,7 @@ namespace {
 
 TEST(DenoiseMemory, NothingIsAllocatedPerSample) {
 #ifdef GYROLOG_MALLOC_IS_TAKEN
-    GTEST_SKIP() << "malloc is the sanitizer's";
+    GTEST_SKIP() << "needs malloc, which is the sanitizer's";
 #else
     const std::size_t before_all = calls_of_malloc;
     const std::vector<double> proof(1000);

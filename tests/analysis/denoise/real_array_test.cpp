@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "analysis/denoise/denoise.hpp"
 #include "host/formats/recording_csv.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
@@ -27,14 +27,11 @@ constexpr TimeSpan poses[] = {{1, 23},    {27, 46},   {51, 70},   {75, 95},   {9
 class RealArray : public testing::Test {
 protected:
     void SetUp() override {
-        const char* source = std::getenv("GYROLOG_SOURCE_DIR");
-        const std::string path =
-            std::string(source == nullptr ? "." : source) + "/../shared/data/mimu8_array/exp1.csv.xz";
-        if (!std::filesystem::exists(path)) { GTEST_SKIP() << "no real recording at " << path; }
+        if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
         CsvReadOptions options;
         options.lsb_dps = lsb_dps;
         options.allow_unscaled_counts = true;
-        Result<Recording> read = read_recording_csv(path, options);
+        Result<Recording> read = read_recording_csv(shared_data("mimu8_array/exp1.csv.xz"), options);
         ASSERT_TRUE(read.ok());
         std::vector<Segment> parts;
         for (const TimeSpan& pose : poses) {

@@ -1,8 +1,6 @@
 #include "analysis/simulate/recorded_world.hpp"
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <random>
 
@@ -11,6 +9,7 @@
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
 #include "host/formats/recording_csv.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
@@ -288,11 +287,9 @@ double squares_about_mean(const std::vector<double>& values) {
 }
 
 TEST(RecordedWorld, OfARealOrientationHasTheNoiseAtRestThatMethodsStates) {
-    const std::filesystem::path path =
-        std::filesystem::path(std::getenv("GYROLOG_SOURCE_DIR")) /
-        "../shared/data/broad_ref_motion/05_undisturbed_slow_rotation_with_breaks_B.csv.xz";
-    if (!std::filesystem::exists(path)) { GTEST_SKIP() << path << " is not there"; }
-    auto read = read_recording_csv(path.string());
+    if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
+    auto read =
+        read_recording_csv(shared_data("broad_ref_motion/05_undisturbed_slow_rotation_with_breaks_B.csv.xz"));
     ASSERT_TRUE(read) << read.error().message;
     const auto recording = std::make_shared<const Recording>(std::move(*read));
     const RecordedWorld world(recording);

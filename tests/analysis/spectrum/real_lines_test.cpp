@@ -1,8 +1,6 @@
 // Tones that the descriptions of real recordings name.
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -10,6 +8,7 @@
 
 #include "analysis/spectrum/spectral_lines.hpp"
 #include "host/formats/recording_csv.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
@@ -23,21 +22,16 @@ using testing::Le;
 class RealLines : public testing::Test {
 protected:
     void SetUp() override {
-        const char* source = std::getenv("GYROLOG_SOURCE_DIR");
-        directory_ = std::string(source == nullptr ? "." : source) + "/../shared/data/";
-        if (!std::filesystem::exists(directory_)) { GTEST_SKIP() << "no real recordings at " << directory_; }
+        if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
     }
 
     Recording read(const std::string& file) const {
         CsvReadOptions options;
         options.allow_unscaled_counts = true;
-        Result<Recording> recording = read_recording_csv(directory_ + file, options);
+        Result<Recording> recording = read_recording_csv(shared_data(file), options);
         EXPECT_TRUE(recording.ok());
         return recording.ok() ? std::move(recording).value() : Recording{};
     }
-
-private:
-    std::string directory_;
 };
 
 auto lies_between(double lo_hz, double hi_hz) {

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/support/needs.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -45,7 +47,7 @@ TEST_F(FileOutput, NamesAMissingFolder) {
 }
 
 TEST_F(FileOutput, AFullDiskLeavesTheOldContents) {
-    if (!fs::exists("/dev/full")) { GTEST_SKIP() << "/dev/full is absent"; }
+    if (!has_full_disk()) { GTEST_SKIP() << needs_full_disk; }
     const Status status = write_file("/dev/full", as_bytes("x"));
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().code, ErrorCode::disk_full);

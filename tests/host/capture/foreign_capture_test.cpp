@@ -10,6 +10,7 @@
 
 #include "host/capture/byte_order.hpp"
 #include "tests/host/capture/made_capture.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
@@ -183,10 +184,6 @@ protected:
     }
     ~InWireshark() override { std::filesystem::remove_all(folder_); }
 
-    static bool has(const std::string& tool) {
-        return std::system(("command -v " + tool + " >/dev/null").c_str()) == 0;
-    }
-
     std::string write(const Bytes& bytes) const {
         const std::string path = folder_ / "made.pcapng";
         std::ofstream(path, std::ios::binary) << as_text(bytes);
@@ -207,7 +204,7 @@ protected:
 };
 
 TEST_F(InWireshark, TsharkSeesEveryPacketAndEveryByteOfTheStream) {
-    if (!has("tshark")) { GTEST_SKIP() << "tshark is not installed"; }
+    if (!has_program("tshark")) { GTEST_SKIP() << needs_program("tshark"); }
     const MadeCapture made = make_capture(40, 700);
     std::istringstream rows(output_of("tshark -r " + write(made.bytes) +
                                       " -T fields -e frame.time_epoch -e usb.idVendor -e usb.urb_type -e "
@@ -233,7 +230,7 @@ TEST_F(InWireshark, TsharkSeesEveryPacketAndEveryByteOfTheStream) {
 }
 
 TEST_F(InWireshark, CapinfosCountsTheSamePackets) {
-    if (!has("capinfos")) { GTEST_SKIP() << "capinfos is not installed"; }
+    if (!has_program("capinfos")) { GTEST_SKIP() << needs_program("capinfos"); }
     const MadeCapture made = make_capture(40, 700);
     const std::string told = output_of("capinfos -TmQ -c -E " + write(made.bytes));
     EXPECT_NE(told.find(std::to_string(made.transfers.size() + 6)), std::string::npos) << told;
@@ -241,7 +238,7 @@ TEST_F(InWireshark, CapinfosCountsTheSamePackets) {
 }
 
 TEST_F(InWireshark, AFileThatEditcapRewroteIsStillRead) {
-    if (!has("editcap")) { GTEST_SKIP() << "editcap is not installed"; }
+    if (!has_program("editcap")) { GTEST_SKIP() << needs_program("editcap"); }
     const MadeCapture made = make_capture(40, 700);
     const std::string rewritten = folder_ / "rewritten.pcapng";
     static_cast<void>(output_of("editcap " + write(made.bytes) + " " + rewritten));

@@ -2,7 +2,6 @@
 // accounted for; and the same stream between our frames, none of which may be lost to it.
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <random>
 #include <string>
@@ -10,15 +9,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/host/decode/made_stream.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
 
 Bytes real_stream() {
-    const char* source = std::getenv("GYROLOG_SOURCE_DIR");
-    if (source == nullptr) { return {}; }
-    const std::string command =
-        "xz -dc '" + std::string(source) + "/../shared/data/mimu8_array/exp1_frames.bin.xz' 2>/dev/null";
+    if (!has_shared_data()) { return {}; }
+    const std::string command = "xz -dc '" + shared_data("mimu8_array/exp1_frames.bin.xz") + "'";
     Bytes bytes;
     FILE* pipe = popen(command.c_str(), "r");  // NOLINT(cert-env33-c): a fixed command on a path of the build
     if (pipe == nullptr) { return {}; }
@@ -38,7 +36,9 @@ protected:
         stream_ = nullptr;
     }
     void SetUp() override {
-        if (stream_->empty()) { GTEST_SKIP() << "the recording exp1_frames.bin.xz (or xz) is not here"; }
+        if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
+        if (!has_program("xz")) { GTEST_SKIP() << needs_program("xz"); }
+        ASSERT_FALSE(stream_->empty());
     }
 
     static Bytes* stream_;

@@ -1,6 +1,4 @@
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,6 +10,7 @@
 #include "host/formats/analysis_text.hpp"
 #include "host/formats/recording_csv.hpp"
 #include "tests/analysis/allan/nbs14.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
@@ -110,19 +109,14 @@ TEST(AnalysisText, NamesEveryAxisWithItsUnits) {
 class AnalysisOfRealRecordings : public testing::Test {
 protected:
     void SetUp() override {
-        const char* source = std::getenv("GYROLOG_SOURCE_DIR");
-        directory_ = std::string(source == nullptr ? "." : source) + "/../shared/data/";
-        if (!std::filesystem::exists(directory_)) { GTEST_SKIP() << "no real recordings at " << directory_; }
+        if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
     }
 
     AnalysisReport report(const std::string& file, const CsvReadOptions& options = {}) const {
-        const Result<Recording> recording = read_recording_csv(directory_ + file, options);
+        const Result<Recording> recording = read_recording_csv(shared_data(file), options);
         EXPECT_TRUE(recording.ok()) << (recording.ok() ? "" : recording.error().message);
         return recording.ok() ? analyze(*recording) : AnalysisReport{};
     }
-
-private:
-    std::string directory_;
 };
 
 // The deviations that its source states at 1.28 s, with the repository's scale for each axis.

@@ -14,6 +14,7 @@
 #include "host/formats/curve_text.hpp"
 #include "host/formats/recording_csv.hpp"
 #include "host/formats/text_file.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
@@ -145,19 +146,13 @@ TEST(CurveText, FitsATerminalAndTellsTheGap) {
 class PublishedCurve : public testing::Test {
 protected:
     void SetUp() override {
-        const char* source = std::getenv("GYROLOG_SOURCE_DIR");
-        directory_ =
-            std::string(source == nullptr ? "." : source) + "/../shared/data/published_mpu9250_curve/";
-        if (!std::filesystem::exists(directory_)) { GTEST_SKIP() << "no published curves at " << directory_; }
+        if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
     }
     CurveReport report_of(const std::string& file) const {
-        auto curves = read_curve_csv(directory_ + file);
+        auto curves = read_curve_csv(shared_data("published_mpu9250_curve/" + file));
         EXPECT_TRUE(curves.ok()) << (curves.ok() ? "" : curves.error().message);
         return curves.ok() ? analyze_curves(std::move(curves).value()) : CurveReport{};
     }
-
-private:
-    std::string directory_;
 };
 
 bool has(const CurveModelFit& fit, CurveTerm::Kind kind) {

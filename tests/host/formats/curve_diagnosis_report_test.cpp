@@ -1,8 +1,6 @@
 #include "host/formats/curve_diagnosis_report.hpp"
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +10,7 @@
 #include "analysis/simulate/effect.hpp"
 #include "host/formats/curve_csv.hpp"
 #include "host/formats/curve_effect.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
@@ -173,12 +172,8 @@ TEST(CurveEffect, SaysWhichEffectsOfTheModelACurveDoesNotShow) {
 
 // The folder's ORIGIN.md: 2.3 dB RMS, 4.7 dB too quiet at 13 ms, too loud at 1e4 s.
 TEST(CurveDiagnosisReport, OfThePublishedSimulationFindsItsErrors) {
-    const char* source = std::getenv("GYROLOG_SOURCE_DIR");
-    const std::filesystem::path printed =
-        std::filesystem::path(source == nullptr ? "." : source) /
-        "../shared/data/published_mpu9250_curve/sensor_vs_simulation_x_dps.csv";
-    if (!std::filesystem::exists(printed)) { GTEST_SKIP() << printed << " is not there"; }
-    const auto curves = read_curve_csv(printed.string());
+    if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
+    const auto curves = read_curve_csv(shared_data("published_mpu9250_curve/sensor_vs_simulation_x_dps.csv"));
     ASSERT_TRUE(curves.ok());
     std::vector<ModelledTerm> terms;
     for (const CurveTerm& term : fit_curve_model(curves->curves[1].curve).terms) {

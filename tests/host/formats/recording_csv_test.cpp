@@ -1,7 +1,6 @@
 #include "host/formats/recording_csv.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
@@ -11,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/noise/noise_model.hpp"
+#include "tests/support/needs.hpp"
 
 namespace gyrolog {
 namespace {
@@ -260,19 +260,14 @@ TEST(RecordingCsv, AFileThatIsNotThereIsNamed) {
 class RealRecordings : public testing::Test {
 protected:
     void SetUp() override {
-        const char* source = std::getenv("GYROLOG_SOURCE_DIR");
-        directory_ = std::string(source == nullptr ? "." : source) + "/../shared/data/";
-        if (!std::filesystem::exists(directory_)) { GTEST_SKIP() << "no real recordings at " << directory_; }
+        if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
     }
 
     Recording read(const std::string& file, const CsvReadOptions& options = {}) const {
-        Result<Recording> recording = read_recording_csv(directory_ + file, options);
+        Result<Recording> recording = read_recording_csv(shared_data(file), options);
         EXPECT_TRUE(recording.ok()) << (recording.ok() ? "" : recording.error().message);
         return recording.ok() ? std::move(recording).value() : Recording{};
     }
-
-private:
-    std::string directory_;
 };
 
 TEST_F(RealRecordings, DropoutsOfAFlightControllersLogAreFound) {

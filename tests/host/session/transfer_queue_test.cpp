@@ -79,7 +79,7 @@ std::size_t resident_bytes() {
 
 TEST(TransferQueue, GivesBackWhatAStallHasFilled) {
 #ifdef __SANITIZE_THREAD__
-    GTEST_SKIP() << "ThreadSanitizer keeps its shadow of memory that is given back";
+    GTEST_SKIP() << "needs memory of which ThreadSanitizer keeps no shadow";
 #endif
     constexpr std::size_t capacity = std::size_t{32} << 20U;
     TransferQueue queue(capacity);

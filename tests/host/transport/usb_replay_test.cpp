@@ -15,6 +15,7 @@
 #include "host/transport/usb_source.hpp"
 #include "tests/host/transport/replayed_session.hpp"
 #include "tests/support/collecting_sink.hpp"
+#include "tests/support/needs.hpp"
 #include "tests/support/umockdev_virtual_board.hpp"
 
 namespace gyrolog {
@@ -82,7 +83,7 @@ TEST_F(UsbReplayTest, ACaptureServedInPlaceOfTheBoardGivesTheSameStream) {
     CollectingSink sink;
     {
         test::UmockdevBus bus;
-        if (!bus.in_force()) { GTEST_SKIP() << "runs under umockdev-wrapper only"; }
+        if (!bus.in_force()) { GTEST_SKIP() << needs_umockdev_wrapper; }
         VirtualBoardOptions options;
         options.rate_hz = 1000.0;
         auto board = VirtualBoard::create(options);

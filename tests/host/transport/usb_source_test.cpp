@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "tests/support/collecting_sink.hpp"
+#include "tests/support/needs.hpp"
 #include "tests/support/umockdev_board.hpp"
 
 namespace gyrolog {
@@ -69,7 +70,7 @@ class UsbSourceTest : public ::testing::Test {
 protected:
     void SetUp() override {
         bus_ = std::make_unique<UmockdevBus>();
-        if (!bus_->in_force()) { GTEST_SKIP() << "runs under umockdev-wrapper only"; }
+        if (!bus_->in_force()) { GTEST_SKIP() << needs_umockdev_wrapper; }
     }
     void TearDown() override {
         source_.reset();
