@@ -11,5 +11,5 @@ except ImportError:
     _system = "/usr/bin/python3"
     if os.path.exists(_system) and os.path.realpath(sys.executable) != os.path.realpath(_system):
         os.execv(_system, [_system, "-B"] + sys.argv)
-    print("numpy is not installed (Debian: python3-numpy)")
+    print("skipped: needs numpy (Debian: python3-numpy)")
     sys.exit(SKIPPED)

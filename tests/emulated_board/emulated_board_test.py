@@ -32,7 +32,7 @@ class Board:
             status = self.process.wait()
             message = self.process.stderr.read()
             if status == 77:
-                print(message, file=sys.stderr)
+                print("skipped: " + message.strip().removeprefix("arm_board: "), file=sys.stderr)
                 sys.exit(77)
             raise RuntimeError(f"arm_board: exit {status}: {message}")
 

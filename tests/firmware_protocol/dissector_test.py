@@ -46,7 +46,7 @@ class Capture:
 def main():
     tshark = shutil.which("tshark")
     if not tshark:
-        print("skipped: tshark is not installed")
+        print("skipped: needs tshark")
         sys.exit(77)
     torn = bytearray(wire(CONFIG, payload(CONFIG), 12))
     torn[20] ^= 4

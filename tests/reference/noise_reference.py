@@ -10,22 +10,15 @@ Usage: noise_reference.py NOISE_SAMPLES [-v]
 """
 
 import json
-import os
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
-SKIPPED = 77
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blind"))
+import numbers_or_skip  # noqa: E402, F401  it may start another interpreter
 
-try:
-    import numpy as np
-except ImportError:
-    # Debian's numpy belongs to Debian's python, which need not come first on the path.
-    system_python = "/usr/bin/python3"
-    if os.path.exists(system_python) and os.path.realpath(sys.executable) != os.path.realpath(system_python):
-        os.execv(system_python, [system_python, "-B"] + sys.argv)
-    print("numpy is not installed (Debian: python3-numpy)")
-    sys.exit(SKIPPED)
+import numpy as np  # noqa: E402
 
 SAMPLES = 1 << 14
 SEEDS = 20  # three records each

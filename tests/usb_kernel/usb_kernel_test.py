@@ -38,7 +38,7 @@ class Scenario(unittest.TestCase):
     def setUp(self):
         self.folder = SHARE / self.name
         if not self.folder.exists():
-            self.skipTest("this scenario was not run")
+            self.skipTest("needs its scenario, which SCENARIOS leaves out")
 
     def file(self, name):
         path = self.folder / name
@@ -82,7 +82,7 @@ class Scenario(unittest.TestCase):
     def assert_replays(self, capture, samples):
         """umockdev serves the file to the program here on the host, and the stream is the same to the bit."""
         if shutil.which("umockdev-run") is None:
-            self.skipTest("umockdev is not installed")
+            self.skipTest("needs umockdev-run")
         again = self.folder / "again.pcapng"
         again.unlink(missing_ok=True)
         replayed = subprocess.run(
@@ -135,7 +135,7 @@ class CaptureFromVhciBoard(Scenario):
     def test_wireshark_opens_it(self):
         tshark = shutil.which("tshark")
         if tshark is None:
-            self.skipTest("tshark is not installed")
+            self.skipTest("needs tshark")
         ours = list(usbmon_record.from_pcapng(self.file("capture.pcapng").read_bytes()))
         answer = subprocess.run(
             [tshark, "-r", self.file("capture.pcapng"), "-Y",
@@ -322,7 +322,7 @@ def main():
         status = guest.run(PROGRAMS, WORK, HERE / "guest" / "run_scenarios.sh", timeout_s=840,
                            scenarios=os.environ.get("SCENARIOS", "").split())
     except Unavailable as reason:
-        print(f"skipped: {reason}", file=sys.stderr)
+        print(f"skipped: needs a kernel to boot: {reason}", file=sys.stderr)
         return 77
     log = SHARE / "script.log"
     print(log.read_text(errors="replace") if log.exists() else "the guest never reached the scenarios", flush=True)

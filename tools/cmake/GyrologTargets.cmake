@@ -85,6 +85,17 @@ function(gyrolog_test name)
     ENVIRONMENT "GYROLOG_SOURCE_DIR=${CMAKE_SOURCE_DIR};GYROLOG_BUILD_DIR=${CMAKE_BINARY_DIR};${arg_ENVIRONMENT}")
 endfunction()
 
+# gyrolog_left_out(NAME REASON [LABELS ...]): in the place of a test that cannot be built here, an entry that ctest skips
+# and tools/skipped_tests counts.
+function(gyrolog_left_out name reason)
+  cmake_parse_arguments(arg "" "" "LABELS" ${ARGN})
+  if(NOT arg_LABELS)
+    set(arg_LABELS default)
+  endif()
+  add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: ${reason}")
+  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" SKIP_REGULAR_EXPRESSION "^skipped: ")
+endfunction()
+
 # gyrolog_fuzz(NAME SOURCES ... LINK ...): with clang and GYROLOG_FUZZ a libFuzzer binary; in the ordinary build the
 # same entry point behind a driver that feeds it a bounded number of generated inputs, as a default-tier test.
 function(gyrolog_fuzz name)
