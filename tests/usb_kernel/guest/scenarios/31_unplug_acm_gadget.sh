@@ -9,4 +9,5 @@ sleep 3
 unplug_acm_gadget
 finish capture
 judge capture.pcapng
+analyze capture.pcapng
 stop board-GADGET31

@@ -5,4 +5,5 @@
 plug_vhci_board VHCI32 --unplug-after 6 --replug-after 3
 run capture gyrolog capture --device usb:VHCI32 --duration 20s --rate 1000 -o capture.pcapng
 judge capture.pcapng
+analyze capture.pcapng
 stop board-VHCI32
