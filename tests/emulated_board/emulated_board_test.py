@@ -44,6 +44,8 @@ class Board:
 
 
 class EmulatedBoard(unittest.TestCase):
+    """One board for all, in this order: only the first test wants it fresh from its boot."""
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
