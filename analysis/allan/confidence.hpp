@@ -17,7 +17,4 @@ Interval chi_square_interval(double deviation, double edf, double confidence);
 // only.
 Interval textbook_interval(double deviation, double averages, double confidence);
 
-// The point that a standard normal variable exceeds with probability 1 - p.
-double normal_quantile(double p);
-
 }  // namespace gyrolog

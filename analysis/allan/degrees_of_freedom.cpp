@@ -4,10 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include <boost/math/quadrature/gauss.hpp>
-
 #include "analysis/allan/difference_covariance.hpp"
 #include "analysis/allan/total_variance.hpp"
+#include "analysis/numerics/legendre_rule.hpp"
 
 namespace gyrolog {
 namespace {
@@ -49,12 +48,10 @@ public:
                 ++lag;
                 continue;
             }
-            using Gauss = boost::math::quadrature::gauss<double, 7>;
             const double half = static_cast<double>(length) / 2.0;
             const double centre = static_cast<double>(lag) - 0.5 + half;
-            for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
-                const double x = Gauss::abscissa()[i];
-                const double width = half * Gauss::weights()[i];
+            for (const auto& [x, weight] : legendre_rule_of_seven()) {
+                const double width = half * weight;
                 add_one(centre + half * x, width);
                 if (x != 0.0) { add_one(centre - half * x, width); }
             }

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <numeric>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
-#include "analysis/allan/confidence.hpp"
 #include "analysis/allan/degrees_of_freedom.hpp"
 #include "analysis/allan/difference_covariance.hpp"
 #include "analysis/allan/total_variance.hpp"
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 namespace {
@@ -197,7 +195,7 @@ void VarianceDistribution::set_eigenvalues(const VarianceShares& shares, const D
 }
 
 double VarianceDistribution::quantile(double p) const {
-    if (lambda_.empty()) { return mean_ * boost::math::quantile(boost::math::chi_squared(edf_), p) / edf_; }
+    if (lambda_.empty()) { return mean_ * chi_squared_quantile(edf_, p) / edf_; }
     return constant_ + saddlepoint_quantile(lambda_, normal_quantile(p));
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/allan/confidence.hpp"
 #include "analysis/compare/axis_curves.hpp"
 #include "analysis/compare/compared_number.hpp"
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include "analysis/compare/compared_curve.hpp"
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 
@@ -23,8 +22,7 @@ double distance_from(std::span<const double> simulated, double value) {
 }
 
 double distance_by_chance(std::size_t simulations, double probability) {
-    const boost::math::students_t student(static_cast<double>(simulations) - 1.0);
-    return quantile(complement(student, 0.5 * probability));
+    return students_t_upper_quantile(static_cast<double>(simulations) - 1.0, 0.5 * probability);
 }
 
 ComparedNumber compare_number(double recording, std::vector<double> simulated,

@@ -9,8 +9,6 @@
 #include <span>
 #include <thread>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
 #include "analysis/diagnose/drawn_recordings.hpp"
 #include "analysis/diagnose/effect_search.hpp"
 #include "analysis/diagnose/evidence_tail.hpp"
@@ -23,6 +21,7 @@
 #include "analysis/diagnose/seen_line.hpp"
 #include "analysis/diagnose/swallowed_noise.hpp"
 #include "analysis/diagnose/unspecific_rivals.hpp"
+#include "analysis/numerics/distributions.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
@@ -458,14 +457,13 @@ private:
             gain_nats += cause.finding.gain_nats;
             parameters += own;
         }
-        const boost::math::chi_squared error(parameters);
         const auto left = [&](double square) {
             const double excess = 2.0 * answer_.halves.excess_nats;
             return std::clamp(1.0 - (square + excess) / (2.0 * gain_nats), 0.0, 1.0);
         };
         answer_.shrink = left(parameters);
-        answer_.shrink_lo = left(boost::math::quantile(error, 0.975));
-        answer_.shrink_hi = left(boost::math::quantile(error, 0.025));
+        answer_.shrink_lo = left(chi_squared_quantile(parameters, 0.975));
+        answer_.shrink_hi = left(chi_squared_quantile(parameters, 0.025));
         for (Cause& cause : answer_.causes) {
             cause.shrink_alone = answer_.shrink * cause.finding.gain_nats / gain_nats;
         }

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <boost/math/distributions/normal.hpp>
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 
@@ -125,7 +125,7 @@ Band band_of(const MeasuredGap& gap, std::size_t index, const std::vector<double
 
 std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap* after,
                                    double band_probability) {
-    const double width_sd = boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + band_probability));
+    const double width_sd = normal_quantile(0.5 * (1.0 + band_probability));
     const std::vector<double> surprises_before = surprises_nats(before.curves, before.reference);
     const std::vector<double> surprises_after =
         after != nullptr ? surprises_nats(after->curves, after->reference) : std::vector<double>();

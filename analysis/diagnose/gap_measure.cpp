@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include <boost/math/special_functions/gamma.hpp>
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 
@@ -62,7 +62,7 @@ double gamma_surprise(double value, double mean, double variance) {
     if (!(variance > 0.0) || value <= mean) { return 0.0; }
     const double shape = mean * mean / variance;
     const double x = value * mean / variance;
-    const double tail = boost::math::gamma_q(shape, x);
+    const double tail = gamma_upper_tail(shape, x);
     if (tail > 1e-290) { return -std::log(tail); }
     // Leading term of the tail's expansion (DLMF 8.11.2).
     return x - (shape - 1.0) * std::log(x) + std::lgamma(shape);

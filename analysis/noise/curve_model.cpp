@@ -9,8 +9,8 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <utility>
 
-#include "analysis/allan/confidence.hpp"
 #include "analysis/noise/curve_scatter.hpp"
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/allan/confidence.hpp"
 #include "analysis/noise/noise_search.hpp"
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 namespace {

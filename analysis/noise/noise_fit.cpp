@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/allan/confidence.hpp"
 #include "analysis/allan/degrees_of_freedom.hpp"
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 namespace {

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include "analysis/allan/prefix_sum.hpp"
+#include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
 namespace {
@@ -15,8 +14,7 @@ constexpr double least_dof = 1.0;
 double coverage_factor(double dof) {
     constexpr double upper_tail = 0.02275;  // beyond 2 of a normal distribution
     if (!(dof > 0.0)) { return 2.0; }
-    const boost::math::students_t t(std::clamp(dof, least_dof, 1e9));
-    return boost::math::quantile(boost::math::complement(t, upper_tail));
+    return students_t_upper_quantile(std::clamp(dof, least_dof, 1e9), upper_tail);
 }
 
 }  // namespace

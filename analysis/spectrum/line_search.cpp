@@ -7,8 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include <boost/math/distributions/gamma.hpp>
-
+#include "analysis/numerics/distributions.hpp"
 #include "analysis/spectrum/gamma_ratio.hpp"
 
 namespace gyrolog {
@@ -107,8 +106,8 @@ void Field::mask_outliers() {
     constexpr std::size_t least_median_of = 16;
     const AveragedPeriodogram& p = *periodogram_;
     const double shape = p.degrees_of_freedom(1) / 2.0;
-    const boost::math::gamma_distribution<> distribution(shape, 1.0 / shape);
-    const double limit = quantile(complement(distribution, chance)) / median(distribution);
+    const double limit =
+        gamma_upper_quantile(shape, 1.0 / shape, chance) / gamma_quantile(shape, 1.0 / shape, 0.5);
     std::vector<double> around;
     for (std::size_t k = std::max(p.valid_begin, reference_share * least_median_of); k < p.valid_end;) {
         const std::size_t reach = reference_bins(k, 1);
