@@ -18,7 +18,7 @@ add_library(gyrolog_settings INTERFACE)
 # A simulated sample must be the same bits with both compilers: no contraction to fused multiply-add.
 target_compile_options(gyrolog_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wformat=2
-  -Werror -ffp-contract=off
+  $<$<BOOL:${GYROLOG_WERROR}>:-Werror> -ffp-contract=off
   $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast -Woverloaded-virtual -Wnon-virtual-dtor>)
 target_include_directories(gyrolog_settings INTERFACE ${CMAKE_SOURCE_DIR})
 target_link_libraries(gyrolog_settings INTERFACE Threads::Threads)
