@@ -11,7 +11,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-SOURCES_A_GROUP = 12
+# A group is compiled again whenever one of its sources is edited: half a minute at most, with all headers.
+LINES_A_GROUP = 2000
 ROOT = Path(__file__).resolve().parent.parent
 INCLUDE_FOLDERS = (Path("."), Path("firmware_protocol/include"))
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
@@ -85,6 +86,7 @@ class Joined:
         text = tree.text(source)
         local = "".join(LOCAL.findall(text))
         self.sources = [source]
+        self.lines = text.count("\n")
         self.values = names(TYPES_AND_VALUES, local)
         self.own = self.values | names(FUNCTIONS_AND_TESTS, local) | {once for once in ONCE_A_PROGRAM if once in text}
         self.of_headers = set()
@@ -100,19 +102,20 @@ class Joined:
 
     def add(self, other):
         self.sources += other.sources
+        self.lines += other.lines
         self.values |= other.values
         self.own |= other.own
         self.of_headers |= other.of_headers
         self.types.update(other.types)
 
 
-def groups_of(sources, largest=SOURCES_A_GROUP):
+def groups_of(sources, lines_most=LINES_A_GROUP):
     """Groups of C++ sources in which no local name is there twice or declared by a header that one of them includes."""
     tree = Tree(ROOT)
     groups = []
     for source in sources:
         one = Joined(tree, source)
-        group = next((group for group in groups if len(group.sources) < largest and group.fits(one)), None)
+        group = next((group for group in groups if group.lines + one.lines <= lines_most and group.fits(one)), None)
         if group:
             group.add(one)
         else:
@@ -123,7 +126,7 @@ def groups_of(sources, largest=SOURCES_A_GROUP):
 def write_group(directory, group):
     """The text that includes the sources of a group."""
     joined = Path(directory) / f"{'_'.join(Path(group[0]).with_suffix('').parts[-3:])}_and_{len(group) - 1}_more.cpp"
-    text = "".join(f'#include "{ROOT / source}"\n' for source in group)
+    text = "".join(f'#include "{source}"\n' for source in group)  # the same text in every clone
     if not joined.exists() or joined.read_text() != text:
         joined.write_text(text)
     return joined
