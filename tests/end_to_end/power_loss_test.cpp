@@ -16,6 +16,7 @@
 #include "host/capture/capture_reader.hpp"
 #include "host/capture/recover.hpp"
 #include "host/decode/stream_decoder.hpp"
+#include "tests/support/asked.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -110,10 +111,7 @@ protected:
     Stored truth;
 };
 
-std::size_t kills() {
-    const char* asked = std::getenv("GYROLOG_KILLS");
-    return asked == nullptr ? 20 : static_cast<std::size_t>(std::atoi(asked));
-}
+std::size_t kills() { return static_cast<std::size_t>(asked("GYROLOG_KILLS", 20.0)); }
 
 struct Kill {
     std::chrono::milliseconds after{};

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/asked.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/watched_program.hpp"
 
@@ -17,8 +18,7 @@ namespace gyrolog {
 
 // Of device time: what GYROLOG_SOAK_HOURS says, or enough for a quarter of a minute.
 inline double soak_hours(double otherwise) {
-    const char* asked = std::getenv("GYROLOG_SOAK_HOURS");
-    return asked == nullptr ? otherwise : std::atof(asked);
+    return asked("GYROLOG_SOAK_HOURS", otherwise);
 }
 
 inline void expect_sound(const WatchedRun& run, const std::string& capture, const std::string& err_path,

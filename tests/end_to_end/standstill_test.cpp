@@ -41,15 +41,15 @@ TEST(Standstill, OfTwoSecondsAt8kHzLosesNothing) {
     expect_nothing_lost(capture_held("8000", "4s", milliseconds(2000)), 32'000);
 }
 
-#ifdef GYROLOG_LONG_STANDSTILLS
-TEST(Standstill, OfTwoSecondsAt1kHzLosesNothing) {
+// In the slow tier.
+TEST(LongStandstill, OfTwoSecondsAt1kHzLosesNothing) {
     const HeldCapture held = capture_held("1000", "4s", milliseconds(2000));
     EXPECT_EQ(held.capture.exit_code, 0) << held.capture.err;
     EXPECT_EQ(held.check["samples"]["good"], 4'000);
     EXPECT_EQ(held.check["samples"]["missing"], 0);
 }
 
-TEST(Standstill, OfTenSecondsCostsWhatTheBoardCounted) {
+TEST(LongStandstill, OfTenSecondsCostsWhatTheBoardCounted) {
     for (const char* rate : {"1000", "8000"}) {
         const HeldCapture held = capture_held(rate, "13s", milliseconds(10'000));
         EXPECT_EQ(held.capture.exit_code, 5) << held.capture.err;
@@ -61,7 +61,6 @@ TEST(Standstill, OfTenSecondsCostsWhatTheBoardCounted) {
         EXPECT_EQ(held.check["samples"]["good"].get<std::uint64_t>() + missing, 13 * rate_hz);
     }
 }
-#endif
 
 }  // namespace
 }  // namespace gyrolog

@@ -80,9 +80,22 @@ function(gyrolog_test name)
       set(arg_TIMEOUT 480)
     endif()
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
-    WORKING_DIRECTORY ${CMAKE_BINARY_DIR}
-    ENVIRONMENT "GYROLOG_SOURCE_DIR=${CMAKE_SOURCE_DIR};GYROLOG_BUILD_DIR=${CMAKE_BINARY_DIR};${arg_ENVIRONMENT}")
+  gyrolog_test_settings(${name} "${arg_LABELS}" ${arg_TIMEOUT} "${arg_ENVIRONMENT}")
+endfunction()
+
+function(gyrolog_test_settings name labels timeout_s environment)
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${timeout_s} WORKING_DIRECTORY ${CMAKE_BINARY_DIR}
+    ENVIRONMENT "GYROLOG_SOURCE_DIR=${CMAKE_SOURCE_DIR};GYROLOG_BUILD_DIR=${CMAKE_BINARY_DIR};${environment}")
+endfunction()
+
+# gyrolog_longer_test(NAME OF test TIMEOUT seconds ENVIRONMENT ... [ARGUMENTS ...]): the binary of another test once
+# more in the slow tier, with an environment that asks it for more.
+function(gyrolog_longer_test name)
+  cmake_parse_arguments(arg "" "OF;TIMEOUT" "ENVIRONMENT;ARGUMENTS" ${ARGN})
+  if(GYROLOG_TESTS)
+    add_test(NAME ${name} COMMAND ${arg_OF} ${arg_ARGUMENTS})
+    gyrolog_test_settings(${name} slow ${arg_TIMEOUT} "${arg_ENVIRONMENT}")
+  endif()
 endfunction()
 
 # gyrolog_left_out(NAME REASON [LABELS ...]): in the place of a test that cannot be built here, an entry that ctest skips

@@ -3,13 +3,15 @@
 
 #include "tests/analysis/allan/interval_coverage.hpp"
 
+#include "tests/support/asked.hpp"
+
 namespace gyrolog {
 namespace {
 
 constexpr Eigen::Index samples = 1024;
 // By default 2160, of which three points are three binomial standard deviations at 68.3 %.
-constexpr Eigen::Index records = GYROLOG_COVERAGE_RECORDS;
-constexpr double tolerance_points = records < 10000 ? 3.0 : 1.5;
+const auto records = static_cast<Eigen::Index>(asked("GYROLOG_COVERAGE_RECORDS", 2160.0));
+const double tolerance_points = records < 10000 ? 3.0 : 1.5;
 
 void expect_overlapping_coverage(const char* name, const test::NoiseRecords& noise) {
     test::expect_coverage(name, noise, DeviationKind::overlapping, tolerance_points);

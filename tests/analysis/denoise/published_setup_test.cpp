@@ -16,22 +16,16 @@
 #include "analysis/denoise/denoise.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
-
-// The hour at rest and every row of the table in the slow tier; what is claimed always.
-#ifdef GYROLOG_WHOLE_TABLE
-    #define GYROLOG_STILL_S 3600.0
-    #define GYROLOG_SWING_S 120.0
-#else
-    #define GYROLOG_STILL_S 120.0
-    #define GYROLOG_SWING_S 30.0
-#endif
+#include "tests/support/asked.hpp"
 
 namespace gyrolog {
 namespace {
 
 constexpr double rate_hz = 200.0;
-constexpr double still_s = GYROLOG_STILL_S;
-constexpr double swing_s = GYROLOG_SWING_S;
+// The hour at rest and every row of the table in the slow tier; what is claimed always.
+const bool whole_table = is_asked("GYROLOG_WHOLE_TABLE");
+const double still_s = whole_table ? 3600.0 : 120.0;
+const double swing_s = whole_table ? 120.0 : 30.0;
 constexpr std::size_t units = 3;
 constexpr double published_still_factor = 45.0;
 constexpr double published_below_array = 0.601;
@@ -112,14 +106,13 @@ const Row every_row[] = {
     {"wavelet of one unit", design_of(DenoiseMethod::wavelet, RateModel::free, 0.0), true},
     {"wavelet of the array", design_of(DenoiseMethod::wavelet, RateModel::free, 0.0)},
     {"joint, adaptive (default)", design_of(DenoiseMethod::joint, RateModel::adaptive, 50.0)},
-#ifdef GYROLOG_WHOLE_TABLE
     {"kalman, adaptive to 50 Hz", design_of(DenoiseMethod::kalman, RateModel::adaptive, 50.0)},
     {"kalman, walk 5 Hz", design_of(DenoiseMethod::kalman, RateModel::walk, 5.0)},
     {"joint, walk 5 Hz", design_of(DenoiseMethod::joint, RateModel::walk, 5.0)},
     {"kalman, trend 5 Hz", design_of(DenoiseMethod::kalman, RateModel::trend, 5.0)},
     {"joint, trend 5 Hz", design_of(DenoiseMethod::joint, RateModel::trend, 5.0)},
-#endif
 };
+const std::size_t row_count = whole_table ? std::size(every_row) : 4;
 enum RowIndex : std::size_t { mean_row, wavelet_one_row, wavelet_row, joint_row };
 
 AxisKnowledge of_first_unit(AxisKnowledge axis) {
@@ -133,7 +126,7 @@ AxisKnowledge of_first_unit(AxisKnowledge axis) {
 
 std::vector<DenoisedSignal> signals_of(const Recording& recording,
                                        const std::vector<AxisKnowledge>& knowledge, const TimeSpan& still) {
-    std::vector<DenoisedSignal> signals(std::size(every_row));
+    std::vector<DenoisedSignal> signals(row_count);
     parallel_for(signals.size(), 0, [&](std::size_t i) {
         DenoiseRequest request;
         request.still = still;
@@ -161,7 +154,7 @@ protected:
             unit_variance += unit.variance / static_cast<double>(units);
         }
         std::printf("at rest, %g s: one unit %.5f dps^2\n", still_s, dps2(unit_variance));
-        for (std::size_t i = 0; i < std::size(every_row); ++i) {
+        for (std::size_t i = 0; i < row_count; ++i) {
             std::printf("  %-32s %.6f dps^2, 1/%.1f, promised 1/%.1f, lag %.1f ms\n", every_row[i].name,
                         dps2(at_rest[i].still_variance), unit_variance / at_rest[i].still_variance,
                         1.0 / at_rest[i].calm.noise_ratio, 1e3 * at_rest[i].response.lag_s);
@@ -174,7 +167,7 @@ protected:
         std::vector<DenoisedSignal> signals = signals_of(recording, knowledge, {});
         std::printf("swinging, %g dps at %g Hz (seed %d)\n", amplitude_dps, frequency_hz,
                     static_cast<int>(seed));
-        for (std::size_t i = 0; i < std::size(every_row); ++i) {
+        for (std::size_t i = 0; i < row_count; ++i) {
             const MotionError& error = *signals[i].motion;
             std::printf("  %-32s error %.5f = motion %.5f + noise %.5f dps^2, lag %.1f ms, gain %.4f\n",
                         every_row[i].name, dps2(error.error_variance), dps2(error.motion_variance),

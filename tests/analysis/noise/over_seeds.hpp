@@ -3,17 +3,16 @@
 
 #include <concepts>
 #include <cstdint>
-#include <cstdlib>
 #include <vector>
 
 #include "analysis/parallel/parallel_for.hpp"
+#include "tests/support/asked.hpp"
 
 namespace gyrolog::test {
 
 // A few, unless GYROLOG_REALISATIONS asks for so many.
 inline std::size_t realisations(std::size_t few) {
-    const char* asked = std::getenv("GYROLOG_REALISATIONS");
-    return asked == nullptr ? few : static_cast<std::size_t>(std::strtoull(asked, nullptr, 10));
+    return static_cast<std::size_t>(asked("GYROLOG_REALISATIONS", static_cast<double>(few)));
 }
 
 // experiment(1), ..., experiment(count), in this order.

@@ -77,12 +77,9 @@ bool covers(const FittedCoefficient& fitted, double value) {
 }
 
 // A quick look always, at the lowest rate; GYROLOG_REALISATIONS asks for so many at every rate.
-std::size_t seeds() {
-    const char* asked = std::getenv("GYROLOG_REALISATIONS");
-    return asked == nullptr ? 20 : static_cast<std::size_t>(std::atoi(asked));
-}
+std::size_t seeds() { return test::realisations(20); }
 std::vector<double> rates_hz() {
-    if (std::getenv("GYROLOG_REALISATIONS") == nullptr) { return {10.0}; }
+    if (!is_asked("GYROLOG_REALISATIONS")) { return {10.0}; }
     return {10.0, 100.0, 1000.0};
 }
 
