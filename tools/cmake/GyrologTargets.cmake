@@ -9,6 +9,21 @@ set(CMAKE_C_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 
+# A compiler cache wherever there is one. Paths below the project's folder count from there, so that another clone on
+# the same machine finds what the first one compiled. Precompiled headers need the sloppiness: the times of the headers
+# in them do not count, their texts do.
+find_program(GYROLOG_CCACHE ccache)
+mark_as_advanced(GYROLOG_CCACHE)
+if(GYROLOG_CCACHE)
+  set(gyrolog_launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${GYROLOG_CCACHE})
+  foreach(language C CXX)
+    if(NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
+      set(CMAKE_${language}_COMPILER_LAUNCHER ${gyrolog_launcher})
+    endif()
+  endforeach()
+endif()
+
 find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
@@ -20,6 +35,8 @@ target_compile_options(gyrolog_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wformat=2
   $<$<BOOL:${GYROLOG_WERROR}>:-Werror> -ffp-contract=off
   $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast -Woverloaded-virtual -Wnon-virtual-dtor>)
+# For the compiler cache: the text behind the preprocessor names the precompiled header.
+target_compile_options(gyrolog_settings INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess>)
 target_include_directories(gyrolog_settings INTERFACE ${CMAKE_SOURCE_DIR})
 target_link_libraries(gyrolog_settings INTERFACE Threads::Threads)
 if(GYROLOG_SANITIZE)
