@@ -39,6 +39,7 @@ target_compile_options(gyrolog_settings INTERFACE
 target_compile_options(gyrolog_settings INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess>)
 target_include_directories(gyrolog_settings INTERFACE ${CMAKE_SOURCE_DIR})
 target_link_libraries(gyrolog_settings INTERFACE Threads::Threads)
+include(GyrologHardening)
 if(GYROLOG_SANITIZE)
   target_compile_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all)
