@@ -4,7 +4,7 @@
 #include <array>
 
 #include "host/app/command.hpp"
-#include "host/capture/capture_metadata.hpp"
+#include "host/base/program_name.hpp"
 
 namespace gyrolog {
 namespace {

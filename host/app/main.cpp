@@ -8,6 +8,8 @@
 
 #include "host/app/command_line.hpp"
 #include "host/app/live_keys.hpp"
+#include "host/app/program_revision.hpp"
+#include "host/base/program_name.hpp"
 
 namespace {
 
@@ -32,6 +34,7 @@ int main(int argc, char** argv) {
     }
     static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
     try {
+        gyrolog::set_program_revision(gyrolog::program_revision);
         const gyrolog::Console console{std::cout, std::cerr, isatty(STDERR_FILENO) == 1, &stop_signal};
         const gyrolog::ExitCode code =
             gyrolog::run_command_line(std::vector<std::string>(argv + 1, argv + argc), console);

@@ -5,10 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "host/base/file_output.hpp"
+#include "host/base/program_name.hpp"
 
 namespace gyrolog {
 
-Status write_json(Console& console, const std::string& path, const nlohmann::ordered_json& answer) {
+Status write_json(Console& console, const std::string& path, nlohmann::ordered_json answer) {
+    answer["reported_by"] = program_name();
     return write_text(console, path, answer.dump(2) + "\n");
 }
 

@@ -11,7 +11,8 @@
 namespace gyrolog {
 
 // `path` "-" is the console's `out`. A file is replaced whole or not at all.
-Status write_json(Console& console, const std::string& path, const nlohmann::ordered_json& answer);
+// JSON gains the key "reported_by", with program_name().
+Status write_json(Console& console, const std::string& path, nlohmann::ordered_json answer);
 Status write_text(Console& console, const std::string& path, const std::string& text);
 
 }  // namespace gyrolog

@@ -110,8 +110,6 @@ std::optional<Json> parse(std::string_view text, std::string_view schema) {
 
 }  // namespace
 
-std::string program_name() { return "gyrolog " GYROLOG_VERSION; }
-
 std::string utc_text(std::int64_t realtime_ns) {
     std::int64_t seconds = realtime_ns / 1'000'000'000;
     std::int64_t nanoseconds = realtime_ns % 1'000'000'000;

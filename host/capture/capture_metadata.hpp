@@ -26,7 +26,7 @@ struct CaptureSegment {
 };
 
 struct CaptureMetadata {
-    std::string program;  // "gyrolog 0.1.0"
+    std::string program;  // program_name() of the one that wrote it
     SourceIdentity source;
     HostTime started;  // both clocks at one moment: the file's time stamps are real time by this pair
     std::optional<CaptureSegment> segment{};  // absent in files of older versions
@@ -47,8 +47,6 @@ struct CaptureMark {
     std::uint64_t stream_bytes = 0;  // bulk IN data in the file before it
 };
 
-// "gyrolog" and its version.
-std::string program_name();
 // "2026-11-21T05:04:55.123456789Z"
 std::string utc_text(std::int64_t realtime_ns);
 

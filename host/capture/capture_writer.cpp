@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/base/program_name.hpp"
 #include "host/capture/head_records.hpp"
 #include "host/capture/pcapng.hpp"
 

@@ -1,5 +1,6 @@
 #include "host/capture/recover.hpp"
 
+#include "host/base/program_name.hpp"
 #include "host/capture/capture_metadata.hpp"
 #include "host/capture/pcapng.hpp"
 #include "host/capture/usbmon_record.hpp"

@@ -1,5 +1,6 @@
 #include "host/formats/noise_json.hpp"
 
+#include "host/base/program_name.hpp"
 #include "host/formats/noise_unit.hpp"
 
 namespace gyrolog {
@@ -83,8 +84,9 @@ Json slopes_json(const SlopeReading& slopes, const RateUnit& unit) {
     return json;
 }
 
-std::string json_text(const Json& json) {
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string json_text(Json report) {
+    report["reported_by"] = program_name();
+    return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace gyrolog

@@ -14,7 +14,7 @@ void put_noise_fit(nlohmann::ordered_json& json, const NoiseFit& fit, const Rate
 
 nlohmann::ordered_json slopes_json(const SlopeReading& slopes, const RateUnit& unit);
 
-// Pretty-printed, ending in a newline.
-std::string json_text(const nlohmann::ordered_json& json);
+// A report, pretty-printed, ending in a newline. It gains the key "reported_by", with program_name().
+std::string json_text(nlohmann::ordered_json report);
 
 }  // namespace gyrolog
