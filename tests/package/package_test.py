@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Makes the Debian package of a build and looks at it: what lintian says, what it asks for, what is in it.
+
+    package_test.py CPACK CONFIG PROGRAM VERSION
+"""
+
+import gzip
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+FILES = {
+    "usr/bin/gyrolog": "-rwxr-xr-x",
+    "usr/lib/udev/rules.d/60-gyrolog.rules": "-rw-r--r--",
+    "usr/share/gyrolog/gyrolog.lua": "-rw-r--r--",
+    "usr/share/man/man1/gyrolog.1.gz": "-rw-r--r--",
+    "usr/share/doc/gyrolog/README.md": "-rw-r--r--",
+    "usr/share/doc/gyrolog/analysis/METHODS.md": "-rw-r--r--",
+    "usr/share/doc/gyrolog/firmware_protocol/SPEC.md": "-rw-r--r--",
+    "usr/share/doc/gyrolog/host/capture/FORMAT.md": "-rw-r--r--",
+    "usr/share/doc/gyrolog/changelog.Debian.gz": "-rw-r--r--",
+    "usr/share/doc/gyrolog/copyright": "-rw-r--r--",
+}
+
+
+def output_of(*command):
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def main():
+    cpack, config, program, version = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        output_of(cpack, "--config", config, "-B", folder)
+        package, = pathlib.Path(folder).glob("*.deb")
+        print(output_of("lintian", "--allow-root", "--fail-on", "error,warning", str(package)), end="")
+
+        def field(name):
+            return output_of("dpkg-deb", "--field", str(package), name).strip()
+
+        architecture = output_of("dpkg", "--print-architecture").strip()
+        assert package.name == f"gyrolog_{field('Version')}_{architecture}.deb", package.name
+        assert field("Package") == "gyrolog" and field("Architecture") == architecture
+        assert field("Version").startswith(f"{version}-"), field("Version")
+        assert field("Section") == "science" and field("Priority") == "optional"
+        assert re.fullmatch(r".+ <\S+@\S+>", field("Maintainer")), field("Maintainer")
+        assert len(field("Description").splitlines()) > 3, field("Description")
+        needed = {re.split(r"[ (]", one)[0] for one in field("Depends").split(", ")}
+        for name in ("fonts-dejavu-core", "libc6", "libstdc++6", "libusb-1.0-0"):
+            assert name in needed, f"{name} is not in {sorted(needed)}"
+        assert not any(name.endswith("-dev") for name in needed), sorted(needed)
+
+        listed = (line.split() for line in output_of("dpkg-deb", "--contents", str(package)).splitlines())
+        found = {entry[5].removeprefix("./"): (entry[0], entry[1]) for entry in listed if not entry[0].startswith("d")}
+        assert found == {path: (mode, "root/root") for path, mode in FILES.items()}, found
+
+        tree = pathlib.Path(folder, "tree")
+        output_of("dpkg-deb", "--extract", str(package), str(tree))
+        installed = tree / "usr/bin/gyrolog"
+        assert output_of(str(installed), "--version") == output_of(program, "--version")
+        assert ".symtab" not in output_of("readelf", "--wide", "--sections", str(installed)), "not stripped"
+
+        commands = re.search(r"Subcommands:\n(.*)", output_of(program, "--help"), re.DOTALL).group(1)
+        names = re.findall(r"^  ([a-z]+) ", commands, re.MULTILINE)
+        assert "capture" in names, commands
+        manual = gzip.decompress((tree / "usr/share/man/man1/gyrolog.1.gz").read_bytes()).decode()
+        described = re.findall(r"^\.TP\n\.B ([a-z]+)$", manual, re.MULTILINE)
+        assert described == names, f"the manual page has {described}, the program {names}"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,56 @@
+# What `cmake --install` puts where, and the Debian package of it (tools/package).
+include(GNUInstallDirs)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME gyrolog)
+set(CPACK_PACKAGE_CONTACT "The gyrolog authors <maintainers@gyrolog.invalid>" CACHE STRING
+  "The package's maintainer, with the address where bugs are told")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "capture, analyse and simulate gyroscopes on an inertial test bench")
+set(CPACK_PACKAGE_DESCRIPTION
+"gyrolog captures the stream of a microcontroller board with a gyroscope over
+USB without losing or inventing a sample, and works out the Allan deviation,
+the noise coefficients and the static bias with their uncertainties, with a
+figure fit to publish. It simulates sensors from such a noise model, compares
+simulation and recording, and diagnoses what the model lacks. A virtual board
+stands in where there is no hardware.")
+set(CPACK_PACKAGE_HOMEPAGE_URL "" CACHE STRING "The project's page on the web")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+  WORLD_READ WORLD_EXECUTE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION})
+# Not Debian's own package, whose revisions begin with 1.
+set(CPACK_DEBIAN_PACKAGE_RELEASE 0gyrolog1)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Figures are lettered with this font; no library asks for it.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS fonts-dejavu-core)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
+  ${CMAKE_SOURCE_DIR}/tools/debian/postinst ${CMAKE_SOURCE_DIR}/tools/debian/postrm)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+# gyrolog_gzip(FILE): FILE.gz, the same bytes at any time.
+function(gyrolog_gzip file)
+  execute_process(COMMAND gzip -9n INPUT_FILE ${file} OUTPUT_FILE ${file}.gz COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+set(made ${CMAKE_BINARY_DIR}/package)
+configure_file(tools/debian/gyrolog.1.in ${made}/gyrolog.1 @ONLY)
+gyrolog_gzip(${made}/gyrolog.1)
+configure_file(tools/debian/changelog.in ${made}/changelog.Debian @ONLY)
+gyrolog_gzip(${made}/changelog.Debian)
+
+install(TARGETS gyrolog)
+# Beside bin for any prefix: udev looks into /usr/lib and /usr/local/lib, never into an architecture's folder.
+install(FILES tools/60-gyrolog.rules DESTINATION lib/udev/rules.d)
+install(FILES tools/gyrolog.lua DESTINATION ${CMAKE_INSTALL_DATADIR}/gyrolog)
+install(FILES ${made}/gyrolog.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+set(documents ${CMAKE_INSTALL_DATADIR}/doc/gyrolog)
+install(FILES README.md tools/debian/copyright ${made}/changelog.Debian.gz DESTINATION ${documents})
+# In their folders, as README.md refers to them.
+install(FILES analysis/METHODS.md DESTINATION ${documents}/analysis)
+install(FILES firmware_protocol/SPEC.md DESTINATION ${documents}/firmware_protocol)
+install(FILES host/capture/FORMAT.md DESTINATION ${documents}/host/capture)
+
+include(CPack)
