@@ -2,35 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "analysis/noise/noise_search.hpp"
 #include "analysis/numerics/distributions.hpp"
+#include "analysis/numerics/matrix_products.hpp"
+#include "analysis/numerics/pseudo_inverse.hpp"
 
 namespace gyrolog {
 namespace {
 
-using Index = Eigen::Index;
-
 double square(double x) { return x * x; }
 
-Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information) {
-    const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd unit = scale.asDiagonal() * information * scale.asDiagonal();
-    const Eigen::MatrixXd inverse = unit.completeOrthogonalDecomposition().pseudoInverse();
-    return scale.asDiagonal() * inverse * scale.asDiagonal();
+Matrix inverse_information(const Matrix& information) {
+    std::vector<double> scale;
+    for (std::size_t i = 0; i < information.rows(); ++i) {
+        scale.push_back(1.0 / std::sqrt(std::max(information(i, i), 1e-300)));
+    }
+    return scaled_on_both_sides(pseudo_inverse(scaled_on_both_sides(information, scale)), scale);
 }
 
 // Standard deviations of the squares that no estimator without bias can beat, from the spectra of the model.
-Eigen::VectorXd cramer_rao(const Fitted& fitted, double rate_hz, double length_s) {
+std::vector<double> cramer_rao(const Fitted& fitted, double rate_hz, double length_s) {
     const SpectrumModel& model = fitted.model;
-    const Index count = model.components() - static_cast<Index>(model.lines.size());
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+    const std::size_t count = model.components() - model.lines.size();
+    const std::span<const double> squares = std::span(fitted.maximum.squares).first(count);
+    Matrix information(count, count);
     constexpr double step = 1.01;
     const int steps = static_cast<int>(std::log(rate_hz * length_s) / std::log(step));
     for (int i = 0; i < steps; ++i) {
         const double f_hz = 0.5 / length_s * std::pow(step, i);
         const double sampled_hz = rate_hz / pi * std::sin(pi * f_hz / rate_hz);
-        Eigen::VectorXd spectra(count);
+        std::vector<double> spectra(count);
         spectra[0] = 1.0;
         spectra[1] = 1.0 / (2.0 * pi * sampled_hz);
         spectra[2] = 1.0 / square(2.0 * pi * sampled_hz);
@@ -38,15 +41,19 @@ Eigen::VectorXd cramer_rao(const Fitted& fitted, double rate_hz, double length_s
         for (std::size_t k = 0; k < model.correlations_s.size(); ++k) {
             spectra[model.gauss_markov_at(k)] = GaussMarkov{1.0, model.correlations_s[k]}.psd(sampled_hz);
         }
-        const Eigen::VectorXd relative = spectra / spectra.dot(fitted.maximum.squares.head(count));
-        information += length_s * f_hz * (step - 1.0) * relative * relative.transpose();
+        const double total = dot(spectra, squares);
+        for (double& spectrum : spectra) { spectrum /= total; }
+        add_square(information, length_s * f_hz * (step - 1.0), spectra);
     }
-    return inverse_information(information).diagonal().cwiseMax(0.0).cwiseSqrt();
+    const Matrix covariance = inverse_information(information);
+    std::vector<double> sd;
+    for (std::size_t j = 0; j < count; ++j) { sd.push_back(std::sqrt(std::max(covariance(j, j), 0.0))); }
+    return sd;
 }
 
 // One squared coefficient as it is reported. `known`: a part of the square that is not the coefficient's.
-FittedCoefficient judged(const NoiseLikelihood& likelihood, const LikelihoodMaximum& maximum, Index component,
-                         double sd, double confidence, double known) {
+FittedCoefficient judged(const NoiseLikelihood& likelihood, const LikelihoodMaximum& maximum,
+                         std::size_t component, double sd, double confidence, double known) {
     constexpr double well_known_sd = 15.0;  // so many standard deviations from 0 the interval is symmetric
     const double sigmas = normal_quantile(0.5 + confidence / 2.0);
     const double value = maximum.squares[component];
@@ -88,7 +95,7 @@ FittedCoefficient judged_ramp(const RampFit& fit, double confidence) {
 
 FittedGaussMarkov judged_gauss_markov(const ContrastPyramid& pyramid, const Fitted& fitted, std::size_t i,
                                       double square_sd) {
-    const Index at = fitted.model.gauss_markov_at(i);
+    const std::size_t at = fitted.model.gauss_markov_at(i);
     const double sigma = std::sqrt(fitted.maximum.squares[at]);
     const double correlation_s = fitted.model.correlations_s[i];
     // Curvature of the profile over the logarithm of the correlation time.
@@ -118,7 +125,7 @@ public:
           covariance_(inverse_information(likelihood_.expected_information(fitted.maximum.squares))) {}
 
     void fill(NoiseFit& fit, const RampFit& ramp) {
-        const Eigen::VectorXd bounds = cramer_rao(fitted_, pyramid_.rate_hz, pyramid_.length_s());
+        const std::vector<double> bounds = cramer_rao(fitted_, pyramid_.rate_hz, pyramid_.length_s());
         const RateQuantisation converter{options_.step, pyramid_.rate_hz};
         fit.best.converter = fit.sparse.converter = converter;
         add(fit, NoiseTerm::N, 0, bounds, converter.density());
@@ -134,7 +141,7 @@ public:
         const LikelihoodMaximum needed = with_needed_terms(pyramid_, fitted_);
         fit.sparse.coefficients = coefficients_of(needed.squares, converter, fit);
         for (std::size_t i = 0; i < fitted_.model.correlations_s.size(); ++i) {
-            const Index at = fitted_.model.gauss_markov_at(i);
+            const std::size_t at = fitted_.model.gauss_markov_at(i);
             fit.gauss_markov.push_back(judged_gauss_markov(pyramid_, fitted_, i, sd_of(at)));
             fit.best.gauss_markov.push_back(fit.gauss_markov.back().value);
             fit.sparse.gauss_markov.push_back(
@@ -149,7 +156,7 @@ public:
     }
 
 private:
-    NoiseCoefficients coefficients_of(const Eigen::VectorXd& squares, const RateQuantisation& converter,
+    NoiseCoefficients coefficients_of(const std::vector<double>& squares, const RateQuantisation& converter,
                                       const NoiseFit& fit) const {
         NoiseCoefficients coefficients;
         coefficients.N_rad_per_sqrt_s = std::sqrt(std::max(0.0, squares[0] - converter.density()));
@@ -166,11 +173,12 @@ private:
         return fit.terms[static_cast<std::size_t>(which)];
     }
 
-    double sd_of(Index component) const {
+    double sd_of(std::size_t component) const {
         return std::sqrt(std::max(covariance_(component, component), 0.0));
     }
 
-    void add(NoiseFit& fit, NoiseTerm which, Index component, const Eigen::VectorXd& bounds, double known) {
+    void add(NoiseFit& fit, NoiseTerm which, std::size_t component, const std::vector<double>& bounds,
+             double known) {
         FittedCoefficient& coefficient = term(fit, which) =
             judged(likelihood_, fitted_.maximum, component, sd_of(component), options_.confidence, known);
         if (coefficient.value > 0.0) { coefficient.bound = bounds[component] / (2.0 * coefficient.value); }
@@ -181,8 +189,8 @@ private:
         const Fitted with = with_angle_noise_added(pyramid_, fitted_);
         if (!std::isfinite(with.value())) { return {}; }
         const NoiseLikelihood likelihood = likelihood_of(pyramid_, with.model);
-        const Eigen::VectorXd& squares = with.maximum.squares;
-        const Index at = with.model.angle_noise_at();
+        const std::vector<double>& squares = with.maximum.squares;
+        const std::size_t at = with.model.angle_noise_at();
         const double sd =
             std::sqrt(std::max(inverse_information(likelihood.expected_information(squares))(at, at), 0.0));
         FittedCoefficient coefficient;
@@ -195,8 +203,8 @@ private:
     // Of the sparse model's Allan variance at an averaging time of the whole record (JCGM 100:2008, G.4).
     double mean_dof(const LikelihoodMaximum& needed) const {
         const double length_s = pyramid_.length_s();
-        std::vector<Index> there;
-        Eigen::VectorXd shares = Eigen::VectorXd::Zero(fitted_.model.components());
+        std::vector<std::size_t> there;
+        std::vector<double> shares(fitted_.model.components(), 0.0);
         shares[0] = 1.0 / length_s;
         shares[1] = NoiseCoefficients{0.0, 0.0, 1.0, 0.0, 0.0}.allan_variance(length_s);
         shares[2] = length_s / 3.0;
@@ -204,13 +212,17 @@ private:
             shares[fitted_.model.gauss_markov_at(i)] =
                 GaussMarkov{1.0, fitted_.model.correlations_s[i]}.allan_variance(length_s);
         }
-        for (Index j = 0; j < shares.size(); ++j) {
+        for (std::size_t j = 0; j < shares.size(); ++j) {
             if (needed.squares[j] > 0.0) { there.push_back(j); }
         }
-        const Eigen::MatrixXd information = likelihood_.expected_information(needed.squares);
-        const Eigen::MatrixXd covariance = inverse_information(information(there, there));
-        const double variance = shares.dot(needed.squares);
-        const double scatter = shares(there).dot(covariance * shares(there));
+        std::vector<double> shares_there;
+        for (const std::size_t j : there) { shares_there.push_back(shares[j]); }
+        const Matrix information = likelihood_.expected_information(needed.squares);
+        const Matrix covariance = inverse_information(information.part(there, there));
+        const double variance = dot(shares, needed.squares);
+        const std::vector<double> pulled = product(covariance, shares_there);
+        const double scatter =
+            std::inner_product(shares_there.begin(), shares_there.end(), pulled.begin(), 0.0);
         return scatter > 0.0 ? 2.0 * variance * variance / scatter : 0.0;
     }
 
@@ -242,8 +254,8 @@ private:
     const Fitted& fitted_;
     const LikelihoodFitOptions& options_;
     NoiseLikelihood likelihood_;
-    Eigen::MatrixXd covariance_;
-    std::vector<std::pair<NoiseTerm, Index>> components_;
+    Matrix covariance_;
+    std::vector<std::pair<NoiseTerm, std::size_t>> components_;
 };
 
 bool varies(const ContrastPyramid& pyramid) {

@@ -1,36 +1,46 @@
 #include "analysis/noise/likelihood_maximum.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "analysis/numerics/cholesky.hpp"
+#include "analysis/numerics/matrix_products.hpp"
 
 namespace gyrolog {
 namespace {
 
 // The Newton step of the components that are free to move, in units of their own scale.
-Eigen::VectorXd scoring_step(const NoiseLikelihood::Evaluation& at, const std::vector<Eigen::Index>& moving) {
-    const auto count = static_cast<Eigen::Index>(moving.size());
-    Eigen::MatrixXd information = at.information(moving, moving);
-    const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    information = scale.asDiagonal() * information * scale.asDiagonal();
-    information += 1e-9 * Eigen::MatrixXd::Identity(count, count);
-    const Eigen::VectorXd gradient = at.gradient(moving).cwiseProduct(scale);
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(at.gradient.size());
-    step(moving) = scale.cwiseProduct(information.ldlt().solve(gradient));
+std::vector<double> scoring_step(const NoiseLikelihood::Evaluation& at,
+                                 const std::vector<std::size_t>& moving) {
+    Matrix information = at.information.part(moving, moving);
+    std::vector<double> scale;
+    std::vector<double> gradient;
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+        scale.push_back(1.0 / std::sqrt(std::max(information(i, i), 1e-300)));
+        gradient.push_back(at.gradient[moving[i]] * scale.back());
+    }
+    information = scaled_on_both_sides(std::move(information), scale);
+    for (std::size_t i = 0; i < moving.size(); ++i) { information(i, i) += 1e-9; }
+    const std::vector<double> solved = solve_symmetric(information, gradient);
+    std::vector<double> step(at.gradient.size(), 0.0);
+    for (std::size_t i = 0; i < moving.size(); ++i) { step[moving[i]] = scale[i] * solved[i]; }
     return step;
 }
 
 LikelihoodMaximum with_held(const NoiseLikelihood& likelihood, const LikelihoodMaximum& from,
-                            Eigen::Index component, double square) {
-    Eigen::VectorXd start = from.squares;
+                            std::size_t component, double square) {
+    std::vector<double> start = from.squares;
     start[component] = square;
-    return maximise(likelihood, start, {component});
+    return maximise(likelihood, start, std::array{component});
 }
 
 // The distance from the maximum, on one side, at which the root of twice the drop is `sigmas`. The root grows
 // nearly in proportion to the distance, so a few corrections in proportion find it; a bracket guards them.
 double crossing(const NoiseLikelihood& likelihood, LikelihoodMaximum near, double top_value,
-                Eigen::Index component, double centre, double side, double sigmas, double guess,
+                std::size_t component, double centre, double side, double sigmas, double guess,
                 double farthest) {
     double inside = 0.0;
     double outside = farthest;
@@ -53,24 +63,28 @@ double crossing(const NoiseLikelihood& likelihood, LikelihoodMaximum near, doubl
 
 }  // namespace
 
-LikelihoodMaximum maximise(const NoiseLikelihood& likelihood, const Eigen::VectorXd& start,
-                           const std::vector<Eigen::Index>& held) {
+LikelihoodMaximum maximise(const NoiseLikelihood& likelihood, std::span<const double> start,
+                           std::span<const std::size_t> held) {
     constexpr int most_steps = 40;
     constexpr double settled = 1e-7;  // gain that a further step promises
-    LikelihoodMaximum best{start, likelihood.value(start)};
+    LikelihoodMaximum best{{start.begin(), start.end()}, likelihood.value(start)};
     if (!std::isfinite(best.value)) { return best; }
     for (int pass = 0; pass < most_steps; ++pass) {
         const NoiseLikelihood::Evaluation at = likelihood.evaluate(best.squares);
-        std::vector<Eigen::Index> moving;
-        for (Eigen::Index j = 0; j < start.size(); ++j) {
+        std::vector<std::size_t> moving;
+        for (std::size_t j = 0; j < start.size(); ++j) {
             if (std::ranges::find(held, j) != held.end()) { continue; }
             if (best.squares[j] > 0.0 || at.gradient[j] > 0.0) { moving.push_back(j); }
         }
         if (moving.empty()) { break; }
-        const Eigen::VectorXd step = scoring_step(at, moving);
+        const std::vector<double> step = scoring_step(at, moving);
         LikelihoodMaximum next;
         for (int halving = 0; halving < 30; ++halving) {
-            next.squares = (best.squares + std::exp2(-halving) * step).cwiseMax(0.0);
+            const double part = std::exp2(-halving);
+            next.squares = best.squares;
+            for (std::size_t j = 0; j < step.size(); ++j) {
+                next.squares[j] = std::max(best.squares[j] + part * step[j], 0.0);
+            }
             next.value = likelihood.value(next.squares);
             if (next.value >= best.value) { break; }
         }
@@ -83,7 +97,7 @@ LikelihoodMaximum maximise(const NoiseLikelihood& likelihood, const Eigen::Vecto
 }
 
 SquareInterval profile_interval(const NoiseLikelihood& likelihood, const LikelihoodMaximum& maximum,
-                                Eigen::Index component, double sigmas, double sd) {
+                                std::size_t component, double sigmas, double sd) {
     const double centre = maximum.squares[component];
     const double guess = std::max(sigmas * sd, 1e-3 * centre);
     const auto at = [&](double side, double farthest) {
@@ -96,7 +110,7 @@ SquareInterval profile_interval(const NoiseLikelihood& likelihood, const Likelih
 }
 
 double likelihood_ratio(const NoiseLikelihood& likelihood, const LikelihoodMaximum& maximum,
-                        Eigen::Index component) {
+                        std::size_t component) {
     if (maximum.squares[component] == 0.0) { return 0.0; }
     const double without = with_held(likelihood, maximum, component, 0.0).value;
     return std::isfinite(without) ? std::max(0.0, 2.0 * (maximum.value - without))

@@ -9,11 +9,15 @@
 // in which everything is linear in theta, so that gradient and information are closed forms.
 #pragma once
 
-#include <Eigen/Dense>
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "analysis/noise/average_covariance.hpp"
 #include "analysis/noise/contrast_pyramid.hpp"
+#include "analysis/numerics/matrix.hpp"
+#include "analysis/numerics/orthogonal_complement.hpp"
 
 namespace gyrolog {
 
@@ -36,7 +40,7 @@ public:
 
     void add(const AverageCovariance& noise);
     void remove_last();
-    Eigen::Index components() const { return static_cast<Eigen::Index>(matrices_.size()); }
+    std::size_t components() const { return matrices_.size(); }
 
     // Contrasts above this frequency do not count.
     void limit_frequency(double f_hz);
@@ -47,17 +51,17 @@ public:
 
     struct Evaluation {
         double value = 0.0;  // -inf where no such noise can be
-        Eigen::VectorXd gradient;
-        Eigen::MatrixXd information;  // top: average of observed and expected
+        std::vector<double> gradient;
+        Matrix information;  // top: average of observed and expected
     };
-    double value(const Eigen::VectorXd& squares) const;
-    Evaluation evaluate(const Eigen::VectorXd& squares) const;
-    Eigen::MatrixXd expected_information(const Eigen::VectorXd& squares) const;
+    double value(std::span<const double> squares) const;
+    Evaluation evaluate(std::span<const double> squares) const;
+    Matrix expected_information(std::span<const double> squares) const;
 
     // Misfit of the levels' contrasts that count, by rising frequency, and of the top's whitened averages in
     // bands.
-    std::vector<ContrastMisfit> misfits(const Eigen::VectorXd& squares) const;
-    RampEstimate ramp(const Eigen::VectorXd& squares) const;  // needs free_ramp
+    std::vector<ContrastMisfit> misfits(std::span<const double> squares) const;
+    RampEstimate ramp(std::span<const double> squares) const;  // needs free_ramp
 
 private:
     struct Contrast {
@@ -68,19 +72,21 @@ private:
         bool counts = true;
     };
     double weight_of(const Contrast& contrast) const;
-    Eigen::VectorXd expected(const Eigen::VectorXd& squares) const;
-    Eigen::MatrixXd covariance(const Eigen::VectorXd& squares) const;
-    Eigen::VectorXd level_expectation(const AverageCovariance& noise) const;
-    Eigen::MatrixXd top_covariance(const AverageCovariance& noise) const;
+    std::vector<double> expected(std::span<const double> squares) const;
+    Matrix covariance(std::span<const double> squares) const;
+    // Of each component, of one contrast.
+    std::vector<double> relative_expectations(std::size_t contrast, double square) const;
+    std::vector<double> level_expectation(const AverageCovariance& noise) const;
+    Matrix top_covariance(const AverageCovariance& noise) const;
 
     const ContrastPyramid& pyramid_;
     double relative_error_ = 0.0;
     std::vector<Contrast> contrasts_;
-    std::vector<Eigen::VectorXd> expectations_;  // of each component, by contrast
-    Eigen::VectorXd top_;                        // projected averages
-    Eigen::VectorXd ramp_;                       // projected ramp of slope 1, with free_ramp
-    Eigen::HouseholderQR<Eigen::MatrixXd> projection_;
-    std::vector<Eigen::MatrixXd> matrices_;  // projected covariance of each component
+    std::vector<std::vector<double>> expectations_;  // of each component, by contrast
+    std::vector<double> top_;                        // projected averages
+    std::vector<double> ramp_;                       // projected ramp of slope 1, with free_ramp
+    std::optional<OrthogonalComplement> projection_;
+    std::vector<Matrix> matrices_;  // projected covariance of each component
 };
 
 }  // namespace gyrolog

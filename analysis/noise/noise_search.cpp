@@ -8,7 +8,7 @@
 namespace gyrolog {
 namespace {
 
-using Index = Eigen::Index;
+using Squares = std::vector<double>;
 
 constexpr double price_of_a_term = 4.0;  // in the sparse model
 // A Gauss-Markov term has two parameters, and its correlation time was searched for.
@@ -21,8 +21,7 @@ constexpr double clear_error = 0.05;  // a departure beyond which the model is a
 double square(double x) { return x * x; }
 
 // Squares to begin with, from the curve's fit; white noise from the fastest contrasts, so that it is never 0.
-Eigen::VectorXd first_guess(const ContrastPyramid& pyramid, const SpectrumModel& model,
-                            const NoiseFit& start) {
+Squares first_guess(const ContrastPyramid& pyramid, const SpectrumModel& model, const NoiseFit& start) {
     const NoiseCoefficients& curve = start.best.coefficients;
     double white = 0.0;
     if (!pyramid.levels.empty()) {
@@ -31,7 +30,7 @@ Eigen::VectorXd first_guess(const ContrastPyramid& pyramid, const SpectrumModel&
         for (const TopAverage& sample : pyramid.top) { white += square(sample.value) / pyramid.rate_hz; }
         white /= static_cast<double>(pyramid.top.size());
     }
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(model.components());
+    Squares squares(model.components(), 0.0);
     squares[0] = std::max(square(curve.N_rad_per_sqrt_s), 0.01 * white);
     squares[1] = square(curve.B_rad_per_s);
     squares[2] = square(curve.K_rad_per_s_sqrt_s);
@@ -70,7 +69,7 @@ std::optional<double> departure(const std::vector<ContrastMisfit>& misfits, doub
 }
 
 // Fits a model, and again with the departure that the first fit shows, until it stands still.
-Fitted fit(const ContrastPyramid& pyramid, SpectrumModel model, Eigen::VectorXd start) {
+Fitted fit(const ContrastPyramid& pyramid, SpectrumModel model, Squares start) {
     Fitted fitted{std::move(model), {}};
     for (int pass = 0; pass < 6; ++pass) {
         const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
@@ -105,15 +104,14 @@ Fitted without_upper_end(const ContrastPyramid& pyramid, const Fitted& whole) {
     return best;
 }
 
-Eigen::VectorXd with_component(const Eigen::VectorXd& squares, Index at, double value) {
-    Eigen::VectorXd more(squares.size() + 1);
-    more << squares.head(at), value, squares.tail(squares.size() - at);
-    return more;
+Squares with_component(Squares squares, std::size_t at, double value) {
+    squares.insert(squares.begin() + static_cast<std::ptrdiff_t>(at), value);
+    return squares;
 }
 
 Fitted with_gauss_markov(const ContrastPyramid& pyramid, const Fitted& base, double correlation_s) {
     Fitted next = base;
-    const Index at = base.model.gauss_markov_at(base.model.correlations_s.size());
+    const std::size_t at = base.model.gauss_markov_at(base.model.correlations_s.size());
     next.model.correlations_s.push_back(correlation_s);
     const NoiseLikelihood likelihood = likelihood_of(pyramid, next.model);
     const double rate = 1.0 / correlation_s;
@@ -171,12 +169,12 @@ Fitted amended(const ContrastPyramid& pyramid, Fitted fitted) {
 Fitted without_needless_angle_noise(const ContrastPyramid& pyramid, Fitted fitted) {
     if (!fitted.model.angle_noise) { return fitted; }
     const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
-    const Index at = fitted.model.angle_noise_at();
+    const std::size_t at = fitted.model.angle_noise_at();
     if (likelihood_ratio(likelihood, fitted.maximum, at) > optional_ratio) { return fitted; }
     SpectrumModel model = fitted.model;
     model.angle_noise = false;
-    Eigen::VectorXd squares(fitted.maximum.squares.size() - 1);
-    squares << fitted.maximum.squares.head(at), fitted.maximum.squares.tail(squares.size() - at);
+    Squares squares = fitted.maximum.squares;
+    squares.erase(squares.begin() + static_cast<std::ptrdiff_t>(at));
     return fit(pyramid, model, squares);
 }
 
@@ -184,7 +182,7 @@ Fitted with_angle_noise(const ContrastPyramid& pyramid, const Fitted& base) {
     const Fitted more = with_angle_noise_added(pyramid, base);
     if (!std::isfinite(more.value())) { return base; }
     const NoiseLikelihood likelihood = likelihood_of(pyramid, more.model);
-    const Index at = more.model.angle_noise_at();
+    const std::size_t at = more.model.angle_noise_at();
     return likelihood_ratio(likelihood, more.maximum, at) > optional_ratio ? more : base;
 }
 
@@ -233,10 +231,11 @@ LikelihoodMaximum with_needed_terms(const ContrastPyramid& pyramid, const Fitted
     const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
     LikelihoodMaximum best;
     double most = -std::numeric_limits<double>::infinity();
-    for (const std::vector<Index>& left_out :
-         {std::vector<Index>{1, 2}, std::vector<Index>{2}, std::vector<Index>{1}, std::vector<Index>{}}) {
-        Eigen::VectorXd start = fitted.maximum.squares;
-        for (const Index component : left_out) { start[component] = 0.0; }
+    for (const std::vector<std::size_t>& left_out :
+         {std::vector<std::size_t>{1, 2}, std::vector<std::size_t>{2}, std::vector<std::size_t>{1},
+          std::vector<std::size_t>{}}) {
+        Squares start = fitted.maximum.squares;
+        for (const std::size_t component : left_out) { start[component] = 0.0; }
         LikelihoodMaximum tried = maximise(likelihood, start, left_out);
         const double kept = 2.0 * tried.value + price_of_a_term * static_cast<double>(left_out.size());
         if (kept > most) {

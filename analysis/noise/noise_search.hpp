@@ -2,6 +2,7 @@
 // for it (likelihood_fit.hpp says by what rules).
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <vector>
@@ -25,13 +26,9 @@ struct SpectrumModel {
     double upper_hz = std::numeric_limits<double>::infinity();
     double error = 0.0;
 
-    Eigen::Index angle_noise_at() const { return 3; }
-    Eigen::Index gauss_markov_at(std::size_t i) const {
-        return 3 + (angle_noise ? 1 : 0) + static_cast<Eigen::Index>(i);
-    }
-    Eigen::Index components() const {
-        return gauss_markov_at(correlations_s.size()) + static_cast<Eigen::Index>(lines.size());
-    }
+    std::size_t angle_noise_at() const { return 3; }
+    std::size_t gauss_markov_at(std::size_t i) const { return 3U + (angle_noise ? 1U : 0U) + i; }
+    std::size_t components() const { return gauss_markov_at(correlations_s.size()) + lines.size(); }
 };
 
 NoiseLikelihood likelihood_of(const ContrastPyramid& pyramid, const SpectrumModel& model);
