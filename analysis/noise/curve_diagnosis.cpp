@@ -5,18 +5,18 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <unsupported/Eigen/NonLinearOptimization>
-#include <unsupported/Eigen/NumericalDiff>
+#include <span>
 #include <utility>
 
 #include "analysis/noise/curve_scatter.hpp"
+#include "analysis/numerics/least_squares.hpp"
+#include "analysis/numerics/matrix_products.hpp"
+#include "analysis/numerics/pseudo_inverse.hpp"
 
 namespace gyrolog {
 namespace {
 
 using Kind = CurveTerm::Kind;
-using Eigen::Index;
-using Eigen::VectorXd;
 
 constexpr double db_per_neper = 10.0 / std::numbers::ln10;  // of a variance
 constexpr double margin_to_enter = 10.0;
@@ -48,25 +48,24 @@ struct Target {
         }
     }
 
-    VectorXd residuals_db(const std::vector<CurveTerm>& terms) const {
-        VectorXd residuals(static_cast<Index>(tau_s.size()));
+    std::vector<double> residuals_db(const std::vector<CurveTerm>& terms) const {
+        std::vector<double> residuals;
+        residuals.reserve(tau_s.size());
         for (std::size_t i = 0; i < tau_s.size(); ++i) {
             const double model = std::max(total_variance(terms, tau_s[i]), 1e-300);
-            residuals[static_cast<Index>(i)] =
-                db_per_neper * (2.0 * std::log(deviation[i]) - std::log(model));
+            residuals.push_back(db_per_neper * (2.0 * std::log(deviation[i]) - std::log(model)));
         }
         return residuals;
     }
 };
 
 CurveResidual residual_of(const Target& target, const std::vector<CurveTerm>& terms) {
-    const VectorXd residuals = target.residuals_db(terms);
+    const std::vector<double> residuals = target.residuals_db(terms);
     CurveResidual residual;
-    residual.rms_db = std::sqrt(residuals.squaredNorm() / static_cast<double>(residuals.size()));
-    Index worst = 0;
-    residuals.cwiseAbs().maxCoeff(&worst);
-    residual.worst_db = residuals[worst];
-    residual.worst_tau_s = target.tau_s[static_cast<std::size_t>(worst)];
+    residual.rms_db = std::sqrt(dot(residuals, residuals) / static_cast<double>(residuals.size()));
+    const auto worst = std::ranges::max_element(residuals, {}, [](double db) { return std::abs(db); });
+    residual.worst_db = *worst;
+    residual.worst_tau_s = target.tau_s[static_cast<std::size_t>(worst - residuals.begin())];
     return residual;
 }
 
@@ -88,17 +87,17 @@ std::vector<CurveTerm> terms_of(const std::vector<Slot>& slots) {
     return terms;
 }
 
-VectorXd logarithms_of(const std::vector<Slot>& slots) {
+std::vector<double> logarithms_of(const std::vector<Slot>& slots) {
     std::vector<double> logs;
     for (const Slot& slot : slots) {
         if (slot.is_free()) { logs.push_back(std::log(slot.now.size)); }
         if (slot.frees_shape()) { logs.push_back(std::log(slot.now.shape)); }
     }
-    return Eigen::Map<const VectorXd>(logs.data(), static_cast<Index>(logs.size()));
+    return logs;
 }
 
-void put_logarithms(std::vector<Slot>& slots, const VectorXd& logs) {
-    Index at = 0;
+void put_logarithms(std::vector<Slot>& slots, std::span<const double> logs) {
+    std::size_t at = 0;
     for (Slot& slot : slots) {
         if (slot.is_free()) { slot.now.size = std::exp(std::clamp(logs[at++], -100.0, 100.0)); }
         if (slot.frees_shape()) { slot.now.shape = std::exp(std::clamp(logs[at++], -30.0, 30.0)); }
@@ -115,31 +114,21 @@ std::vector<double> prior_residuals(const std::vector<Slot>& slots) {
     return residuals;
 }
 
-// What Eigen's Levenberg-Marquardt asks for: residuals of unit variance.
-struct Problem {
-    using Scalar = double;
-    using InputType = VectorXd;
-    using ValueType = VectorXd;
-    using JacobianType = Eigen::MatrixXd;
-    enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
-
-    const Target* target;
-    const CurveScatter* scatter;
-    const std::vector<Slot>* slots;
-    double smooth_sd_db;
-
-    int inputs() const { return static_cast<int>(logarithms_of(*slots).size()); }
-    int values() const { return static_cast<int>(target->tau_s.size() + prior_residuals(*slots).size()); }
-    int operator()(const VectorXd& logs, VectorXd& residuals) const {
-        std::vector<Slot> here = *slots;
+// Of unit variance, over the logarithms of what is free.
+LeastSquaresProblem problem_of(const Target& target, const CurveScatter& scatter,
+                               const std::vector<Slot>& slots, double smooth_sd_db) {
+    LeastSquaresProblem problem;
+    problem.residuals = target.tau_s.size() + prior_residuals(slots).size();
+    problem.evaluate = [&, smooth_sd_db](std::span<const double> logs, std::span<double> residuals) {
+        std::vector<Slot> here = slots;
         put_logarithms(here, logs);
-        const std::vector<double> prior = prior_residuals(here);
-        const VectorXd of_curve = scatter->whitened(target->residuals_db(terms_of(here)), smooth_sd_db);
-        residuals.resize(of_curve.size() + static_cast<Index>(prior.size()));
-        residuals << of_curve, Eigen::Map<const VectorXd>(prior.data(), static_cast<Index>(prior.size()));
-        return 0;
-    }
-};
+        const std::vector<double> of_curve =
+            scatter.whitened(target.residuals_db(terms_of(here)), smooth_sd_db);
+        const auto rest = std::ranges::copy(of_curve, residuals.begin()).out;
+        std::ranges::copy(prior_residuals(here), rest);
+    };
+    return problem;
+}
 
 struct Judged {
     std::vector<Slot> slots;
@@ -182,17 +171,15 @@ public:
     }
 
     // Standard deviations of the logarithms, in the order of logarithms_of().
-    VectorXd log_sd() const {
-        const Problem problem{&target_, &scatter_, &now_.slots, now_.smooth_sd_db};
-        Eigen::NumericalDiff<Problem, Eigen::Central> differentiated(problem, 1e-10);
-        Eigen::MatrixXd jacobian(problem.values(), problem.inputs());
-        differentiated.df(logarithms_of(now_.slots), jacobian);
-        const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
-        return information.completeOrthogonalDecomposition()
-            .pseudoInverse()
-            .diagonal()
-            .cwiseMax(0.0)
-            .cwiseSqrt();
+    std::vector<double> log_sd() const {
+        const LeastSquaresProblem problem = problem_of(target_, scatter_, now_.slots, now_.smooth_sd_db);
+        const Matrix derivatives = central_differences(problem, logarithms_of(now_.slots), 1e-10);
+        const Matrix covariance = pseudo_inverse(transposed_product(derivatives, derivatives));
+        std::vector<double> sd;
+        for (std::size_t i = 0; i < covariance.rows(); ++i) {
+            sd.push_back(std::sqrt(std::max(covariance(i, i), 0.0)));
+        }
+        return sd;
     }
 
 private:
@@ -214,15 +201,14 @@ private:
         Judged judged{std::move(slots), 0.0, smooth_sd_db};
         CurveScatter::Fit scatter;
         for (int turn = 0; turn < turns; ++turn) {
-            VectorXd logs = logarithms_of(judged.slots);
-            if (logs.size() > 0) {
-                Eigen::NumericalDiff<Problem> problem(
-                    Problem{&target_, &scatter_, &judged.slots, judged.smooth_sd_db});
-                Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Problem>> search(problem);
-                search.parameters.maxfev = 300;
-                if (turns == 1) { search.parameters.ftol = search.parameters.xtol = coarse; }
-                search.minimize(logs);
-                put_logarithms(judged.slots, logs);
+            const std::vector<double> start = logarithms_of(judged.slots);
+            if (!start.empty()) {
+                LeastSquaresLimits limits;
+                limits.evaluations_most = 300;
+                if (turns == 1) { limits.tolerance = coarse; }
+                const LeastSquaresProblem problem =
+                    problem_of(target_, scatter_, judged.slots, judged.smooth_sd_db);
+                put_logarithms(judged.slots, least_squares(problem, start, limits));
             }
             scatter = scatter_.fit(target_.residuals_db(terms_of(judged.slots)));
             judged.smooth_sd_db = scatter.smooth_sd_db;
@@ -393,8 +379,8 @@ void put_causes(CurveDiagnosis& diagnosis, const ChangeSearch& search, const Tar
                 const std::vector<ModelledTerm>& model) {
     const std::vector<Slot>& slots = search.result().slots;
     if (std::ranges::none_of(slots, &Slot::changed)) { return; }
-    const VectorXd sd = search.log_sd();
-    Index at = 0;
+    const std::vector<double> sd = search.log_sd();
+    std::size_t at = 0;
     for (std::size_t i = 0; i < slots.size(); ++i) {
         CurveCause cause;
         cause.term = slots[i].now;

@@ -1,16 +1,20 @@
 #include "analysis/noise/curve_model.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <unsupported/Eigen/NonLinearOptimization>
+#include <span>
 #include <utility>
 
 #include "analysis/noise/curve_scatter.hpp"
 #include "analysis/numerics/distributions.hpp"
+#include "analysis/numerics/eigen_view.hpp"
+#include "analysis/numerics/least_squares.hpp"
+#include "analysis/numerics/matrix_products.hpp"
+#include "analysis/numerics/pseudo_inverse.hpp"
 
 namespace gyrolog {
 namespace {
@@ -63,19 +67,18 @@ Target target_of(const AllanCurve& curve) {
 
 // Terms as a vector of logarithms: of the squares of all sizes, then of all shapes. Positive sizes need no
 // bounds then, and a step means the same for a quantisation of 1e-9 as for a white noise of 1e-3.
-VectorXd logarithms_of(const std::vector<CurveTerm>& terms) {
-    VectorXd logs(static_cast<Index>(parameters_of(terms)));
-    Index at = 0;
-    for (const CurveTerm& term : terms) { logs[at++] = 2.0 * std::log(term.size); }
+std::vector<double> logarithms_of(const std::vector<CurveTerm>& terms) {
+    std::vector<double> logs;
+    for (const CurveTerm& term : terms) { logs.push_back(2.0 * std::log(term.size)); }
     for (const CurveTerm& term : terms) {
-        if (has_shape(term.kind)) { logs[at++] = std::log(term.shape); }
+        if (has_shape(term.kind)) { logs.push_back(std::log(term.shape)); }
     }
     return logs;
 }
 
-std::vector<CurveTerm> terms_of(const std::vector<CurveTerm>& like, const VectorXd& logs) {
+std::vector<CurveTerm> terms_of(const std::vector<CurveTerm>& like, std::span<const double> logs) {
     std::vector<CurveTerm> terms = like;
-    Index at = 0;
+    std::size_t at = 0;
     for (CurveTerm& term : terms) { term.size = std::exp(std::clamp(logs[at++], -200.0, 200.0) / 2.0); }
     for (CurveTerm& term : terms) {
         if (has_shape(term.kind)) { term.shape = std::exp(std::clamp(logs[at++], -60.0, 60.0)); }
@@ -120,23 +123,6 @@ MatrixXd sensitivities_db(const Target& target, const std::vector<CurveTerm>& te
     return db_per_neper * total.cwiseInverse().asDiagonal() * slopes;
 }
 
-// What Eigen's Levenberg-Marquardt (MINPACK's lmder) asks for.
-struct Problem {
-    const Target& target;
-    const std::vector<CurveTerm>& like;
-
-    int inputs() const { return static_cast<int>(parameters_of(like)); }
-    int values() const { return static_cast<int>(target.points()); }
-    int operator()(const VectorXd& logs, VectorXd& residuals) const {
-        residuals = residuals_db(target, terms_of(like, logs));
-        return 0;
-    }
-    int df(const VectorXd& logs, MatrixXd& jacobian) const {
-        jacobian = -sensitivities_db(target, terms_of(like, logs));
-        return 0;
-    }
-};
-
 struct Candidate {
     std::vector<CurveTerm> terms;
     VectorXd residuals;  // dB
@@ -145,13 +131,15 @@ struct Candidate {
 
 // Least squares from where `start` is. `tolerance`: relative, of the sum of squares.
 Candidate fitted_from(const Target& target, const std::vector<CurveTerm>& start, double tolerance) {
-    VectorXd logs = logarithms_of(start);
-    Problem problem{target, start};
-    Eigen::LevenbergMarquardt<Problem> search(problem);
-    search.parameters.ftol = tolerance;
-    search.parameters.xtol = tolerance;
-    search.parameters.maxfev = 400;
-    search.minimize(logs);
+    LeastSquaresProblem problem;
+    problem.residuals = static_cast<std::size_t>(target.points());
+    problem.evaluate = [&](std::span<const double> logs, std::span<double> residuals) {
+        view_of(residuals) = residuals_db(target, terms_of(start, logs));
+    };
+    problem.differentiate = [&](std::span<const double> logs, Matrix& derivatives) {
+        view_of(derivatives) = -sensitivities_db(target, terms_of(start, logs));
+    };
+    const std::vector<double> logs = least_squares(problem, logarithms_of(start), {tolerance, 400});
     Candidate candidate;
     candidate.terms = terms_of(start, logs);
     candidate.residuals = residuals_db(target, candidate.terms);
@@ -167,7 +155,7 @@ struct Judged {
 
 Judged judged(const CurveScatter& scatter, Candidate candidate) {
     if (candidate.terms.empty()) { return {}; }
-    const auto fit = scatter.fit(candidate.residuals);
+    const auto fit = scatter.fit(values_of(candidate.residuals));
     const double penalty = static_cast<double>(parameters_of(candidate.terms)) *
                            std::log(static_cast<double>(candidate.residuals.size()));
     return {std::move(candidate), fit.minus_two_log_likelihood + penalty, fit.smooth_sd_db};
@@ -331,9 +319,7 @@ private:
 };
 
 // How the estimates of the parameters' logarithms depend on the curve in dB.
-MatrixXd estimators_of(const MatrixXd& sensitivities) {
-    return sensitivities.completeOrthogonalDecomposition().pseudoInverse();
-}
+Matrix estimators_of(const MatrixXd& sensitivities) { return pseudo_inverse(matrix_of(sensitivities)); }
 
 NoiseModel model_of(const std::vector<CurveTerm>& terms) {
     NoiseModel model;
@@ -369,7 +355,7 @@ NoiseModel model_of(const std::vector<CurveTerm>& terms) {
 // confidence says; its scatter is that of a curve that holds it.
 double upper_limit(const Target& target, const TermSearch& search, Kind kind, double sigmas) {
     const Candidate& fit = search.result().candidate;
-    const MatrixXd covariance = search.scatter().covariance(search.result().smooth_sd_db);
+    const Matrix covariance = search.scatter().covariance(search.result().smooth_sd_db);
     CurveTerm term = below_curve(target, kind, 0.0);
     const double scale = term.size * term.size;
     double estimate = 0.0;
@@ -381,33 +367,35 @@ double upper_limit(const Target& target, const TermSearch& search, Kind kind, do
         const auto column = static_cast<Index>(terms.size()) - 1;
         MatrixXd slopes = sensitivities_db(target, terms);
         slopes.col(column) /= square;  // by the square itself, not its logarithm
-        const Eigen::RowVectorXd estimator = estimators_of(slopes).row(column);
+        const Matrix estimators = estimators_of(slopes);
+        const VectorXd estimator = view_of(estimators).row(column);
         if (pass == 0) { estimate = std::max(0.0, estimator.dot(fit.residuals)); }
-        square = estimate + sigmas * std::sqrt((estimator * covariance * estimator.transpose()).value());
+        const std::vector<double> pulled = transposed_product(covariance, values_of(estimator));
+        square = estimate + sigmas * std::sqrt(dot(pulled, values_of(estimator)));
     }
     return std::sqrt(square * scale);
 }
 
 void report_coefficients(const Target& target, const TermSearch& search, CurveModelFit& fit) {
     const double sigmas = normal_quantile(0.5 + fit.noise.confidence / 2.0);
-    const MatrixXd estimators = estimators_of(sensitivities_db(target, fit.terms));
-    const MatrixXd covariance =
-        estimators * search.scatter().covariance(fit.smooth_sd_db) * estimators.transpose();
-    const auto sd_of = [&](Index parameter) {
+    const Matrix estimators = estimators_of(sensitivities_db(target, fit.terms));
+    const Matrix covariance = product_with_transposed(
+        product(estimators, search.scatter().covariance(fit.smooth_sd_db)), estimators);
+    const auto sd_of = [&](std::size_t parameter) {
         return std::sqrt(std::max(0.0, covariance(parameter, parameter)));
     };
-    std::array<std::optional<Index>, noise_terms> at;
-    auto shape_at = static_cast<Index>(fit.terms.size());
+    std::array<std::optional<std::size_t>, noise_terms> at;
+    std::size_t shape_at = fit.terms.size();
     for (std::size_t j = 0; j < fit.terms.size(); ++j) {
         const CurveTerm& term = fit.terms[j];
-        const double size_sd = term.size * sd_of(static_cast<Index>(j)) / 2.0;
+        const double size_sd = term.size * sd_of(j) / 2.0;
         const double shape_sd = has_shape(term.kind) ? term.shape * sd_of(shape_at++) : 0.0;
         if (term.kind == Kind::gauss_markov) {
             fit.noise.gauss_markov.push_back({{term.size, term.shape}, size_sd, shape_sd});
         } else if (term.kind == Kind::sinusoid) {
             fit.noise.sinusoids.push_back({{term.size, term.shape}, size_sd, shape_sd});
         } else {
-            at[static_cast<std::size_t>(term.kind)] = static_cast<Index>(j);
+            at[static_cast<std::size_t>(term.kind)] = j;
             const double factor = std::exp(sigmas * size_sd / term.size);
             fit.noise.terms[static_cast<std::size_t>(term.kind)] = {FittedCoefficient::State::identified,
                                                                     term.size,

@@ -2,9 +2,11 @@
 // (curve_model.hpp), as a Gaussian likelihood of the residuals in dB.
 #pragma once
 
-#include <Eigen/Dense>
 #include <limits>
 #include <span>
+#include <vector>
+
+#include "analysis/numerics/matrix.hpp"
 
 namespace gyrolog {
 
@@ -19,19 +21,19 @@ public:
     };
 
     // The most likely size of the smooth part.
-    Fit fit(const Eigen::VectorXd& residuals_db) const;
+    Fit fit(std::span<const double> residuals_db) const;
 
-    Eigen::MatrixXd covariance(double smooth_sd_db) const;
+    Matrix covariance(double smooth_sd_db) const;
     // Independent and of variance one, where residuals have that covariance.
-    Eigen::VectorXd whitened(const Eigen::VectorXd& residuals_db, double smooth_sd_db) const;
+    std::vector<double> whitened(std::span<const double> residuals_db, double smooth_sd_db) const;
 
 private:
-    Eigen::VectorXd variances(double smooth_sd_db) const;
-    double minus_two_log_likelihood(const Eigen::VectorXd& powers, double smooth_sd_db) const;
+    std::vector<double> variances(double smooth_sd_db) const;
+    double minus_two_log_likelihood(std::span<const double> powers, double smooth_sd_db) const;
 
     double reading_variance_;
-    Eigen::MatrixXd vectors_;  // of the smooth part's correlation
-    Eigen::VectorXd values_;
+    Matrix vectors_;  // of the smooth part's correlation
+    std::vector<double> values_;
 };
 
 }  // namespace gyrolog

@@ -1,15 +1,18 @@
 #include "analysis/noise/noise_fit.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "analysis/allan/degrees_of_freedom.hpp"
 #include "analysis/numerics/distributions.hpp"
+#include "analysis/numerics/eigen_view.hpp"
+#include "analysis/numerics/pseudo_inverse.hpp"
 
 namespace gyrolog {
 namespace {
@@ -64,7 +67,8 @@ Solution solve_active(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right,
     Eigen::MatrixXd part = rows(Eigen::all, columns);
     const Eigen::VectorXd lengths = part.colwise().norm();
     for (Eigen::Index c = 0; c < part.cols(); ++c) { part.col(c) /= lengths[c]; }
-    const Eigen::VectorXd x = part.colPivHouseholderQr().solve(right);
+    const std::vector<double> solved = solve_least_squares(matrix_of(part), values_of(right));
+    const auto x = view_of(std::span<const double>(solved));
     Solution solution;
     solution.active = active;
     solution.cost = (part * x - right).squaredNorm();
@@ -225,9 +229,9 @@ Eigen::RowVectorXd estimator_of(const Weighted& fit, Eigen::Index term) {
     Eigen::MatrixXd part = fit.rows(Eigen::all, columns);
     const Eigen::VectorXd lengths = part.colwise().norm();
     for (Eigen::Index c = 0; c < part.cols(); ++c) { part.col(c) /= lengths[c]; }
-    const Eigen::MatrixXd inverse = part.completeOrthogonalDecomposition().pseudoInverse();
+    const Matrix inverse = pseudo_inverse(matrix_of(part));
     const auto at = std::find(columns.begin(), columns.end(), term) - columns.begin();
-    return inverse.row(at) / lengths[at];
+    return view_of(inverse).row(at) / lengths[at];
 }
 
 double estimator_sd(const Weighted& fit, const Eigen::RowVectorXd& estimator,
