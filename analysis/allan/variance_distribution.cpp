@@ -1,6 +1,5 @@
 #include "analysis/allan/variance_distribution.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "analysis/allan/difference_covariance.hpp"
 #include "analysis/allan/total_variance.hpp"
 #include "analysis/numerics/distributions.hpp"
+#include "analysis/numerics/symmetric_eigen.hpp"
 
 namespace gyrolog {
 namespace {
@@ -37,7 +37,7 @@ class CellCovariance {
 public:
     CellCovariance(const VarianceShares& shares, const DeviationRule& rule, std::int64_t m,
                    std::int64_t terms, std::int64_t cells)
-        : matrix_(Eigen::MatrixXd::Zero(cells, cells)),
+        : matrix_(static_cast<std::size_t>(cells), static_cast<std::size_t>(cells)),
           points_(static_cast<double>(terms + 2)),
           step_(rule.overlapping ? static_cast<double>(terms) / static_cast<double>(cells)
                                  : static_cast<double>(m)) {
@@ -54,26 +54,26 @@ public:
     }
 
     // Only the lower half is filled.
-    const Eigen::MatrixXd& matrix() const { return matrix_; }
+    const Matrix& matrix() const { return matrix_; }
 
 private:
     void add_stationary(const DifferenceCovariance& covariance, double share) {
-        for (Eigen::Index lag = 0; lag < matrix_.rows(); ++lag) {
+        for (std::size_t lag = 0; lag < matrix_.rows(); ++lag) {
             const double value = share * covariance.correlation(static_cast<double>(lag) * step_);
-            for (Eigen::Index i = lag; i < matrix_.rows(); ++i) { matrix_(i, i - lag) += value; }
+            for (std::size_t i = lag; i < matrix_.rows(); ++i) { matrix_(i, i - lag) += value; }
         }
     }
 
     void add_reflected(const DifferenceCovariance& covariance, double factor) {
-        const auto place = [&](Eigen::Index i) { return 0.5 + (static_cast<double>(i) + 0.5) * step_; };
-        for (Eigen::Index i = 0; i < matrix_.rows(); ++i) {
-            for (Eigen::Index j = 0; j <= i; ++j) {
+        const auto place = [&](std::size_t i) { return 0.5 + (static_cast<double>(i) + 0.5) * step_; };
+        for (std::size_t i = 0; i < matrix_.rows(); ++i) {
+            for (std::size_t j = 0; j <= i; ++j) {
                 matrix_(i, j) += factor * covariance.reflected(place(i), place(j), points_);
             }
         }
     }
 
-    Eigen::MatrixXd matrix_;
+    Matrix matrix_;
     double points_;
     double step_;
 };
@@ -181,10 +181,10 @@ void VarianceDistribution::set_eigenvalues(const VarianceShares& shares, const D
         }
         const CellCovariance covariance(scattering, rule, m, terms, cells);
         const double weight = static_cast<double>(terms) / static_cast<double>(cells) / truth;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(weight * covariance.matrix(),
-                                                                    Eigen::EigenvaluesOnly);
+        Matrix weighted = covariance.matrix();
+        for (double& value : weighted.values()) { value *= weight; }
         constexpr double negligible = 1e-6;
-        for (const double value : solver.eigenvalues()) {
+        for (const double value : symmetric_eigenvalues(weighted)) {
             if (value > negligible) { lambda_.push_back(value); }
         }
     }

@@ -1,9 +1,10 @@
 #include "analysis/spectrum/gamma_ratio.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "analysis/numerics/symmetric_eigen.hpp"
 
 namespace gyrolog {
 namespace {
@@ -15,17 +16,14 @@ constexpr std::size_t resolved_pieces = 32;
 
 // Of the transforms of a piece at neighbouring bins: 1, -2/3, 1/6 by their distance.
 std::vector<double> eigenvalues_of_bins(std::size_t bins) {
-    const auto n = static_cast<Eigen::Index>(bins);
-    Eigen::MatrixXd correlation = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        for (Eigen::Index j = std::max<Eigen::Index>(i - 2, 0); j <= i; ++j) {
+    Matrix correlation(bins, bins);
+    for (std::size_t i = 0; i < bins; ++i) {
+        for (std::size_t j = i < 2 ? 0 : i - 2; j <= i; ++j) {
             const double power = bin_correlation[i - j];
             correlation(i, j) = correlation(j, i) = i - j == 1 ? -std::sqrt(power) : std::sqrt(power);
         }
     }
-    const Eigen::VectorXd values =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues();
-    return {values.begin(), values.end()};
+    return symmetric_eigenvalues(correlation);
 }
 
 // Neighbouring pieces correlate by 1/6 (half a taper with the other half): a tridiagonal matrix.
