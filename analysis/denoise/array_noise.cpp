@@ -1,8 +1,10 @@
 #include "analysis/denoise/array_noise.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "analysis/numerics/symmetric_eigen.hpp"
 
 namespace gyrolog {
 namespace {
@@ -48,14 +50,16 @@ std::vector<double> equal_correlation(std::size_t units, double correlation) {
 std::vector<double> possible_correlation(std::vector<double> correlation, std::size_t units) {
     constexpr double least_eigenvalue = 1e-3;
     if (units == 0) { return correlation; }
-    const auto size = static_cast<Eigen::Index>(units);
-    Eigen::Map<RowMajor> matrix(correlation.data(), size, size);
-    const Eigen::SelfAdjointEigenSolver<RowMajor> solver(matrix, Eigen::EigenvaluesOnly);
-    const double least = solver.eigenvalues().minCoeff();
+    Matrix matrix(units, units);
+    for (std::size_t i = 0; i < units; ++i) {
+        for (std::size_t j = 0; j < units; ++j) { matrix(i, j) = correlation[i * units + j]; }
+    }
+    const double least = symmetric_eigenvalues(matrix).front();
     if (least >= least_eigenvalue) { return correlation; }
     // (1 - t) C + t I has the eigenvalues (1 - t) lambda + t.
     const double t = (least_eigenvalue - least) / (1.0 - least);
-    matrix = (1.0 - t) * matrix + t * RowMajor::Identity(size, size);
+    for (double& value : correlation) { value *= 1.0 - t; }
+    for (std::size_t i = 0; i < units; ++i) { correlation[i * units + i] += t; }
     return correlation;
 }
 

@@ -1,11 +1,16 @@
 #include "analysis/denoise/kalman_array.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "analysis/denoise/riccati.hpp"
+#include "analysis/numerics/cholesky.hpp"
+#include "analysis/numerics/eigen_view.hpp"
+#include "analysis/numerics/matrix_products.hpp"
+#include "analysis/numerics/orthogonal_complement.hpp"
 
 namespace gyrolog {
 namespace {
@@ -28,26 +33,20 @@ constexpr double unknown_variances = 1e6;
 
 Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
-Eigen::MatrixXd covariance_of(const ArrayNoise& noise, double UnitNoise::*variance,
-                              const std::vector<double>& correlation) {
+Matrix covariance_of(const ArrayNoise& noise, double UnitNoise::*variance,
+                     const std::vector<double>& correlation) {
     const std::size_t units = noise.units.size();
-    Eigen::MatrixXd matrix(index(units), index(units));
+    Matrix matrix(units, units);
     for (std::size_t i = 0; i < units; ++i) {
         for (std::size_t j = 0; j < units; ++j) {
             const double together = i == j ? 1.0 : correlation.empty() ? 0.0 : correlation[i * units + j];
-            matrix(index(i), index(j)) =
-                together * std::sqrt(noise.units[i].*variance * noise.units[j].*variance);
+            matrix(i, j) = together * std::sqrt(noise.units[i].*variance * noise.units[j].*variance);
         }
     }
     return matrix;
 }
 
-// An orthonormal basis of the vectors d with v' d = 0.
-Eigen::MatrixXd basis_across(const Eigen::VectorXd& v) {
-    const Eigen::MatrixXd all = Eigen::HouseholderQR<Eigen::MatrixXd>(v).householderQ() *
-                                Eigen::MatrixXd::Identity(v.size(), v.size());
-    return all.rightCols(v.size() - 1);
-}
+double sum_of(std::span<const double> values) { return view_of(values).sum(); }
 
 void make_symmetric(StateMatrix& P) {
     for (Eigen::Index i = 0; i < P.rows(); ++i) {
@@ -63,7 +62,7 @@ struct KalmanArray::State {
     StateMatrix F, Q;
     Measured H;  // of all units
     UnitMatrix R;
-    Eigen::VectorXd drift_weights;
+    std::vector<double> drift_weights;
 
     StateVector x;  // before the measurement; after it between calls
     StateMatrix P;  // before the coming measurement
@@ -92,15 +91,17 @@ struct KalmanArray::State {
 };
 
 void KalmanArray::State::find_settled() {
-    if (!is_free()) {
-        P_settled = steady_covariance(F, H, Q, R).covariance;
-        return;
-    }
     P_settled = Q;
     if (Q.rows() == 0) { return; }
-    // What differs between the units measures the offsets alone.
-    const Eigen::MatrixXd across = basis_across(Eigen::VectorXd::Ones(units()));
-    P_settled = steady_covariance(F, across.transpose() * H, Q, across.transpose() * R * across).covariance;
+    Matrix seen = matrix_of(H);
+    Matrix noise = matrix_of(R);
+    if (is_free()) {
+        // What differs between the units measures the offsets alone.
+        const Matrix across = OrthogonalComplement(std::vector(noise.rows(), 1.0)).basis();
+        seen = transposed_product(across, seen);
+        noise = product(transposed_product(across, noise), across);
+    }
+    P_settled = view_of(steady_covariance(matrix_of(F), seen, matrix_of(Q), noise).covariance);
 }
 
 // The gain of the units that `h` and `r` tell of.
@@ -203,28 +204,34 @@ KalmanArray::KalmanArray(const ArrayNoise& noise, const RateDesign& design, Filt
     : state_(std::make_unique<State>()) {
     State& s = *state_;
     const std::size_t units = noise.units.size();
-    const Eigen::MatrixXd R = covariance_of(noise, &UnitNoise::white_variance, noise.white_correlation);
-    const Eigen::MatrixXd walk = covariance_of(noise, &UnitNoise::walk_variance, noise.walk_correlation);
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(index(units));
-    const Eigen::VectorXd shares = walk.llt().solve(ones);
-    s.drift_weights = shares / shares.sum();
-    const Eigen::MatrixXd U = basis_across(s.drift_weights);
-    const Eigen::MatrixXd across = U.transpose() * (Eigen::MatrixXd::Identity(index(units), index(units)) -
-                                                    ones * s.drift_weights.transpose());
+    const Matrix R = covariance_of(noise, &UnitNoise::white_variance, noise.white_correlation);
+    const Matrix walk = covariance_of(noise, &UnitNoise::walk_variance, noise.walk_correlation);
+    const std::vector<double> ones(units, 1.0);
+    const std::vector<double> shares = CholeskyFactor(walk).solve(ones);
+    const double shares_sum = sum_of(shares);
+    for (const double share : shares) { s.drift_weights.push_back(share / shares_sum); }
+    const Matrix basis = OrthogonalComplement(s.drift_weights).basis();
+    const auto U = view_of(basis);
+    Matrix less_mean = identity_matrix(units);
+    for (std::size_t j = 0; j < units; ++j) {
+        for (double& value : less_mean.column(j)) { value -= s.drift_weights[j]; }
+    }
+    const Matrix across = transposed_product(basis, less_mean);
     s.model = design.model == RateModel::adaptive ? RateModel::free : design.model;
     s.rate_states = s.is_free() ? 0 : s.model == RateModel::walk ? 1 : 2;
     const Eigen::Index states = s.rate_states + U.cols();
-    s.R = R;
+    s.R = view_of(R);
     s.F = StateMatrix::Identity(states, states);
     s.Q = StateMatrix::Zero(states, states);
     s.H = Measured::Zero(index(units), states);
     s.H.rightCols(U.cols()) = U;
-    s.Q.bottomRightCorner(U.cols(), U.cols()) = across * walk * across.transpose();
-    const double white = 1.0 / R.llt().solve(ones).sum();
+    const Matrix offsets_walk = transposed(product_with_transposed(across, product(across, walk)));
+    s.Q.bottomRightCorner(U.cols(), U.cols()) = view_of(offsets_walk);
+    const double white = 1.0 / sum_of(CholeskyFactor(R).solve(ones));
     const double w = intensity_of(design, noise.rate_hz) * white;
     if (s.rate_states > 0) {
         s.H.col(0).setOnes();
-        s.Q(0, 0) = 1.0 / shares.sum();
+        s.Q(0, 0) = 1.0 / shares_sum;
         s.Q(0, 0) += s.model == RateModel::walk ? w : 0.25 * w;
     }
     if (s.model == RateModel::trend) {
@@ -235,9 +242,11 @@ KalmanArray::KalmanArray(const ArrayNoise& noise, const RateDesign& design, Filt
     s.find_settled();
     s.x = StateVector::Zero(states);
     if (!offsets.empty()) {
-        Eigen::VectorXd d(index(units));
-        for (std::size_t i = 0; i < units; ++i) { d[index(i)] = offsets[i]; }
-        s.x.tail(U.cols()) = U.transpose() * (d - ones * s.drift_weights.dot(d));
+        const double mean = dot(s.drift_weights, offsets);
+        std::vector<double> about_mean(offsets.begin(), offsets.end());
+        for (double& offset : about_mean) { offset -= mean; }
+        const std::vector<double> at = transposed_product(basis, about_mean);
+        s.x.tail(U.cols()) = view_of(std::span<const double>(at));
     }
     if (gain == FilterGain::steady) {
         s.P = s.P_settled;
@@ -245,7 +254,7 @@ KalmanArray::KalmanArray(const ArrayNoise& noise, const RateDesign& design, Filt
         s.set_gain(s.H, s.R, s.P_settled);
         if (!s.is_free()) { s.rate_variance = s.posterior_variance(0); }
     } else {
-        s.P = StateMatrix::Identity(states, states) * (unknown_variances * R.diagonal().maxCoeff());
+        s.P = StateMatrix::Identity(states, states) * (unknown_variances * s.R.diagonal().maxCoeff());
     }
 }
 
@@ -337,9 +346,7 @@ std::vector<double> KalmanArray::sample_weights() const {
     return shares;
 }
 
-std::vector<double> KalmanArray::drift_weights() const {
-    return {state_->drift_weights.begin(), state_->drift_weights.end()};
-}
+std::vector<double> KalmanArray::drift_weights() const { return state_->drift_weights; }
 
 std::span<const double> KalmanArray::innovations() const {
     return std::span(state_->innovation).first(units());

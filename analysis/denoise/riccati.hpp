@@ -7,18 +7,17 @@
 // 77 (2004) 767-788), on the filter's dual form with G = H' R^-1 H: k doublings are 2^k steps of the filter.
 #pragma once
 
-#include <Eigen/Core>
+#include "analysis/numerics/matrix.hpp"
 
 namespace gyrolog {
 
 struct SteadyCovariance {
-    Eigen::MatrixXd covariance;  // before the measurement
+    Matrix covariance;  // before the measurement
     int doublings = 0;
     bool settled = false;  // false: no steady state, or none within 2^60 steps
 };
 
 // R is positive definite, Q positive semidefinite, and what H does not show must not wander.
-SteadyCovariance steady_covariance(const Eigen::MatrixXd& F, const Eigen::MatrixXd& H,
-                                   const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R);
+SteadyCovariance steady_covariance(const Matrix& F, const Matrix& H, const Matrix& Q, const Matrix& R);
 
 }  // namespace gyrolog

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/denoise/riccati.hpp"
+#include "analysis/numerics/eigen_view.hpp"
 #include "tests/analysis/denoise/array_samples.hpp"
 
 namespace gyrolog {
@@ -32,8 +33,11 @@ ArrayNoise uneven_units() {
 TEST(Riccati, OfOneStateIsTheSolutionOfItsQuadratic) {
     // P = P - P^2 / (P + R) + Q:  P^2 - Q P - Q R = 0
     for (const double Q : {1e-12, 1e-4, 1.0, 1e4}) {
-        const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(1, 1);
-        const SteadyCovariance steady = steady_covariance(one, one, one * Q, one * 2.0);
+        const auto one_by_one = [](double value) {
+            return matrix_of(Eigen::MatrixXd::Constant(1, 1, value));
+        };
+        const SteadyCovariance steady =
+            steady_covariance(one_by_one(1.0), one_by_one(1.0), one_by_one(Q), one_by_one(2.0));
         ASSERT_TRUE(steady.settled);
         const double exact = 0.5 * (Q + std::sqrt(Q * Q + 8.0 * Q));
         EXPECT_NEAR(steady.covariance(0, 0), exact, 1e-10 * exact) << Q;
@@ -48,7 +52,9 @@ TEST(Riccati, LeavesNothingOfItsEquation) {
     const Eigen::MatrixXd Q = Eigen::Vector3d(0.1, 0.01, 1.0).asDiagonal();
     Eigen::MatrixXd R(2, 2);
     R << 1.0, 0.3, 0.3, 2.0;
-    const Eigen::MatrixXd P = steady_covariance(F, H, Q, R).covariance;
+    const SteadyCovariance steady = steady_covariance(matrix_of(F), matrix_of(H), matrix_of(Q), matrix_of(R));
+    ASSERT_TRUE(steady.settled);
+    const auto P = view_of(steady.covariance);
     const Eigen::MatrixXd S = H * P * H.transpose() + R;
     const Eigen::MatrixXd left =
         F * P * F.transpose() - F * P * H.transpose() * S.inverse() * H * P * F.transpose() + Q - P;
