@@ -187,7 +187,7 @@ void expect_schema(const json& answer) {
                  {"duration_s", "number"},       {"samples", "number"},   {"axes", "array"},
                  {"simulations", "number"},      {"seed", "number"},      {"domains", "array"},
                  {"band_probability", "number"}, {"untestable", "array"}, {"next_recordings", "array"},
-                 {"halves?", "object"},          {"warnings", "array"}},
+                 {"halves?", "object"},          {"warnings", "array"},   {"reported_by", "string"}},
                 "answer");
     EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
     for (const char* gap : {"gap_before", "gap_after"}) {
