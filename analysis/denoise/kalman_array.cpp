@@ -212,7 +212,7 @@ KalmanArray::KalmanArray(const ArrayNoise& noise, const RateDesign& design, Filt
     for (const double share : shares) { s.drift_weights.push_back(share / shares_sum); }
     const Matrix basis = OrthogonalComplement(s.drift_weights).basis();
     const auto U = view_of(basis);
-    Matrix less_mean = identity_matrix(units);
+    Matrix less_mean = Matrix::identity(units);
     for (std::size_t j = 0; j < units; ++j) {
         for (double& value : less_mean.column(j)) { value -= s.drift_weights[j]; }
     }

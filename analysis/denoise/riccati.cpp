@@ -38,7 +38,7 @@ SteadyCovariance steady_covariance(const Matrix& F, const Matrix& H, const Matri
     Matrix& X = steady.covariance;
     for (; steady.doublings < doublings_most && !steady.settled; ++steady.doublings) {
         Matrix both = product(G, X);
-        add(both, identity_matrix(F.rows()));
+        add(both, Matrix::identity(F.rows()));
         const LuFactors W(both);
         const Matrix WA = W.solve(A);
         const Matrix growth = product(transposed_product(A, X), WA);

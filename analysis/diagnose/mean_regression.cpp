@@ -1,9 +1,13 @@
 #include "analysis/diagnose/mean_regression.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numeric>
+
+#include "analysis/numerics/cholesky.hpp"
+#include "analysis/numerics/matrix_products.hpp"
+#include "analysis/numerics/pseudo_inverse.hpp"
 
 namespace gyrolog {
 
@@ -23,73 +27,57 @@ void cut_tail(const Baseline& baseline, std::size_t axis, std::vector<float>& co
     cosines.resize(std::min(cosines.size(), bins[kept - 1].end));
 }
 
-using Vector = Eigen::Map<const Eigen::VectorXd>;
-using Matrix = Eigen::Map<const Eigen::MatrixXd>;
-
-Vector vector_of(std::span<const double> values) {
-    return {values.data(), static_cast<Eigen::Index>(values.size())};
+void add(Matrix& sum, const Matrix& more) {
+    std::ranges::transform(sum.values(), more.values(), sum.values().begin(), std::plus());
 }
 
-// Column by column.
-Matrix matrix_of(std::span<const double> values, std::size_t rows) {
-    const auto row_count = static_cast<Eigen::Index>(rows);
-    return {values.data(), row_count, static_cast<Eigen::Index>(values.size()) / row_count};
+void add(std::vector<double>& sum, std::span<const double> more) {
+    std::ranges::transform(sum, more, sum.begin(), std::plus());
 }
 
-template <typename Values>
-std::vector<double> values_of(const Values& values) {
-    return {values.data(), values.data() + values.size()};
-}
-
-// Takes the uncertain responses out of the equations: cross' shift and shift' pull.
+// Takes the uncertain responses out of the equations.
 void project_out(const UncertainMean& uncertain, const AxisObservation& seen, const BinSums& weights,
                  const MeanResponses& responses, NormalEquations& equations) {
-    const std::size_t directions = uncertain.size();
-    std::vector<double> crossed;  // by response
-    for (std::size_t j = 0; j < responses.size(); ++j) {
-        for (std::size_t u = 0; u < directions; ++u) {
-            crossed.push_back(weighted_sum(responses.uncertain_products(u, j), weights));
+    Matrix cross(uncertain.size(), responses.size());
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        for (std::size_t j = 0; j < responses.size(); ++j) {
+            cross(u, j) = weighted_sum(responses.uncertain_products(u, j), weights);
         }
     }
-    const Matrix cross = matrix_of(crossed, directions);
-    const std::vector<double> information = uncertain.information(weights);
-    const Eigen::LDLT<Eigen::MatrixXd> factors(matrix_of(information, directions));
-    const std::vector<double> pulled = uncertain.pull(weights, seen.uncertain_products, seen.uncertain_fit);
-    const Eigen::MatrixXd shift = -factors.solve(cross);
-    const Eigen::VectorXd give = factors.solve(vector_of(pulled));
-    const Eigen::MatrixXd A = matrix_of(equations.A, responses.size()) + cross.transpose() * shift;
-    const Eigen::VectorXd b = vector_of(equations.b) + shift.transpose() * vector_of(pulled);
-    equations = {values_of(A), values_of(b), values_of(shift), values_of(give)};
+    const Matrix information = uncertain.information(weights);
+    const std::vector<double> pull = uncertain.pull(weights, seen.uncertain_products, seen.uncertain_fit);
+    equations.shift = solve_symmetric(information, cross);
+    for (double& value : equations.shift.values()) { value = -value; }
+    equations.give = solve_symmetric(information, pull);
+    add(equations.A, transposed_product(cross, equations.shift));
+    add(equations.b, transposed_product(equations.shift, pull));
 }
 
 }  // namespace
 
 void NormalEquations::add(const NormalEquations& other) {
-    std::ranges::transform(A, other.A, A.begin(), std::plus());
-    std::ranges::transform(b, other.b, b.begin(), std::plus());
+    gyrolog::add(A, other.A);
+    gyrolog::add(b, other.b);
 }
 
-std::vector<double> NormalEquations::solution() const {
-    const Eigen::VectorXd c = matrix_of(A, b.size()).completeOrthogonalDecomposition().solve(vector_of(b));
-    return values_of(c);
-}
+std::vector<double> NormalEquations::solution() const { return product(pseudo_inverse(A), b); }
 
 std::vector<double> NormalEquations::sd() const {
-    const Eigen::MatrixXd covariance =
-        matrix_of(A, b.size()).completeOrthogonalDecomposition().pseudoInverse();
-    const Eigen::VectorXd sd = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    return values_of(sd);
+    const Matrix covariance = pseudo_inverse(A);
+    std::vector<double> sd(b.size());
+    for (std::size_t j = 0; j < sd.size(); ++j) { sd[j] = std::sqrt(std::max(0.0, covariance(j, j))); }
+    return sd;
 }
 
 double NormalEquations::gain_nats(std::span<const double> c) const {
-    const Vector at = vector_of(c);
-    return at.dot(vector_of(b)) - 0.5 * at.dot(matrix_of(A, b.size()) * at);
+    return dot(c, b) - 0.5 * dot(c, product(A, c));
 }
 
 std::vector<double> NormalEquations::moved(std::span<const double> c) const {
     if (give.empty()) { return {}; }
-    const Eigen::VectorXd moved = matrix_of(shift, give.size()) * vector_of(c) + vector_of(give);
-    return values_of(moved);
+    std::vector<double> moved = product(shift, c);
+    gyrolog::add(moved, give);
+    return moved;
 }
 
 MeanResponses::MeanResponses(const Baseline& baseline, std::size_t axis,
@@ -121,12 +109,11 @@ MeanRegression::MeanRegression(const Observation& observation, std::size_t axis,
 NormalEquations MeanRegression::equations(std::span<const double> density) const {
     const BinSums weights = bin_weights(density, baseline_.rate_hz());
     const std::size_t count = responses_.size();
-    NormalEquations equations{std::vector<double>(count * count), std::vector<double>(count), {}, {}};
+    NormalEquations equations{Matrix(count, count), std::vector<double>(count), {}, {}};
     for (std::size_t i = 0; i < count; ++i) {
         equations.b[i] = weighted_sum(products_[i], weights);
         for (std::size_t j = 0; j <= i; ++j) {
-            equations.A[i * count + j] = equations.A[j * count + i] =
-                weighted_sum(responses_.products(i, j), weights);
+            equations.A(i, j) = equations.A(j, i) = weighted_sum(responses_.products(i, j), weights);
         }
     }
     if (!uncertain_.empty()) { project_out(uncertain_, seen_, weights, responses_, equations); }

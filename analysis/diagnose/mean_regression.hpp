@@ -7,16 +7,17 @@
 
 #include "analysis/diagnose/bin_sums.hpp"
 #include "analysis/diagnose/observation.hpp"
+#include "analysis/numerics/matrix.hpp"
 
 namespace gyrolog {
 
 // Of c in Y = sum c_j G_j + noise: the log likelihood gains b'c - 1/2 c'A c, most at A c = b. The parameters
 // of the uncertain responses move by give + shift c.
 struct NormalEquations {
-    std::vector<double> A;  // row by row, symmetric
+    Matrix A;
     std::vector<double> b;
-    std::vector<double> shift;  // by response, the shifts of all uncertain parameters
-    std::vector<double> give;   // by uncertain parameter; empty where the model is certain
+    Matrix shift;              // a row for each uncertain parameter; empty where the model is certain
+    std::vector<double> give;  // by uncertain parameter
 
     // Of other data on the same c; shift and give stay.
     void add(const NormalEquations& other);

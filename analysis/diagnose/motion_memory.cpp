@@ -46,7 +46,7 @@ double gain_nats(const Observation& seen, std::size_t axis, const std::vector<fl
                  const std::vector<double>& density) {
     const MeanResponses response(seen.baseline(), axis, {cosines});
     const NormalEquations equations = MeanRegression(seen, axis, response).equations(density);
-    const double weight = equations.A[0];
+    const double weight = equations.A(0, 0);
     return weight > 0.0 ? 0.5 * equations.b[0] * equations.b[0] / weight : 0.0;
 }
 

@@ -128,7 +128,7 @@ private:
             }
         }
         const std::size_t count = places_.size();
-        NormalEquations sum{std::vector<double>(count * count), std::vector<double>(count), {}, {}};
+        NormalEquations sum{Matrix(count, count), std::vector<double>(count), {}, {}};
         for (const std::size_t axis : baseline.axes()) {
             const MeanResponses responses(baseline, axis, std::move(slopes[axis]));
             const MeanRegression regression(seen, axis, responses);

@@ -1,7 +1,8 @@
 #include "analysis/diagnose/uncertain_mean.hpp"
 
-#include <Eigen/Cholesky>
 #include <utility>
+
+#include "analysis/numerics/cholesky.hpp"
 
 namespace gyrolog {
 
@@ -29,13 +30,13 @@ std::vector<BinSums> UncertainMean::products_with(const SpectralBins& bins,
     return products;
 }
 
-std::vector<double> UncertainMean::information(const BinSums& weights) const {
-    std::vector<double> information(size() * size());
+Matrix UncertainMean::information(const BinSums& weights) const {
+    Matrix information(size(), size());
     for (std::size_t u = 0; u < size(); ++u) {
         for (std::size_t v = 0; v <= u; ++v) {
-            information[u * size() + v] = information[v * size() + u] = weighted_sum(products(u, v), weights);
+            information(u, v) = information(v, u) = weighted_sum(products(u, v), weights);
         }
-        information[u * size() + u] += 1.0 / (responses_[u].sd * responses_[u].sd);
+        information(u, u) += 1.0 / (responses_[u].sd * responses_[u].sd);
     }
     return information;
 }
@@ -52,12 +53,7 @@ std::vector<double> UncertainMean::pull(const BinSums& weights, std::span<const 
 
 std::vector<double> UncertainMean::step(const BinSums& weights, std::span<const BinSums> products,
                                         std::span<const double> at) const {
-    const auto count = static_cast<Eigen::Index>(size());
-    const std::vector<double> matrix = information(weights);
-    std::vector<double> step = pull(weights, products, at);
-    Eigen::Map<Eigen::VectorXd> solved(step.data(), count);
-    solved = Eigen::Map<const Eigen::MatrixXd>(matrix.data(), count, count).ldlt().solve(solved).eval();
-    return step;
+    return solve_symmetric(information(weights), pull(weights, products, at));
 }
 
 }  // namespace gyrolog

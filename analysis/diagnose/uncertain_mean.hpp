@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/diagnose/bin_sums.hpp"
+#include "analysis/numerics/matrix.hpp"
 
 namespace gyrolog {
 
@@ -28,9 +29,8 @@ public:
     // Of each response with other coefficients.
     std::vector<BinSums> products_with(const SpectralBins& bins, std::span<const float> cosines) const;
 
-    // Information matrix of the parameters, with their prior, where each bin's coefficients weigh so much;
-    // row by row.
-    std::vector<double> information(const BinSums& weights) const;
+    // Information matrix of the parameters, with their prior, where each bin's coefficients weigh so much.
+    Matrix information(const BinSums& weights) const;
     // Gradient of the log posterior at the parameters `at`, where what is left of the coefficients has these
     // products with the responses.
     std::vector<double> pull(const BinSums& weights, std::span<const BinSums> products,

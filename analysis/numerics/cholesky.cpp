@@ -34,7 +34,7 @@ Matrix CholeskyFactor::solve(Matrix right) const {
 }
 
 Matrix CholeskyFactor::inverse() const {
-    return solve(identity_matrix(static_cast<std::size_t>(factor_->of.rows())));
+    return solve(Matrix::identity(static_cast<std::size_t>(factor_->of.rows())));
 }
 
 double CholeskyFactor::log_determinant() const {
@@ -49,6 +49,12 @@ std::vector<double> solve_symmetric(const Matrix& symmetric, std::span<const dou
     std::vector<double> solved(right.size());
     view_of(std::span<double>(solved)) =
         Eigen::LDLT<Eigen::MatrixXd>(view_of(symmetric)).solve(view_of(right));
+    return solved;
+}
+
+Matrix solve_symmetric(const Matrix& symmetric, const Matrix& right) {
+    Matrix solved(right.rows(), right.columns());
+    view_of(solved) = Eigen::LDLT<Eigen::MatrixXd>(view_of(symmetric)).solve(view_of(right));
     return solved;
 }
 

@@ -33,5 +33,6 @@ private:
 
 // The solution x of C x = right by C = L D L', with pivots: C may be singular, or not definite.
 std::vector<double> solve_symmetric(const Matrix& symmetric, std::span<const double> right);
+Matrix solve_symmetric(const Matrix& symmetric, const Matrix& right);
 
 }  // namespace gyrolog

@@ -14,6 +14,12 @@ public:
     Matrix(std::size_t rows, std::size_t columns)
         : rows_(rows), columns_(columns), values_(rows * columns, 0.0) {}
 
+    static Matrix identity(std::size_t size) {
+        Matrix identity(size, size);
+        for (std::size_t i = 0; i < size; ++i) { identity(i, i) = 1.0; }
+        return identity;
+    }
+
     std::size_t rows() const { return rows_; }
     std::size_t columns() const { return columns_; }
     double& operator()(std::size_t row, std::size_t column) { return values_[column * rows_ + row]; }
@@ -40,11 +46,5 @@ private:
     std::size_t columns_ = 0;
     std::vector<double> values_;
 };
-
-inline Matrix identity_matrix(std::size_t size) {
-    Matrix identity(size, size);
-    for (std::size_t i = 0; i < size; ++i) { identity(i, i) = 1.0; }
-    return identity;
-}
 
 }  // namespace gyrolog

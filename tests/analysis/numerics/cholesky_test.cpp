@@ -44,5 +44,11 @@ TEST(SolveSymmetric, SolvesWhatIsNotDefinite) {
     EXPECT_NEAR(x[1], 2.0, 1e-14);
 }
 
+TEST(SolveSymmetric, SolvesForEachColumn) {
+    const Matrix symmetric = test::matrix_of_rows({{1.0, 2.0}, {2.0, 1.0}});
+    const Matrix x = solve_symmetric(symmetric, test::matrix_of_rows({{5.0, 1.0}, {4.0, 2.0}}));
+    EXPECT_LT(test::largest_difference(x, test::matrix_of_rows({{1.0, 1.0}, {2.0, 0.0}})), 1e-14);
+}
+
 }  // namespace
 }  // namespace gyrolog

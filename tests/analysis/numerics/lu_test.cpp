@@ -14,7 +14,7 @@ TEST(LuFactors, SolveWhatNeedsPivots) {
 }
 
 TEST(LuFactors, SolveForManyRightSides) {
-    const Matrix inverse = LuFactors(test::second_difference(25)).solve(identity_matrix(25));
+    const Matrix inverse = LuFactors(test::second_difference(25)).solve(Matrix::identity(25));
     for (std::size_t i = 0; i < 25; ++i) {
         for (std::size_t j = 0; j < 25; ++j) {
             EXPECT_NEAR(inverse(i, j), test::inverse_second_difference(25, i, j), 1e-12);

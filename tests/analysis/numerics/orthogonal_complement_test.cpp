@@ -20,9 +20,9 @@ TEST(OrthogonalComplement, OfEqualNumbersKeepsWhatIsLeftWithoutTheMean) {
 TEST(OrthogonalComplement, OfACovarianceIsThatOfTheComplement) {
     const OrthogonalComplement complement(std::vector(5, 1.0));
     // Independent numbers stay so; what all have in common goes.
-    Matrix covariance = identity_matrix(5);
+    Matrix covariance = Matrix::identity(5);
     for (double& value : covariance.values()) { value += 7.0; }
-    EXPECT_LT(test::largest_difference(complement.of_covariance(covariance), identity_matrix(4)), 1e-14);
+    EXPECT_LT(test::largest_difference(complement.of_covariance(covariance), Matrix::identity(4)), 1e-14);
     // x x' becomes that of the complement of x.
     const std::vector<double> x = {1.0, -2.0, 0.5, 3.0, 0.0};
     Matrix square(5, 5);
@@ -36,7 +36,7 @@ TEST(OrthogonalComplement, HasAnOrthonormalBasisAcrossItsDirection) {
     const std::vector<double> direction = {0.2, -3.0, 0.0, 1.5};
     const OrthogonalComplement complement(direction);
     const Matrix basis = complement.basis();
-    EXPECT_LT(test::largest_difference(transposed_product(basis, basis), identity_matrix(3)), 1e-15);
+    EXPECT_LT(test::largest_difference(transposed_product(basis, basis), Matrix::identity(3)), 1e-15);
     for (const double along : transposed_product(basis, direction)) { EXPECT_NEAR(along, 0.0, 1e-15); }
     const std::vector<double> x = {1.0, 2.0, 3.0, 4.0};
     const std::vector<double> by_basis = transposed_product(basis, x);
