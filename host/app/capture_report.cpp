@@ -7,15 +7,12 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const char* name_of(FileEnd end) {
     switch (end) {

@@ -14,7 +14,7 @@
 namespace gyrolog {
 namespace {
 
-struct Options {
+struct BenchSessionOptions {
     CaptureOptions capture;
     std::string path;
 };
@@ -32,7 +32,7 @@ std::string without_extension(const std::string& path) {
     return path.ends_with(ending) ? path.substr(0, path.size() - ending.size()) : path;
 }
 
-ExitCode bench_session(Console& console, Options options) {
+ExitCode bench_session(Console& console, BenchSessionOptions options) {
     if (options.capture.devices.size() > 1) {
         return report_error(
             console, "",
@@ -64,7 +64,7 @@ ExitCode bench_session(Console& console, Options options) {
 }  // namespace
 
 Action setup_bench_session(CLI::App& app) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<BenchSessionOptions>();
     app.add_option("-o,--output", options->path, "The capture to write (default: gyrolog-DATE-TIME.pcapng)")
         ->type_name("FILE");
     options->capture.declare(app);

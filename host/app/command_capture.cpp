@@ -13,13 +13,13 @@
 namespace gyrolog {
 namespace {
 
-struct Options {
+struct CaptureCommandOptions {
     CaptureOptions capture;
     std::string path;
     std::string json;
 };
 
-Status check_denoise(const Options& options, std::size_t boards) {
+Status check_denoise(const CaptureCommandOptions& options, std::size_t boards) {
     const LiveDenoiseOptions& denoise = options.capture.denoise;
     GYROLOG_CHECK(denoise.check(options.capture.rate_hz));
     if (!denoise.wanted()) { return {}; }
@@ -35,7 +35,7 @@ Status check_denoise(const Options& options, std::size_t boards) {
     return check_output_paths(read, written);
 }
 
-ExitCode capture(Console& console, const Options& options) {
+ExitCode capture(Console& console, const CaptureCommandOptions& options) {
     const auto devices = choose_devices(options.capture.devices);
     if (!devices.ok()) {
         report_error(console, "capture", devices.error());
@@ -65,7 +65,7 @@ ExitCode capture(Console& console, const Options& options) {
 }  // namespace
 
 Action setup_capture(CLI::App& app) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CaptureCommandOptions>();
     app.add_option("-o,--output", options->path, "The capture to write (.pcapng)")
         ->type_name("FILE")
         ->required();

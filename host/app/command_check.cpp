@@ -9,20 +9,20 @@
 namespace gyrolog {
 namespace {
 
-struct Options {
+struct CheckOptions {
     std::string path;
     std::string json;
 };
 
-std::shared_ptr<Options> declare(CLI::App& app) {
-    auto options = std::make_shared<Options>();
+std::shared_ptr<CheckOptions> declare(CLI::App& app) {
+    auto options = std::make_shared<CheckOptions>();
     app.add_option("FILE", options->path, "A capture (.pcapng)")->required();
     app.add_option("--json", options->json, "Write the answer as JSON to FILE (- for standard output)")
         ->type_name("FILE");
     return options;
 }
 
-ExitCode tell(Console& console, const char* command, const Options& options,
+ExitCode tell(Console& console, const char* command, const CheckOptions& options,
               nlohmann::ordered_json (*as_json)(const std::string&, const LoadedCapture&),
               std::string (*as_text)(const std::string&, const LoadedCapture&), ExitCode when_missing) {
     const auto capture = load_capture(options.path, false);

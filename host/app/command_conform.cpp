@@ -12,7 +12,7 @@
 namespace gyrolog {
 namespace {
 
-struct Options {
+struct ConformOptions {
     std::string device = "usb:";
     std::string json;
     std::string transcript;
@@ -23,7 +23,7 @@ ExitCode fail_to_open(Console& console, const Error& error) {
     return exit_code_of_opening(error);
 }
 
-ExitCode conform(Console& console, const Options& options) {
+ExitCode conform(Console& console, const ConformOptions& options) {
     auto opened = open_source(options.device, {}, false);
     if (!opened.ok()) { return fail_to_open(console, opened.error()); }
     console.err << "gyrolog conform: talking to " << opened->source->identity().uri
@@ -58,7 +58,7 @@ ExitCode conform(Console& console, const Options& options) {
 }  // namespace
 
 Action setup_conform(CLI::App& app) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ConformOptions>();
     app.add_option("--device", options->device,
                    "usb: (the only board), usb:SERIAL, tty:PATH or sim:KEY=VALUE,...")
         ->type_name("URI")

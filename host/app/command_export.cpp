@@ -12,7 +12,7 @@
 namespace gyrolog {
 namespace {
 
-struct Options {
+struct ExportOptions {
     std::string source;
     std::string output;
     std::optional<double> rate_hz;
@@ -27,7 +27,7 @@ std::string known_endings() {
     return endings;
 }
 
-Status export_model(const Options& options, const ExportFormat& format) {
+Status export_model(const ExportOptions& options, const ExportFormat& format) {
     if (format.needs != ExportFormat::Needs::noise) {
         return Error{ErrorCode::invalid_argument, "a model has no samples for a " +
                                                       std::string(format.ending) +
@@ -44,7 +44,7 @@ bool has_rates(const Recording& recording) {
     });
 }
 
-Status export_recording(Console& console, const Options& options, const ExportFormat& format) {
+Status export_recording(Console& console, const ExportOptions& options, const ExportFormat& format) {
     GYROLOG_TRY(const Recording recording,
                 read_recording({options.source, options.rate_hz, options.lsb_dps}));
     for (const std::string& warning : recording.warnings) {
@@ -67,7 +67,7 @@ Status export_recording(Console& console, const Options& options, const ExportFo
     return format.write(source, options.output);
 }
 
-ExitCode export_to_file(Console& console, const Options& options) {
+ExitCode export_to_file(Console& console, const ExportOptions& options) {
     const ExportFormat* format = export_format_of(options.output);
     if (format == nullptr) {
         return report_error(
@@ -85,7 +85,7 @@ ExitCode export_to_file(Console& console, const Options& options) {
 }  // namespace
 
 Action setup_export(CLI::App& app) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ExportOptions>();
     app.add_option("RECORDING", options->source,
                    "A capture (.pcapng), text (.csv, .csv.xz), or a model (.json)")
         ->required();

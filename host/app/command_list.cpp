@@ -12,7 +12,7 @@
 namespace gyrolog {
 namespace {
 
-struct Options {
+struct ListOptions {
     std::string json;
 };
 
@@ -38,7 +38,7 @@ void print_list(std::ostream& out, const UsbSurvey& survey) {
     }
 }
 
-ExitCode list(Console& console, const Options& options) {
+ExitCode list(Console& console, const ListOptions& options) {
     auto usb = UsbContext::create();
     if (!usb.ok()) { return report_error(console, "list", usb.error()); }
     const auto survey = survey_usb(**usb);
@@ -61,7 +61,7 @@ ExitCode list(Console& console, const Options& options) {
 }  // namespace
 
 Action setup_list(CLI::App& app) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ListOptions>();
     app.add_option("--json", options->json, "Write the answer as JSON to FILE (- for standard output)")
         ->type_name("FILE");
     return [options](Console& console) { return list(console, *options); };

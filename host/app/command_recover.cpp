@@ -12,13 +12,13 @@
 namespace gyrolog {
 namespace {
 
-struct Options {
+struct RecoverOptions {
     std::string damaged;
     std::string recovered;
     std::string json;
 };
 
-nlohmann::ordered_json recovery_json(const Options& options, const RecoveryReport& report) {
+nlohmann::ordered_json recovery_json(const RecoverOptions& options, const RecoveryReport& report) {
     const BlockAccounts& source = report.source;
     return {{"schema", "gyrolog-recover/1"},
             {"file", options.damaged},
@@ -32,7 +32,7 @@ nlohmann::ordered_json recovery_json(const Options& options, const RecoveryRepor
             {"header_rewritten", report.header_rewritten}};
 }
 
-ExitCode recover(Console& console, const Options& options) {
+ExitCode recover(Console& console, const RecoverOptions& options) {
     const auto report = recover_capture(options.damaged, options.recovered);
     if (!report.ok()) { return report_error(console, "recover", report.error()); }
     if (!options.json.empty()) {
@@ -55,7 +55,7 @@ ExitCode recover(Console& console, const Options& options) {
 }  // namespace
 
 Action setup_recover(CLI::App& app) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RecoverOptions>();
     app.add_option("FILE", options->damaged, "The damaged capture")->required();
     app.add_option("-o,--output", options->recovered, "The new file for its intact part")
         ->type_name("FILE")

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "host/app/capture_run.hpp"
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
@@ -16,18 +14,17 @@
 #include "host/app/result_output.hpp"
 #include "host/app/simulation_run.hpp"
 #include "host/formats/effect_catalogue.hpp"
+#include "host/formats/json.hpp"
 #include "host/formats/model_json.hpp"
 #include "host/virtual_board/sim_source.hpp"
 
 namespace gyrolog {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double duration_without_wish_s = 3600.0;
 constexpr double samples_max = 1099511627776.0;  // 2^40
 
-struct Options {
+struct SimulateOptions {
     std::string model;
     std::string output;
     std::string duration;
@@ -62,7 +59,7 @@ bool is_text(const std::string& path) {
            !std::filesystem::is_directory(there);
 }
 
-Status check(const Options& options) {
+Status check(const SimulateOptions& options) {
     if (options.model.empty()) {
         return wrong("give the MODEL to simulate (.json), or --effects to see what a model may list");
     }
@@ -129,7 +126,7 @@ void warn_of_axes(const Recording& recording, const std::string& name, std::vect
     }
 }
 
-Result<std::shared_ptr<const RecordedWorld>> read_like(const Options& options, Story& story) {
+Result<std::shared_ptr<const RecordedWorld>> read_like(const SimulateOptions& options, Story& story) {
     auto read = read_recording({options.like, options.rate_hz, std::nullopt});
     if (!read.ok()) { return in_context("--like", std::move(read).error()); }
     auto recording = std::make_shared<const Recording>(std::move(read).value());
@@ -169,7 +166,8 @@ std::string made_up(const RecordedWorld& like) {
     return text.empty() ? text : "; not in it, so simulated: " + text.substr(2);
 }
 
-void tell(Console& console, const Options& options, const Story& story, const SimulationOutcome& outcome) {
+void tell(Console& console, const SimulateOptions& options, const Story& story,
+          const SimulationOutcome& outcome) {
     console.err << fmt::format("  {}: {} samples in {}, seed {}{}\n", options.output,
                                format_count(outcome.samples),
                                format_duration(static_cast<double>(outcome.instants) / outcome.rate_hz),
@@ -187,7 +185,7 @@ void tell(Console& console, const Options& options, const Story& story, const Si
     for (const std::string& note : story.file.notes) { console.err << "  " << note << '\n'; }
 }
 
-Json answer(const Options& options, const Story& story, const SimulationOutcome& outcome) {
+Json answer(const SimulateOptions& options, const Story& story, const SimulationOutcome& outcome) {
     Json json;
     json["schema"] = "gyrolog-simulate/1";
     json["model"] = options.model;
@@ -211,12 +209,12 @@ Json answer(const Options& options, const Story& story, const SimulationOutcome&
 }
 
 // The unit itself, once nothing is left that could refuse it.
-Status write_unit(Console& console, const Options& options, const SensorModel& model) {
+Status write_unit(Console& console, const SimulateOptions& options, const SensorModel& model) {
     if (options.model_out.empty()) { return {}; }
     return write_text(console, options.model_out, format_model(model));
 }
 
-ExitCode make_text(Console& console, const Options& options, Story& story) {
+ExitCode make_text(Console& console, const SimulateOptions& options, Story& story) {
     const auto fail = [&](const Error& error) { return report_error(console, "simulate", error); };
     SimulationRequest request;
     request.seed = options.seed;
@@ -248,7 +246,7 @@ ExitCode make_text(Console& console, const Options& options, Story& story) {
     return written.ok() ? ExitCode::ok : fail(written.error());
 }
 
-ExitCode make_capture(Console& console, const Options& options, const Story& story) {
+ExitCode make_capture(Console& console, const SimulateOptions& options, const Story& story) {
     SimOptions board;
     board.seed = options.seed;
     board.rate_hz = options.rate_hz;
@@ -278,13 +276,13 @@ ExitCode make_capture(Console& console, const Options& options, const Story& sto
     return written.ok() ? result.code : report_error(console, "simulate", written.error());
 }
 
-ExitCode show_effects(Console& console, const Options& options) {
+ExitCode show_effects(Console& console, const SimulateOptions& options) {
     const Status shown = options.json.empty() ? write_text(console, "-", effect_catalogue_text())
                                               : write_json(console, options.json, effect_catalogue_json());
     return shown.ok() ? ExitCode::ok : report_error(console, "simulate", shown.error());
 }
 
-ExitCode simulate(Console& console, const Options& options) {
+ExitCode simulate(Console& console, const SimulateOptions& options) {
     if (options.effects) { return show_effects(console, options); }
     const auto fail = [&](const Error& error) { return report_error(console, "simulate", error); };
     if (const Status fine = check(options); !fine.ok()) { return fail(fine.error()); }
@@ -308,7 +306,7 @@ ExitCode simulate(Console& console, const Options& options) {
 }  // namespace
 
 Action setup_simulate(CLI::App& app) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SimulateOptions>();
     app.add_option("MODEL", options->model,
                    "The sensor (.json): a gyrolog-model/1, a data sheet (gyrolog-datasheet/1) or gyroparams "
                    "(gyrolog-gyroparams/1)");

@@ -1,13 +1,10 @@
 #include "host/formats/analysis_json.hpp"
 
-#include <nlohmann/json.hpp>
-
+#include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json recording_json(const AnalysisReport& report) {
     Json json;

@@ -1,15 +1,12 @@
 #include "host/formats/comparison_json.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "analysis/noise/noise_model.hpp"
 #include "host/formats/comparison_text.hpp"
+#include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json in_degrees(const std::vector<double>& rates_rad) {
     Json array = Json::array();

@@ -4,17 +4,14 @@
 #include <cmath>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "host/formats/curve_effect.hpp"
 #include "host/formats/diagnosis_json.hpp"
+#include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
 #include "host/formats/noise_unit.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double band_probability = 0.95;
 constexpr double band_sd = 1.96;

@@ -2,15 +2,12 @@
 
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
+#include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
 #include "host/formats/noise_unit.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json term_json(const CurveTerm& term, const RateUnit& unit) {
     Json json;

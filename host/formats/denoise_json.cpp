@@ -2,12 +2,10 @@
 
 #include <cmath>
 
-#include <nlohmann/json.hpp>
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 class Writer {
 public:

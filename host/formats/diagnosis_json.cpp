@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <nlohmann/json.hpp>
-
 #include "host/formats/effect_words.hpp"
+#include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json axes_json(const std::vector<std::size_t>& axes) {
     Json json = Json::array();

@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "analysis/simulate/chain.hpp"
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string allowed(const EffectParam& param) {
     if (param.whole_up_to != 0.0) { return fmt::format("a whole number from 1 to {:g}", param.whole_up_to); }

@@ -3,12 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Of a Gauss-Markov process with sigma and T of 1.
 constexpr double peak_tau = 1.8925;

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "analysis/recording/standard_gravity.hpp"
+#include "host/formats/json.hpp"
 #include "host/formats/json_keys.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Range = JsonKeys::Range;
 
 constexpr double percent = 0.01;

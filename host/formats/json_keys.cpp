@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "host/formats/json.hpp"
+
 namespace gyrolog {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int nesting_max = 32;
 

@@ -8,16 +8,15 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 #include "analysis/simulate/sensor_model.hpp"
 #include "host/base/result.hpp"
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 
 struct JsonDocument {
-    nlohmann::ordered_json json;  // an object with the text "schema"
-    bool plain = true;            // false: a number in it was not finite, and stands as text in its place
+    Json json;          // an object with the text "schema"
+    bool plain = true;  // false: a number in it was not finite, and stands as text in its place
 };
 
 // `name` is what errors call the text. Error `malformed`: no JSON object, nested too deep, no schema.
@@ -28,7 +27,6 @@ Result<JsonDocument> parse_json_document(std::string_view text, const std::strin
 class JsonKeys {
 public:
     enum class Range { any, not_negative, positive };
-    using Json = nlohmann::ordered_json;
 
     JsonKeys(const Json& object, std::string path, std::optional<std::string>& problem);
 

@@ -11,12 +11,11 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "analysis/recording/standard_gravity.hpp"
 #include "host/base/file_output.hpp"
 #include "host/formats/datasheet_json.hpp"
 #include "host/formats/gyroparams_json.hpp"
+#include "host/formats/json.hpp"
 #include "host/formats/json_keys.hpp"
 #include "host/formats/text_file.hpp"
 
@@ -24,7 +23,6 @@ namespace gyrolog {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Range = JsonKeys::Range;
 using Keys = JsonKeys;
 

@@ -1,12 +1,11 @@
 #include "host/formats/noise_json.hpp"
 
 #include "host/base/program_name.hpp"
+#include "host/formats/json.hpp"
 #include "host/formats/noise_unit.hpp"
 
 namespace gyrolog {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json coefficient_json(const FittedCoefficient& fitted, NoiseTerm term, const RateUnit& unit) {
     const double scale = unit.per_column_unit;
