@@ -41,7 +41,7 @@ TEST(Standstill, OfTwoSecondsAt8kHzLosesNothing) {
     expect_nothing_lost(capture_held("8000", "4s", milliseconds(2000)), 32'000);
 }
 
-// In the slow tier.
+// In the long tier.
 TEST(LongStandstill, OfTwoSecondsAt1kHzLosesNothing) {
     const HeldCapture held = capture_held("1000", "4s", milliseconds(2000));
     EXPECT_EQ(held.capture.exit_code, 0) << held.capture.err;

@@ -114,7 +114,7 @@ function(gyrolog_test name)
     set(arg_TIMEOUT 120)
     # Instrumented code is some ten times slower: a test that hangs is still found.
     if(GYROLOG_SANITIZE)
-      set(arg_TIMEOUT 480)
+      set(arg_TIMEOUT 1200)
     endif()
   endif()
   gyrolog_test_settings(${name} "${arg_LABELS}" ${arg_TIMEOUT} "${arg_ENVIRONMENT}")
@@ -126,12 +126,12 @@ function(gyrolog_test_settings name labels timeout_s environment)
 endfunction()
 
 # gyrolog_longer_test(NAME OF test TIMEOUT seconds ENVIRONMENT ... [ARGUMENTS ...]): the binary of another test once
-# more in the slow tier, with an environment that asks it for more.
+# more in the long tier, with an environment that asks it for more.
 function(gyrolog_longer_test name)
   cmake_parse_arguments(arg "" "OF;TIMEOUT" "ENVIRONMENT;ARGUMENTS" ${ARGN})
   if(GYROLOG_TESTS)
     add_test(NAME ${name} COMMAND ${arg_OF} ${arg_ARGUMENTS})
-    gyrolog_test_settings(${name} slow ${arg_TIMEOUT} "${arg_ENVIRONMENT}")
+    gyrolog_test_settings(${name} long ${arg_TIMEOUT} "${arg_ENVIRONMENT}")
   endif()
 endfunction()
 

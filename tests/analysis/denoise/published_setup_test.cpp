@@ -22,7 +22,7 @@ namespace gyrolog {
 namespace {
 
 constexpr double rate_hz = 200.0;
-// The hour at rest and every row of the table in the slow tier; what is claimed always.
+// The hour at rest and every row of the table in the long tier; what is claimed always.
 const bool whole_table = is_asked("GYROLOG_WHOLE_TABLE");
 const double still_s = whole_table ? 3600.0 : 120.0;
 const double swing_s = whole_table ? 120.0 : 30.0;
