@@ -110,6 +110,10 @@ function(gyrolog_test name)
   if(NOT arg_LABELS)
     set(arg_LABELS default)
   endif()
+  # Instrumented, only the default tier without its statistics is run: the others are not built.
+  if(GYROLOG_SANITIZE AND NOT arg_LABELS STREQUAL "default")
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
     # Instrumented code is some ten times slower: a test that hangs is still found.
