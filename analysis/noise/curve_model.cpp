@@ -69,6 +69,7 @@ Target target_of(const AllanCurve& curve) {
 // bounds then, and a step means the same for a quantisation of 1e-9 as for a white noise of 1e-3.
 std::vector<double> logarithms_of(const std::vector<CurveTerm>& terms) {
     std::vector<double> logs;
+    logs.reserve(terms.size());
     for (const CurveTerm& term : terms) { logs.push_back(2.0 * std::log(term.size)); }
     for (const CurveTerm& term : terms) {
         if (has_shape(term.kind)) { logs.push_back(std::log(term.shape)); }
