@@ -216,6 +216,7 @@ private:
             if (needed.squares[j] > 0.0) { there.push_back(j); }
         }
         std::vector<double> shares_there;
+        shares_there.reserve(there.size());
         for (const std::size_t j : there) { shares_there.push_back(shares[j]); }
         const Matrix information = likelihood_.expected_information(needed.squares);
         const Matrix covariance = inverse_information(information.part(there, there));

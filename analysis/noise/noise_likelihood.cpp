@@ -227,6 +227,7 @@ Matrix NoiseLikelihood::expected_information(std::span<const double> squares) co
     if (!top_.empty()) {
         const Matrix full = Inverse(covariance(squares), ramp_).matrix();
         std::vector<Matrix> products;
+        products.reserve(matrices_.size());
         for (const Matrix& matrix : matrices_) { products.push_back(product(full, matrix)); }
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t j = 0; j <= i; ++j) {
