@@ -17,9 +17,7 @@
 namespace gyrolog {
 
 // Of device time: what GYROLOG_SOAK_HOURS says, or enough for a quarter of a minute.
-inline double soak_hours(double otherwise) {
-    return asked("GYROLOG_SOAK_HOURS", otherwise);
-}
+inline double soak_hours(double otherwise) { return asked("GYROLOG_SOAK_HOURS", otherwise); }
 
 inline void expect_sound(const WatchedRun& run, const std::string& capture, const std::string& err_path,
                          std::uint64_t rate_hz, double hours) {

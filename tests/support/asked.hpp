@@ -1,5 +1,5 @@
-// How much a test is to do, where its environment says so: the same program does a little always, and much in the
-// long tier.
+// How much a test is to do, where its environment says so: the same program does a little always, and much in
+// the long tier.
 #pragma once
 
 #include <cstdlib>

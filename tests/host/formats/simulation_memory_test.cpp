@@ -1,4 +1,5 @@
-// What a long simulation takes of memory, by counting what is allocated. GYROLOG_LONG_HOURS asks for longer ones.
+// What a long simulation takes of memory, by counting what is allocated. GYROLOG_LONG_HOURS asks for longer
+// ones.
 
 #include <gtest/gtest.h>
 
