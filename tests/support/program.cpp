@@ -14,6 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "host/base/clock.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -47,6 +49,7 @@ void collect(pid_t child, int out, int err, std::optional<SignalPlan> plan, Prog
             counted_from = Clock::now();
         }
         if (plan && plan->once_there.empty() && Clock::now() - counted_from >= plan->after) {
+            result.signalled_ns = host_now().monotonic_ns;
             kill(child, plan->number);
             const std::chrono::milliseconds held = plan->held;
             plan.reset();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@ struct ProgramResult {
     int exit_code = -1;  // 128 + the signal's number for a program that a signal ended
     std::string out;
     std::string err;
+    std::int64_t signalled_ns = 0;  // monotonic, just before a signal was sent; 0: none was
 };
 
 // The program under test: in GYROLOG_BUILD_DIR, or beside the one that asks.
