@@ -5,7 +5,7 @@ namespace gyrolog {
 
 namespace {
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_angle_noise(const EffectUse& use) {
     const double scale_rad_s = use["Q_dps_s"] * rad_per_deg * use.context().rate_hz;
     return PerAxis<AngleQuantisation>::make([&](std::size_t axis) -> std::optional<AngleQuantisation> {
         if (!use.acts_on(axis)) { return std::nullopt; }
@@ -13,7 +13,7 @@ std::unique_ptr<Stage> make(const EffectUse& use) {
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam angle_noise_params[] = {
     {.name = "Q_dps_s",
      .meaning = "quantisation noise of the angle, besides the model's own",
      .range = EffectParam::Range::not_negative,
@@ -28,8 +28,8 @@ constinit const EffectDefinition angle_noise_effect = {
     .model =
         "rate of an angle with independent errors of standard deviation Q_dps_s, independent on each axis",
     .source = "IEEE 952-1997, annex C (quantization noise)",
-    .params = params,
-    .make = make,
+    .params = angle_noise_params,
+    .make = make_angle_noise,
     .noise_only = true,
 };
 

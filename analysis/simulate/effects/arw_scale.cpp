@@ -11,11 +11,11 @@ struct Factor {
     double operator()(const SampleBlock& /*block*/, std::size_t /*i*/) const { return factor; }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_arw_scale(const EffectUse& use) {
     return std::make_unique<WhiteNoiseGain<Factor>>(use, Factor{use["factor"]});
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam arw_scale_params[] = {
     {.name = "factor",
      .meaning = "of the angle random walk N",
      .range = EffectParam::Range::not_negative,
@@ -23,16 +23,16 @@ constexpr EffectParam params[] = {
      .plausible_to = 2.0},
 };
 
-void spectrum(std::span<const double> /*f_hz*/, double /*rate_hz*/, const EffectValues& effect,
-              std::span<SpectralParts> parts) {
+void arw_scale_spectrum(std::span<const double> /*f_hz*/, double /*rate_hz*/, const EffectValues& effect,
+                        std::span<SpectralParts> parts) {
     for (SpectralParts& part : parts) { part.white *= effect["factor"] * effect["factor"]; }
 }
 
-constexpr std::string_view fitted[] = {"factor"};
+constexpr std::string_view arw_scale_fitted[] = {"factor"};
 
-constexpr EffectSignature signature = {
-    .spectral = fitted,
-    .spectrum = spectrum,
+constexpr EffectSignature arw_scale_signature = {
+    .spectral = arw_scale_fitted,
+    .spectrum = arw_scale_spectrum,
     .words = "The white noise is {factor} times the model's",
     .decided_by = "any still recording of some minutes at another sample rate",
 };
@@ -43,9 +43,9 @@ constinit const EffectDefinition arw_scale_effect = {
     .name = "arw_scale",
     .model = "white noise times factor",
     .source = "",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = arw_scale_params,
+    .make = make_arw_scale,
+    .signature = &arw_scale_signature,
 };
 
 }  // namespace gyrolog

@@ -7,26 +7,26 @@ namespace gyrolog {
 
 namespace {
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_asymmetry(const EffectUse& use) {
     const double gain = use["gain"];
     return make_rate_map(use,
                          [gain](double rate_rad_s) { return rate_rad_s + gain * std::fabs(rate_rad_s); });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam asymmetry_params[] = {
     {.name = "gain",
      .meaning = "half the difference of the gains of the two directions",
      .plausible_from = -0.01,
      .plausible_to = 0.01},
 };
 
-constexpr std::string_view linear[] = {"gain"};
+constexpr std::string_view asymmetry_linear[] = {"gain"};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature asymmetry_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::rate,
     .needs_reference = true,
-    .linear = linear,
+    .linear = asymmetry_linear,
     .words = "The two directions have different gains, by {gain} either way",
     .decided_by = "the same plateaus in both directions, and slow reversals",
 };
@@ -37,9 +37,9 @@ constinit const EffectDefinition asymmetry_effect = {
     .name = "asymmetry",
     .model = "w + gain |w|",
     .source = "IEEE 528-2019 (scale factor asymmetry)",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = asymmetry_params,
+    .make = make_asymmetry,
+    .signature = &asymmetry_signature,
 };
 
 }  // namespace gyrolog

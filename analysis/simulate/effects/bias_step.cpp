@@ -16,19 +16,19 @@ struct BiasStep {
     }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_bias_step(const EffectUse& use) {
     return PerAxis<BiasStep>::make([&](std::size_t axis) -> std::optional<BiasStep> {
         if (!use.acts_on(axis)) { return std::nullopt; }
         return BiasStep{use["step_dps"] * rad_per_deg, use["at_s"] * use.context().rate_hz};
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam bias_step_params[] = {
     {.name = "step_dps", .meaning = "change of the bias", .plausible_from = -0.5, .plausible_to = 0.5},
     {.name = "at_s", .meaning = "from this time on", .plausible_from = 0.0, .plausible_to = 1e5},
 };
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature bias_step_signature = {
     .method = EvidenceMethod::step,
     .place = PlaceKind::instant,
     .words = "The bias jumps once, {at_s} after the first sample, by {step_dps}.",
@@ -43,9 +43,9 @@ constinit const EffectDefinition bias_step_effect = {
     .name = "bias_step",
     .model = "rate + step_dps for t >= at_s",
     .source = "",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = bias_step_params,
+    .make = make_bias_step,
+    .signature = &bias_step_signature,
 };
 
 }  // namespace gyrolog

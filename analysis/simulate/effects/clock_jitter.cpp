@@ -22,9 +22,9 @@ private:
     bool in_stamps_;
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<ClockJitter>(use); }
+std::unique_ptr<Stage> make_clock_jitter(const EffectUse& use) { return std::make_unique<ClockJitter>(use); }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam clock_jitter_params[] = {
     {.name = "sd_s",
      .meaning = "standard deviation of one instant, independent of the others",
      .range = EffectParam::Range::not_negative,
@@ -38,7 +38,7 @@ constexpr EffectParam params[] = {
      .otherwise = 1.0},
 };
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature clock_jitter_signature = {
     .method = EvidenceMethod::stamp_spread,
     .place = PlaceKind::structure,
     .structure = "timestamp_jitter",
@@ -54,10 +54,10 @@ constinit const EffectDefinition clock_jitter_effect = {
     .name = "clock_jitter",
     .model = "t_k + sd_s times an independent standard normal draw; the sensor as a whole, whatever its axes",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = clock_jitter_params,
+    .make = make_clock_jitter,
     .noise_only = true,
-    .signature = &signature,
+    .signature = &clock_jitter_signature,
 };
 
 }  // namespace gyrolog

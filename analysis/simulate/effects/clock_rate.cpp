@@ -21,12 +21,12 @@ private:
     double late_per_sample_s_;
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_clock_rate(const EffectUse& use) {
     if (use["in_stamps"] != 0.0) { return nullptr; }
     return std::make_unique<NominalStamps>(use["rel"], 1.0 / use.context().rate_hz);
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam clock_rate_params[] = {
     {.name = "rel",
      .meaning = "relative error of the sample rate; positive: samples come too fast",
      .plausible_from = -0.01,
@@ -56,7 +56,7 @@ void leave_out_the_future(const Recording& recording, const EffectModel& entry, 
     }
 }
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature clock_rate_signature = {
     .method = EvidenceMethod::stamp_rate,
     .place = PlaceKind::structure,
     .structure = "timestamp_rate",
@@ -71,11 +71,11 @@ constinit const EffectDefinition clock_rate_effect = {
     .name = "clock_rate",
     .model = "sample k is taken at k / (rate (1 + rel)); the sensor as a whole, whatever its axes",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = clock_rate_params,
+    .make = make_clock_rate,
     .rate_error = "rel",
     .timing_only = true,
-    .signature = &signature,
+    .signature = &clock_rate_signature,
 };
 
 }  // namespace gyrolog

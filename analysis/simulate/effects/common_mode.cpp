@@ -31,7 +31,7 @@ private:
     Vector3 sd_rad_s_{};
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<CommonNoise>(use); }
+std::unique_ptr<Stage> make_common_mode(const EffectUse& use) { return std::make_unique<CommonNoise>(use); }
 
 constexpr EffectParam gain(std::string_view name) {
     return {.name = name,
@@ -41,7 +41,7 @@ constexpr EffectParam gain(std::string_view name) {
             .otherwise = 1.0};
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam common_mode_params[] = {
     {.name = "N_dps_per_sqrt_hz",
      .meaning = "density of the common noise, two-sided",
      .range = EffectParam::Range::not_negative,
@@ -52,18 +52,18 @@ constexpr EffectParam params[] = {
     gain("gain_z"),
 };
 
-void add_spectrum(std::span<const double> /*f_hz*/, double /*rate_hz*/, const EffectValues& effect,
-                  std::span<SpectralParts> parts) {
+void common_mode_spectrum(std::span<const double> /*f_hz*/, double /*rate_hz*/, const EffectValues& effect,
+                          std::span<SpectralParts> parts) {
     constexpr std::array<const char*, 3> gains = {"gain_x", "gain_y", "gain_z"};
     const double rad_per_sqrt_s = effect["N_dps_per_sqrt_hz"] * rad_per_deg * effect[gains[effect.axis()]];
     for (SpectralParts& part : parts) { part.other += rad_per_sqrt_s * rad_per_sqrt_s; }
 }
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature common_mode_signature = {
     .method = EvidenceMethod::shared_noise,
     .place = PlaceKind::structure,
     .structure = "cross_axis",
-    .spectrum = add_spectrum,
+    .spectrum = common_mode_spectrum,
     .words = "The axes share white noise of {N_dps_per_sqrt_hz}, as from the supply.",
     .decided_by = "a recording at rest of all three axes, with another supply",
 };
@@ -74,10 +74,10 @@ constinit const EffectDefinition common_mode_effect = {
     .name = "common_mode",
     .model = "one white noise of density N_dps_per_sqrt_hz^2, added to each axis times its gain",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = common_mode_params,
+    .make = make_common_mode,
     .noise_only = true,
-    .signature = &signature,
+    .signature = &common_mode_signature,
 };
 
 }  // namespace gyrolog

@@ -7,7 +7,7 @@ namespace gyrolog {
 
 namespace {
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_dead_zone(const EffectUse& use) {
     const double width_rad_s = use["width_dps"] * rad_per_deg;
     const double shift_rad_s = width_rad_s * (1.0 - use["jump"]);
     return make_rate_map(use, [=](double rate_rad_s) {
@@ -16,7 +16,7 @@ std::unique_ptr<Stage> make(const EffectUse& use) {
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam dead_zone_params[] = {
     {.name = "width_dps",
      .meaning = "rates up to this, of either sign, have no answer",
      .range = EffectParam::Range::not_negative,
@@ -34,14 +34,14 @@ constexpr TrialValues with_offset[] = {{.param = "jump", .from = 0.0, .to = 0.0,
                                        {.param = "width_dps", .from = 0.003, .to = 0.6, .count = 11}};
 constexpr TrialValues with_jump[] = {{.param = "jump", .from = 1.0, .to = 1.0, .count = 1},
                                      {.param = "width_dps", .from = 0.003, .to = 0.6, .count = 11}};
-constexpr std::span<const TrialValues> trials[] = {with_offset, with_jump};
+constexpr std::span<const TrialValues> dead_zone_trials[] = {with_offset, with_jump};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature dead_zone_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::rate,
     .rates_up_to = "width_dps",
     .needs_reference = true,
-    .trials = trials,
+    .trials = dead_zone_trials,
     .words = "Rates up to {width_dps} have no answer",
     .decided_by = "slow reversals through zero rate",
 };
@@ -52,9 +52,9 @@ constinit const EffectDefinition dead_zone_effect = {
     .name = "dead_zone",
     .model = "0 for |w| <= width_dps, else w - (1 - jump) width_dps sign(w)",
     .source = "IEEE 528-2019 (dead band)",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = dead_zone_params,
+    .make = make_dead_zone,
+    .signature = &dead_zone_signature,
 };
 
 }  // namespace gyrolog

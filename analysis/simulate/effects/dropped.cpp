@@ -51,11 +51,11 @@ private:
     std::uint64_t lost_until_ = 0;
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_dropped(const EffectUse& use) {
     return use["per_hour"] == 0.0 ? nullptr : std::make_unique<Dropped>(use);
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam dropped_params[] = {
     {.name = "per_hour",
      .meaning = "mean number of bursts an hour, Poisson",
      .range = EffectParam::Range::not_negative,
@@ -77,7 +77,7 @@ constexpr EffectParam params[] = {
      .otherwise = 1.0},
 };
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature dropped_signature = {
     .method = EvidenceMethod::stamp_gaps,
     .place = PlaceKind::structure,
     .structure = "timestamp_gaps",
@@ -92,10 +92,10 @@ constinit const EffectDefinition dropped_effect = {
     .name = "dropped",
     .model = "bursts of lost samples; the sensor as a whole, whatever its axes",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = dropped_params,
+    .make = make_dropped,
     .noise_only = true,
-    .signature = &signature,
+    .signature = &dropped_signature,
 };
 
 }  // namespace gyrolog

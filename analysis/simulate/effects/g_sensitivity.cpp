@@ -29,25 +29,27 @@ private:
     std::array<bool, 3> acts_{};
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<GSensitivity>(use); }
+std::unique_ptr<Stage> make_g_sensitivity(const EffectUse& use) {
+    return std::make_unique<GSensitivity>(use);
+}
 
-constexpr EffectParam along(std::string_view name, std::string_view meaning) {
+constexpr EffectParam sensed_along(std::string_view name, std::string_view meaning) {
     return {.name = name, .meaning = meaning, .plausible_from = -0.5, .plausible_to = 0.5, .otherwise = 0.0};
 }
 
-constexpr EffectParam params[] = {
-    along("x_dps_per_g", "for specific force along the sensor's x"),
-    along("y_dps_per_g", "for specific force along the sensor's y"),
-    along("z_dps_per_g", "for specific force along the sensor's z"),
+constexpr EffectParam g_sensitivity_params[] = {
+    sensed_along("x_dps_per_g", "for specific force along the sensor's x"),
+    sensed_along("y_dps_per_g", "for specific force along the sensor's y"),
+    sensed_along("z_dps_per_g", "for specific force along the sensor's z"),
 };
 
-constexpr std::string_view linear[] = {"x_dps_per_g", "y_dps_per_g", "z_dps_per_g"};
+constexpr std::string_view g_sensitivity_linear[] = {"x_dps_per_g", "y_dps_per_g", "z_dps_per_g"};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature g_sensitivity_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::acceleration,
     .needs_specific_force = true,
-    .linear = linear,
+    .linear = g_sensitivity_linear,
     .words =
         "The rate follows the specific force: {x_dps_per_g} along x, {y_dps_per_g} along y, {z_dps_per_g} "
         "along z",
@@ -62,9 +64,9 @@ constinit const EffectDefinition g_sensitivity_effect = {
         "w + x_dps_per_g f_x + y_dps_per_g f_y + z_dps_per_g f_z, f the specific force in g "
         "(9.80665 m/s^2), gravity's own included",
     .source = "IEEE 528-2019 (acceleration-sensitive drift rate)",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = g_sensitivity_params,
+    .make = make_g_sensitivity,
+    .signature = &g_sensitivity_signature,
 };
 
 }  // namespace gyrolog

@@ -26,7 +26,7 @@ struct GaussMarkovNoise {
     }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_gauss_markov(const EffectUse& use) {
     return PerAxis<GaussMarkovNoise>::make([&](std::size_t axis) -> std::optional<GaussMarkovNoise> {
         if (!use.acts_on(axis)) { return std::nullopt; }
         const double correlation = portable_exp(-1.0 / (use.context().rate_hz * use["tau_s"]));
@@ -34,7 +34,7 @@ std::unique_ptr<Stage> make(const EffectUse& use) {
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam gauss_markov_params[] = {
     {.name = "sigma_dps",
      .meaning = "standard deviation",
      .range = EffectParam::Range::not_negative,
@@ -47,8 +47,8 @@ constexpr EffectParam params[] = {
      .plausible_to = 500.0},
 };
 
-void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
-              std::span<SpectralParts> parts) {
+void gauss_markov_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+                           std::span<SpectralParts> parts) {
     const double sigma_rad_s = effect["sigma_dps"] * rad_per_deg;
     const double correlation = std::exp(-1.0 / (rate_hz * effect["tau_s"]));
     // Of the sampled process, a first-order autoregression.
@@ -59,14 +59,14 @@ void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& 
     }
 }
 
-constexpr std::string_view fitted[] = {"sigma_dps", "tau_s"};
-constexpr TrialValues tau_values[] = {{.param = "tau_s", .from = 0.2, .to = 500.0, .count = 14}};
-constexpr std::span<const TrialValues> trials[] = {tau_values};
+constexpr std::string_view gauss_markov_fitted[] = {"sigma_dps", "tau_s"};
+constexpr TrialValues gauss_markov_tau_values[] = {{.param = "tau_s", .from = 0.2, .to = 500.0, .count = 14}};
+constexpr std::span<const TrialValues> gauss_markov_trials[] = {gauss_markov_tau_values};
 
-constexpr EffectSignature signature = {
-    .trials = trials,
-    .spectral = fitted,
-    .spectrum = spectrum,
+constexpr EffectSignature gauss_markov_signature = {
+    .trials = gauss_markov_trials,
+    .spectral = gauss_markov_fitted,
+    .spectrum = gauss_markov_spectrum,
     .words = "The bias fluctuates by {sigma_dps} with a correlation time of {tau_s}",
     .decided_by = "a still recording of 50 correlation times or more",
 };
@@ -77,10 +77,10 @@ constinit const EffectDefinition gauss_markov_effect = {
     .name = "gauss_markov",
     .model = "stationary Gaussian, covariance sigma_dps^2 exp(-|t|/tau_s), independent on each axis",
     .source = "IEEE 952-1997, C.1.5",
-    .params = params,
-    .make = make,
+    .params = gauss_markov_params,
+    .make = make_gauss_markov,
     .noise_only = true,
-    .signature = &signature,
+    .signature = &gauss_markov_signature,
 };
 
 }  // namespace gyrolog

@@ -42,9 +42,9 @@ private:
     std::array<std::optional<RandomStream>, 3> streams_;
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<StudentNoise>(use); }
+std::unique_ptr<Stage> make_heavy_tail(const EffectUse& use) { return std::make_unique<StudentNoise>(use); }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam heavy_tail_params[] = {
     {.name = "nu",
      .meaning = "degrees of freedom",
      .range = EffectParam::Range::above_two,
@@ -54,7 +54,7 @@ constexpr EffectParam params[] = {
 
 double degrees_of_freedom(const EffectValues& effect) { return effect["nu"]; }
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature heavy_tail_signature = {
     .method = EvidenceMethod::tails,
     .place = PlaceKind::amplitude,
     .degrees_of_freedom = degrees_of_freedom,
@@ -69,9 +69,9 @@ constinit const EffectDefinition heavy_tail_effect = {
     .model =
         "Student's t with nu degrees of freedom in place of the model's white noise, of the same variance",
     .source = "R. W. Bailey, Math. Comp. 62 (1994) 779",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = heavy_tail_params,
+    .make = make_heavy_tail,
+    .signature = &heavy_tail_signature,
 };
 
 }  // namespace gyrolog

@@ -16,9 +16,11 @@ private:
     double delay_s_;
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<Latency>(use["delay_s"]); }
+std::unique_ptr<Stage> make_latency(const EffectUse& use) {
+    return std::make_unique<Latency>(use["delay_s"]);
+}
 
-constexpr EffectParam params[] = {
+constexpr EffectParam latency_params[] = {
     {.name = "delay_s",
      .meaning = "age of what a sample shows at its time stamp, beyond the model's latency_s",
      .plausible_from = 5e-4,
@@ -26,14 +28,14 @@ constexpr EffectParam params[] = {
 };
 
 constexpr TrialValues delay_values[] = {{.param = "delay_s", .from = 3e-4, .to = 1.5e-2, .count = 12}};
-constexpr std::span<const TrialValues> trials[] = {delay_values};
+constexpr std::span<const TrialValues> latency_trials[] = {delay_values};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature latency_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::rate,
     .needs_reference = true,
     .whole_sensor = true,
-    .trials = trials,
+    .trials = latency_trials,
     .words = "The sensor is {delay_s} late",
     .decided_by = "broadband motion, up to a tenth of the sample rate",
 };
@@ -44,10 +46,10 @@ constinit const EffectDefinition latency_effect = {
     .name = "latency",
     .model = "the sample stamped t shows the world of t - delay_s; the sensor as a whole, whatever its axes",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = latency_params,
+    .make = make_latency,
     .timing_only = true,
-    .signature = &signature,
+    .signature = &latency_signature,
 };
 
 }  // namespace gyrolog

@@ -243,9 +243,9 @@ private:
     std::array<std::optional<Axis>, 3> axes_;
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<Lowpass>(use); }
+std::unique_ptr<Stage> make_lowpass(const EffectUse& use) { return std::make_unique<Lowpass>(use); }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam lowpass_params[] = {
     {.name = "fc_hz",
      .meaning = "-3 dB frequency; it may lie above half the sample rate",
      .range = EffectParam::Range::positive,
@@ -259,8 +259,8 @@ constexpr EffectParam params[] = {
      .whole_up_to = 2.0},
 };
 
-void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
-              std::span<SpectralParts> parts) {
+void lowpass_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+                      std::span<SpectralParts> parts) {
     const bool first_order = effect["order"] == 1.0;
     const double w_T = 2.0 * pi * effect["fc_hz"] / rate_hz;
     const NoiseFilter filter =
@@ -279,19 +279,19 @@ void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& 
     }
 }
 
-constexpr std::string_view fitted[] = {"fc_hz"};
+constexpr std::string_view lowpass_fitted[] = {"fc_hz"};
 constexpr TrialValues first_order_values[] = {{.param = "order", .from = 1.0, .to = 1.0, .count = 1},
                                               {.param = "fc_hz", .from = 4.0, .to = 300.0, .count = 18}};
 constexpr TrialValues second_order_values[] = {{.param = "order", .from = 2.0, .to = 2.0, .count = 1},
                                                {.param = "fc_hz", .from = 4.0, .to = 300.0, .count = 18}};
-constexpr std::span<const TrialValues> trials[] = {second_order_values, first_order_values};
+constexpr std::span<const TrialValues> lowpass_trials[] = {second_order_values, first_order_values};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature lowpass_signature = {
     .changes_mean = true,
     .folds = true,
-    .trials = trials,
-    .spectral = fitted,
-    .spectrum = spectrum,
+    .trials = lowpass_trials,
+    .spectral = lowpass_fitted,
+    .spectrum = lowpass_spectrum,
     .words = "A low-pass filter of order {order} at {fc_hz} is missing in the model",
     .decided_by = "a recording at a higher sample rate, or one with fast motion",
 };
@@ -304,9 +304,9 @@ constinit const EffectDefinition lowpass_effect = {
         "1 / (1 + s/w), or Butterworth's 1 / (1 + sqrt 2 s/w + s^2/w^2), w = 2 pi fc_hz, on the signal in "
         "continuous time and then sampled, so that the noise folds",
     .source = "definition; the samples of white noise: Box, Jenkins, Reinsel, Time Series Analysis, A4.1",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = lowpass_params,
+    .make = make_lowpass,
+    .signature = &lowpass_signature,
 };
 
 }  // namespace gyrolog

@@ -27,26 +27,26 @@ private:
     std::array<bool, 3> acts_{};
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<Misalignment>(use); }
+std::unique_ptr<Stage> make_misalignment(const EffectUse& use) { return std::make_unique<Misalignment>(use); }
 
 constexpr EffectParam gain_from(std::string_view name, std::string_view meaning) {
     return {
         .name = name, .meaning = meaning, .plausible_from = -0.02, .plausible_to = 0.02, .otherwise = 0.0};
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam misalignment_params[] = {
     gain_from("from_x", "gain of the true rate about x; the x axis itself is left alone"),
     gain_from("from_y", "gain of the true rate about y; the y axis itself is left alone"),
     gain_from("from_z", "gain of the true rate about z; the z axis itself is left alone"),
 };
 
-constexpr std::string_view linear[] = {"from_x", "from_y", "from_z"};
+constexpr std::string_view misalignment_linear[] = {"from_x", "from_y", "from_z"};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature misalignment_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::rate,
     .needs_reference = true,
-    .linear = linear,
+    .linear = misalignment_linear,
     .words = "The axis picks up rates about other axes: {from_x} of x, {from_y} of y, {from_z} of z",
     .decided_by = "plateaus of several rates about one axis after the other",
 };
@@ -57,9 +57,9 @@ constinit const EffectDefinition misalignment_effect = {
     .name = "misalignment",
     .model = "w_i + sum over j != i of from_j W_j, W the true rate",
     .source = "IEEE 528-2019 (input-axis misalignment)",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = misalignment_params,
+    .make = make_misalignment,
+    .signature = &misalignment_signature,
 };
 
 }  // namespace gyrolog

@@ -5,7 +5,7 @@ namespace gyrolog {
 
 namespace {
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_nonlinearity(const EffectUse& use) {
     const double full_scale_rad_s = use.context().model.full_scale_rad_s;
     const double per_full_scale = 1.0 / full_scale_rad_s;
     const double quadratic_rad_s = use["quadratic"] * full_scale_rad_s;
@@ -21,18 +21,18 @@ constexpr EffectParam share_at_full_scale(std::string_view name, std::string_vie
         .name = name, .meaning = meaning, .plausible_from = -1e-3, .plausible_to = 1e-3, .otherwise = 0.0};
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam nonlinearity_params[] = {
     share_at_full_scale("quadratic", "even error at full scale, as a fraction of it"),
     share_at_full_scale("cubic", "odd error at full scale, as a fraction of it"),
 };
 
-constexpr std::string_view linear[] = {"quadratic", "cubic"};
+constexpr std::string_view nonlinearity_linear[] = {"quadratic", "cubic"};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature nonlinearity_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::rate,
     .needs_reference = true,
-    .linear = linear,
+    .linear = nonlinearity_linear,
     .words = "The gain is not linear: {quadratic} even and {cubic} odd error at full scale",
     .decided_by = "plateaus of many rates of both signs up to full scale",
 };
@@ -43,9 +43,9 @@ constinit const EffectDefinition nonlinearity_effect = {
     .name = "nonlinearity",
     .model = "w + FS (quadratic (w/FS)^2 + cubic (w/FS)^3), FS the model's full scale",
     .source = "IEEE 528-2019 (nonlinearity)",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = nonlinearity_params,
+    .make = make_nonlinearity,
+    .signature = &nonlinearity_signature,
 };
 
 }  // namespace gyrolog

@@ -7,7 +7,7 @@ namespace gyrolog {
 
 namespace {
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_quantization(const EffectUse& use) {
     const double lsb_rad_s = use["lsb_dps"] * rad_per_deg;
     return make_rate_map(use, [=](double rate_rad_s) {
         const double steps = std::floor(std::fabs(rate_rad_s) / lsb_rad_s + 0.5);
@@ -15,7 +15,7 @@ std::unique_ptr<Stage> make(const EffectUse& use) {
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam quantization_params[] = {
     {.name = "lsb_dps",
      .meaning = "step",
      .range = EffectParam::Range::positive,
@@ -30,7 +30,7 @@ void add_rounding(std::span<const double>, double rate_hz, const EffectValues& e
     for (SpectralParts& part : parts) { part.other += lsb_rad_s * lsb_rad_s / (12.0 * rate_hz); }
 }
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature quantization_signature = {
     .method = EvidenceMethod::code_grid,
     .place = PlaceKind::structure,
     .structure = "code_grid",
@@ -47,11 +47,11 @@ constinit const EffectDefinition quantization_effect = {
         "rate, rounded to a multiple of lsb_dps, half away from zero; the model's own step follows unless "
         "lsb_dps is coarser and no multiple of it",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = quantization_params,
+    .make = make_quantization,
     .converter_step = "lsb_dps",
     .noise_only = true,
-    .signature = &signature,
+    .signature = &quantization_signature,
 };
 
 }  // namespace gyrolog

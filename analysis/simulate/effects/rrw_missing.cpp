@@ -7,7 +7,7 @@ namespace gyrolog {
 
 namespace {
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_rrw_missing(const EffectUse& use) {
     const double step_sd_rad_s = use["K_dps_sqrt_hz"] * rad_per_deg / std::sqrt(use.context().rate_hz);
     return PerAxis<RateRandomWalk>::make([&](std::size_t axis) -> std::optional<RateRandomWalk> {
         if (!use.acts_on(axis)) { return std::nullopt; }
@@ -15,7 +15,7 @@ std::unique_ptr<Stage> make(const EffectUse& use) {
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam rrw_missing_params[] = {
     {.name = "K_dps_sqrt_hz",
      .meaning = "rate random walk, besides the model's own",
      .range = EffectParam::Range::not_negative,
@@ -23,8 +23,8 @@ constexpr EffectParam params[] = {
      .plausible_to = 2e-3},
 };
 
-void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
-              std::span<SpectralParts> parts) {
+void rrw_missing_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+                          std::span<SpectralParts> parts) {
     const double K_rad_per_s_sqrt_s = effect["K_dps_sqrt_hz"] * rad_per_deg;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const double sampled_omega = 2.0 * rate_hz * std::sin(pi * f_hz[i] / rate_hz);
@@ -32,11 +32,11 @@ void spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& 
     }
 }
 
-constexpr std::string_view fitted[] = {"K_dps_sqrt_hz"};
+constexpr std::string_view rrw_missing_fitted[] = {"K_dps_sqrt_hz"};
 
-constexpr EffectSignature signature = {
-    .spectral = fitted,
-    .spectrum = spectrum,
+constexpr EffectSignature rrw_missing_signature = {
+    .spectral = rrw_missing_fitted,
+    .spectrum = rrw_missing_spectrum,
     .words = "The bias wanders: a rate random walk of {K_dps_sqrt_hz} is missing in the model",
     .decided_by = "a still recording at least three times as long, at a steady temperature",
 };
@@ -47,10 +47,10 @@ constinit const EffectDefinition rrw_missing_effect = {
     .name = "rrw_missing",
     .model = "random walk from zero, variance K_dps_sqrt_hz^2 t, independent on each axis",
     .source = "IEEE 952-1997, annex C (rate random walk)",
-    .params = params,
-    .make = make,
+    .params = rrw_missing_params,
+    .make = make_rrw_missing,
     .noise_only = true,
-    .signature = &signature,
+    .signature = &rrw_missing_signature,
 };
 
 }  // namespace gyrolog

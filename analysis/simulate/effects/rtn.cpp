@@ -54,7 +54,7 @@ private:
     double next_change_ = 0.0;  // first sample in the other state
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_rtn(const EffectUse& use) {
     const double rate_hz = use.context().rate_hz;
     return PerAxis<Telegraph>::make([&](std::size_t axis) -> std::optional<Telegraph> {
         if (!use.acts_on(axis)) { return std::nullopt; }
@@ -63,7 +63,7 @@ std::unique_ptr<Stage> make(const EffectUse& use) {
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam rtn_params[] = {
     {.name = "amplitude_dps",
      .meaning = "distance of the two levels",
      .range = EffectParam::Range::not_negative,
@@ -83,7 +83,7 @@ constexpr EffectParam params[] = {
 
 // The spectrum of a chain of two states is that of first-order Gauss-Markov noise of the same variance and
 // correlation time, sampled.
-void add_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
+void rtn_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
                   std::span<SpectralParts> parts) {
     const double high_s = effect["dwell_high_s"];
     const double low_s = effect["dwell_low_s"];
@@ -101,10 +101,10 @@ void add_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValu
     }
 }
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature rtn_signature = {
     .method = EvidenceMethod::two_levels,
     .place = PlaceKind::spectrum,
-    .spectrum = add_spectrum,
+    .spectrum = rtn_spectrum,
     .words =
         "The bias jumps to and fro between two levels {amplitude_dps} apart (popcorn noise) and stays "
         "{dwell_high_s} on the upper one and {dwell_low_s} on the lower one, on average.",
@@ -120,10 +120,10 @@ constinit const EffectDefinition rtn_effect = {
     .model =
         "+amplitude_dps/2 or -amplitude_dps/2, exponential dwell times, stationary, independent on each axis",
     .source = "S. Machlup, J. Appl. Phys. 25 (1954) 341",
-    .params = params,
-    .make = make,
+    .params = rtn_params,
+    .make = make_rtn,
     .noise_only = true,
-    .signature = &signature,
+    .signature = &rtn_signature,
 };
 
 }  // namespace gyrolog

@@ -11,13 +11,13 @@ namespace gyrolog {
 
 namespace {
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_saturation(const EffectUse& use) {
     const double limit_rad_s = use["limit_dps"] * rad_per_deg;
     return make_rate_map(
         use, [=](double rate_rad_s) { return std::clamp(rate_rad_s, -limit_rad_s, limit_rad_s); });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam saturation_params[] = {
     {.name = "limit_dps",
      .meaning = "largest rate of either sign",
      .range = EffectParam::Range::positive,
@@ -27,7 +27,7 @@ constexpr EffectParam params[] = {
 
 constexpr TrialValues limit_values[] = {
     {.param = "limit_dps", .from = 0.002, .to = 0.6, .count = 12, .below_peak = true}};
-constexpr std::span<const TrialValues> trials[] = {limit_values};
+constexpr std::span<const TrialValues> saturation_trials[] = {limit_values};
 
 // What rounding to a 16-bit code takes from the limit.
 constexpr double rounded_rel = 5e-5;
@@ -53,11 +53,11 @@ void leave_out_clipped(const Recording& recording, const EffectModel& entry, std
     }
 }
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature saturation_signature = {
     .method = EvidenceMethod::ceiling,
     .place = PlaceKind::rate,
     .needs_reference = true,
-    .trials = trials,
+    .trials = saturation_trials,
     .unjudged = leave_out_clipped,
     .words = "The output is clipped at {limit_dps}",
     .decided_by = "plateaus of both signs up to full scale",
@@ -69,9 +69,9 @@ constinit const EffectDefinition saturation_effect = {
     .name = "saturation",
     .model = "rate, clipped at +-limit_dps, noise and bias included",
     .source = "",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = saturation_params,
+    .make = make_saturation,
+    .signature = &saturation_signature,
 };
 
 }  // namespace gyrolog

@@ -22,11 +22,11 @@ private:
     Settling settling_;
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_self_heating(const EffectUse& use) {
     return std::make_unique<SelfHeating>(use["rise_C"], Settling(use["tau_s"] * use.context().rate_hz));
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam self_heating_params[] = {
     {.name = "rise_C", .meaning = "in the end", .plausible_from = 0.0, .plausible_to = 15.0},
     {.name = "tau_s",
      .meaning = "time constant",
@@ -41,8 +41,8 @@ constinit const EffectDefinition self_heating_effect = {
     .name = "self_heating",
     .model = "T + rise_C (1 - exp(-t / tau_s)), of the whole die, whatever the axes",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = self_heating_params,
+    .make = make_self_heating,
     .warms = true,
 };
 

@@ -36,7 +36,7 @@ struct Spikes {
     }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_spikes(const EffectUse& use) {
     const double per_sample = use["per_hour"] / (seconds_per_hour * use.context().rate_hz);
     return PerAxis<Spikes>::make([&](std::size_t axis) -> std::optional<Spikes> {
         if (!use.acts_on(axis) || per_sample == 0.0) { return std::nullopt; }
@@ -45,7 +45,7 @@ std::unique_ptr<Stage> make(const EffectUse& use) {
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam spikes_params[] = {
     {.name = "per_hour",
      .meaning = "mean number an hour, Poisson, on each axis its own",
      .range = EffectParam::Range::not_negative,
@@ -125,7 +125,7 @@ void unjudged(const Recording& recording, const EffectModel& entry, std::vector<
     }
 }
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature spikes_signature = {
     .method = EvidenceMethod::outliers,
     .place = PlaceKind::structure,
     .structure = "isolated_samples",
@@ -142,10 +142,10 @@ constinit const EffectDefinition spikes_effect = {
         "rate plus now and then, for one sample, a size uniform from smallest_dps to largest_dps, of "
         "either sign",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = spikes_params,
+    .make = make_spikes,
     .noise_only = true,
-    .signature = &signature,
+    .signature = &spikes_signature,
 };
 
 }  // namespace gyrolog

@@ -48,9 +48,9 @@ private:
     std::array<bool, 3> acts_{};
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<Stale>(use); }
+std::unique_ptr<Stage> make_stale(const EffectUse& use) { return std::make_unique<Stale>(use); }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam stale_params[] = {
     {.name = "eps",
      .meaning = "share of the samples that repeat: 1 less the sensor's update rate over the polling rate",
      .range = EffectParam::Range::share,
@@ -77,7 +77,7 @@ void leave_out_repeats(const Recording& recording, const EffectModel& entry, std
     }
 }
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature stale_signature = {
     .method = EvidenceMethod::repeats,
     .place = PlaceKind::structure,
     .structure = "duplicated_samples",
@@ -94,10 +94,10 @@ constinit const EffectDefinition stale_effect = {
         "sample k repeats the one before, in rate and temperature, where floor(k (1 - eps) + phase) does "
         "not advance; phase from the seed",
     .source = "",
-    .params = params,
-    .make = make,
+    .params = stale_params,
+    .make = make_stale,
     .noise_only = true,
-    .signature = &signature,
+    .signature = &stale_signature,
 };
 
 }  // namespace gyrolog

@@ -56,13 +56,13 @@ struct LateBias {
     double operator()(double die_C) { return slope_rad_s_per_C * (play(lag(die_C)) - reference_C); }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_temp_lag(const EffectUse& use) {
     return std::make_unique<TemperatureBias<LateBias>>(
         use, LateBias{Lag(use["tau_s"] * use.context().rate_hz), Play(use["play_C"]),
                       use["c1_dps_per_C"] * rad_per_deg, reference_C(use)});
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam temp_lag_params[] = {
     {.name = "c1_dps_per_C", .meaning = "slope, in the end", .plausible_from = -0.3, .plausible_to = 0.3},
     {.name = "tau_s",
      .meaning = "time constant of the lag",
@@ -79,18 +79,18 @@ constexpr EffectParam params[] = {
     reference_C_param,
 };
 
-constexpr std::string_view linear[] = {"c1_dps_per_C"};
-constexpr TrialValues tau_values[] = {{.param = "tau_s", .from = 60.0, .to = 1800.0, .count = 10}};
+constexpr std::string_view temp_lag_linear[] = {"c1_dps_per_C"};
+constexpr TrialValues temp_lag_tau_values[] = {{.param = "tau_s", .from = 60.0, .to = 1800.0, .count = 10}};
 constexpr TrialValues play_values[] = {{.param = "play_C", .from = 0.2, .to = 5.0, .count = 7}};
-constexpr std::span<const TrialValues> trials[] = {tau_values, play_values};
+constexpr std::span<const TrialValues> temp_lag_trials[] = {temp_lag_tau_values, play_values};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature temp_lag_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::temperature,
     .needs_temperature = true,
-    .linear = linear,
+    .linear = temp_lag_linear,
     .slow = true,
-    .trials = trials,
+    .trials = temp_lag_trials,
     .words =
         "The bias follows the temperature late, {c1_dps_per_C} with a lag of {tau_s} and a play of {play_C}",
     .decided_by = "one sweep of the temperature up and down by 5 degC or more",
@@ -104,9 +104,9 @@ constinit const EffectDefinition temp_lag_effect = {
         "rate + c1_dps_per_C (y - reference_C), y the play of u with tau_s du/dt = T - u, both settled at "
         "first",
     .source = "play operator: M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, Springer 1996",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = temp_lag_params,
+    .make = make_temp_lag,
+    .signature = &temp_lag_signature,
 };
 
 }  // namespace gyrolog

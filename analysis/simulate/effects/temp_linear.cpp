@@ -13,23 +13,23 @@ struct Line {
     double operator()(double die_C) const { return slope_rad_s_per_C * (die_C - reference_C); }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_temp_linear(const EffectUse& use) {
     return std::make_unique<TemperatureBias<Line>>(use,
                                                    Line{use["c1_dps_per_C"] * rad_per_deg, reference_C(use)});
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam temp_linear_params[] = {
     {.name = "c1_dps_per_C", .meaning = "slope", .plausible_from = -0.3, .plausible_to = 0.3},
     reference_C_param,
 };
 
-constexpr std::string_view linear[] = {"c1_dps_per_C"};
+constexpr std::string_view temp_linear_linear[] = {"c1_dps_per_C"};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature temp_linear_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::temperature,
     .needs_temperature = true,
-    .linear = linear,
+    .linear = temp_linear_linear,
     .slow = true,
     .words = "The bias follows the temperature, {c1_dps_per_C}",
     .decided_by = "one sweep of the temperature up and down by 5 degC or more",
@@ -41,9 +41,9 @@ constinit const EffectDefinition temp_linear_effect = {
     .name = "temp_linear",
     .model = "rate + c1_dps_per_C (T - reference_C)",
     .source = "",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = temp_linear_params,
+    .make = make_temp_linear,
+    .signature = &temp_linear_signature,
 };
 
 }  // namespace gyrolog

@@ -22,15 +22,15 @@ struct OfTemperature {
 
 OfTemperature of_temperature(const EffectUse& use) { return {use["per_C"], reference_C(use)}; }
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_temp_noise(const EffectUse& use) {
     return std::make_unique<WhiteNoiseGain<OfTemperature>>(use, of_temperature(use));
 }
 
-WhiteGain white_gain(const EffectUse& use) {
+WhiteGain temp_noise_white_gain(const EffectUse& use) {
     return [gain = of_temperature(use)](double, double temperature_C) { return gain.at(temperature_C); };
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam temp_noise_params[] = {
     {.name = "per_C",
      .meaning = "relative change of the standard deviation with each degree",
      .plausible_from = -0.02,
@@ -38,11 +38,11 @@ constexpr EffectParam params[] = {
     reference_C_param,
 };
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature temp_noise_signature = {
     .method = EvidenceMethod::variance_of,
     .place = PlaceKind::temperature,
     .needs_temperature = true,
-    .white_gain = white_gain,
+    .white_gain = temp_noise_white_gain,
     .words = "The white noise's standard deviation changes by {per_C} with each degree.",
     .decided_by = "one sweep of the temperature up and down by 10 degC or more",
 };
@@ -53,9 +53,9 @@ constinit const EffectDefinition temp_noise_effect = {
     .name = "temp_noise",
     .model = "white noise times 1 + per_C (T - reference_C), at least 0.05",
     .source = "",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = temp_noise_params,
+    .make = make_temp_noise,
+    .signature = &temp_noise_signature,
 };
 
 }  // namespace gyrolog

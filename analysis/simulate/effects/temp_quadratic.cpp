@@ -17,13 +17,13 @@ struct Parabola {
     }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_temp_quadratic(const EffectUse& use) {
     return std::make_unique<TemperatureBias<Parabola>>(
         use,
         Parabola{use["c1_dps_per_C"] * rad_per_deg, use["c2_dps_per_C2"] * rad_per_deg, reference_C(use)});
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam temp_quadratic_params[] = {
     {.name = "c1_dps_per_C",
      .meaning = "slope at the reference",
      .plausible_from = -0.3,
@@ -36,13 +36,13 @@ constexpr EffectParam params[] = {
     reference_C_param,
 };
 
-constexpr std::string_view linear[] = {"c1_dps_per_C", "c2_dps_per_C2"};
+constexpr std::string_view temp_quadratic_linear[] = {"c1_dps_per_C", "c2_dps_per_C2"};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature temp_quadratic_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::temperature,
     .needs_temperature = true,
-    .linear = linear,
+    .linear = temp_quadratic_linear,
     .slow = true,
     .words = "The bias follows the temperature along a parabola, {c1_dps_per_C} and {c2_dps_per_C2}",
     .decided_by = "one sweep of the temperature up and down by 10 degC or more",
@@ -54,9 +54,9 @@ constinit const EffectDefinition temp_quadratic_effect = {
     .name = "temp_quadratic",
     .model = "rate + c1_dps_per_C (T - reference_C) + c2_dps_per_C2 (T - reference_C)^2",
     .source = "",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = temp_quadratic_params,
+    .make = make_temp_quadratic,
+    .signature = &temp_quadratic_signature,
 };
 
 }  // namespace gyrolog

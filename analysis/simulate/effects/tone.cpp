@@ -29,9 +29,9 @@ private:
     Vector3 amplitude_rad_s_{};
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<Tone>(use); }
+std::unique_ptr<Stage> make_tone(const EffectUse& use) { return std::make_unique<Tone>(use); }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam tone_params[] = {
     {.name = "f_hz",
      .meaning = "frequency; above half the rate the line appears folded",
      .range = EffectParam::Range::positive,
@@ -48,7 +48,7 @@ constexpr EffectParam params[] = {
      .otherwise = 0.0},
 };
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature tone_signature = {
     .method = EvidenceMethod::line,
     .place = PlaceKind::spectrum,
     .words =
@@ -64,9 +64,9 @@ constinit const EffectDefinition tone_effect = {
     .name = "tone",
     .model = "rate + amplitude_dps sin(2 pi f_hz t + phase_rad), t the moment that the sample shows",
     .source = "IEEE 952-1997, C.1.6 (sinusoidal noise)",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = tone_params,
+    .make = make_tone,
+    .signature = &tone_signature,
 };
 
 }  // namespace gyrolog

@@ -27,17 +27,17 @@ Change change_of(const EffectUse& use) {
     return {use["factor"], use["at_s"] * rate_hz, use["ramp_s"] * rate_hz};
 }
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_variance_change(const EffectUse& use) {
     return std::make_unique<WhiteNoiseGain<Change>>(use, change_of(use));
 }
 
-WhiteGain white_gain(const EffectUse& use) {
+WhiteGain variance_change_white_gain(const EffectUse& use) {
     return [change = change_of(use), rate_hz = use.context().rate_hz](double time_s, double) {
         return change.after(time_s * rate_hz);
     };
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam variance_change_params[] = {
     {.name = "factor",
      .meaning = "of the standard deviation, in the end",
      .range = EffectParam::Range::not_negative,
@@ -52,10 +52,10 @@ constexpr EffectParam params[] = {
      .otherwise = 0.0},
 };
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature variance_change_signature = {
     .method = EvidenceMethod::variance_course,
     .place = PlaceKind::time,
-    .white_gain = white_gain,
+    .white_gain = variance_change_white_gain,
     .words =
         "From {at_s} after the start on the white noise changes within {ramp_s} to {factor} times its "
         "standard deviation.",
@@ -68,9 +68,9 @@ constinit const EffectDefinition variance_change_effect = {
     .name = "variance_change",
     .model = "white noise times 1 before at_s, factor from at_s + ramp_s on, straight between",
     .source = "",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = variance_change_params,
+    .make = make_variance_change,
+    .signature = &variance_change_signature,
 };
 
 }  // namespace gyrolog

@@ -37,17 +37,19 @@ private:
     std::array<bool, 3> acts_{};
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) { return std::make_unique<VibrationRectification>(use); }
+std::unique_ptr<Stage> make_vibration_rectification(const EffectUse& use) {
+    return std::make_unique<VibrationRectification>(use);
+}
 
-constexpr EffectParam along(std::string_view name, std::string_view meaning) {
+constexpr EffectParam rectified_along(std::string_view name, std::string_view meaning) {
     return {
         .name = name, .meaning = meaning, .plausible_from = -0.05, .plausible_to = 0.05, .otherwise = 0.0};
 }
 
-constexpr EffectParam params[] = {
-    along("x_dps_per_g2", "for the square of the specific force along the sensor's x"),
-    along("y_dps_per_g2", "for the square of the specific force along the sensor's y"),
-    along("z_dps_per_g2", "for the square of the specific force along the sensor's z"),
+constexpr EffectParam vibration_rectification_params[] = {
+    rectified_along("x_dps_per_g2", "for the square of the specific force along the sensor's x"),
+    rectified_along("y_dps_per_g2", "for the square of the specific force along the sensor's y"),
+    rectified_along("z_dps_per_g2", "for the square of the specific force along the sensor's z"),
 };
 
 }  // namespace
@@ -58,8 +60,8 @@ constinit const EffectDefinition vibration_rectification_effect = {
         "w + sum over j of j_dps_per_g2 (f_j^2 - u_j^2), f the specific force in g, u what it is at "
         "rest with the body's z upward; of a vibration, what the world's samples show",
     .source = "IEEE 528-2019 (acceleration-squared-sensitive drift rate)",
-    .params = params,
-    .make = make,
+    .params = vibration_rectification_params,
+    .make = make_vibration_rectification,
 };
 
 }  // namespace gyrolog

@@ -19,7 +19,7 @@ struct Warmup {
     }
 };
 
-std::unique_ptr<Stage> make(const EffectUse& use) {
+std::unique_ptr<Stage> make_warmup(const EffectUse& use) {
     const Settling settling(use["tau_s"] * use.context().rate_hz);
     return PerAxis<Warmup>::make([&](std::size_t axis) -> std::optional<Warmup> {
         if (!use.acts_on(axis)) { return std::nullopt; }
@@ -27,7 +27,7 @@ std::unique_ptr<Stage> make(const EffectUse& use) {
     });
 }
 
-constexpr EffectParam params[] = {
+constexpr EffectParam warmup_params[] = {
     {.name = "a_dps", .meaning = "away from the bias at first", .plausible_from = -3.0, .plausible_to = 3.0},
     {.name = "tau_s",
      .meaning = "time constant",
@@ -36,16 +36,16 @@ constexpr EffectParam params[] = {
      .plausible_to = 900.0},
 };
 
-constexpr std::string_view linear[] = {"a_dps"};
-constexpr TrialValues tau_values[] = {{.param = "tau_s", .from = 45.0, .to = 1200.0, .count = 12}};
-constexpr std::span<const TrialValues> trials[] = {tau_values};
+constexpr std::string_view warmup_linear[] = {"a_dps"};
+constexpr TrialValues warmup_tau_values[] = {{.param = "tau_s", .from = 45.0, .to = 1200.0, .count = 12}};
+constexpr std::span<const TrialValues> warmup_trials[] = {warmup_tau_values};
 
-constexpr EffectSignature signature = {
+constexpr EffectSignature warmup_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::time,
-    .linear = linear,
+    .linear = warmup_linear,
     .slow = true,
-    .trials = trials,
+    .trials = warmup_trials,
     .words = "The bias settles after turn-on: {a_dps} at first, with a time constant of {tau_s}",
     .decided_by = "two or three cold starts of half an hour",
 };
@@ -56,9 +56,9 @@ constinit const EffectDefinition warmup_effect = {
     .name = "warmup",
     .model = "rate + a_dps exp(-t / tau_s)",
     .source = "",
-    .params = params,
-    .make = make,
-    .signature = &signature,
+    .params = warmup_params,
+    .make = make_warmup,
+    .signature = &warmup_signature,
 };
 
 }  // namespace gyrolog
