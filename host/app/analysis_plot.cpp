@@ -12,12 +12,6 @@
 namespace gyrolog {
 namespace {
 
-std::optional<PlottedCoefficient> plotted(const NoiseFit& fit, NoiseTerm term) {
-    const FittedCoefficient& coefficient = fit[term];
-    if (coefficient.state != FittedCoefficient::State::identified) { return std::nullopt; }
-    return PlottedCoefficient{coefficient.value, coefficient.sd};
-}
-
 // What the curve is called, and whether the model's Allan variance is what it estimates.
 struct DrawnDeviation {
     std::string name;
@@ -46,10 +40,10 @@ AllanTrace trace_of(const AxisReport& axis, bool is_allan) {
     AllanTrace trace;
     trace.name = axis.axis;
     trace.curve = axis.curve;
-    trace.N = plotted(axis.fit, NoiseTerm::N);
-    trace.B = plotted(axis.fit, NoiseTerm::B);
+    trace.N = plotted_coefficient(axis.fit, NoiseTerm::N);
+    trace.B = plotted_coefficient(axis.fit, NoiseTerm::B);
     if (trace.B && axis.slopes.B) { trace.B->tau_s = axis.slopes.B->tau_s; }
-    trace.K = plotted(axis.fit, NoiseTerm::K);
+    trace.K = plotted_coefficient(axis.fit, NoiseTerm::K);
     for (const AllanPoint& point : axis.curve.points) {
         const double variance = is_allan ? axis.fit.best.allan_variance(point.tau_s) : 0.0;
         if (variance > 0.0) { trace.model.push_back({point.tau_s, std::sqrt(variance)}); }
@@ -114,6 +108,12 @@ Status write_png(const Rendering& rendering, const std::string& path) {
 }
 
 }  // namespace
+
+std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, NoiseTerm term) {
+    const FittedCoefficient& coefficient = fit[term];
+    if (coefficient.state != FittedCoefficient::State::identified) { return std::nullopt; }
+    return PlottedCoefficient{coefficient.value, coefficient.sd};
+}
 
 Status write_analysis_plot(const AnalysisReport& report, const std::string& path) {
     return write_png(render(figure_of(report)), path);

@@ -41,8 +41,6 @@ struct Request {
     std::string plot_path;
 };
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
 Result<TimeSpan> parse_span(const std::string& text) {
     TimeSpan span;
     const char* const end = text.data() + text.size();
@@ -53,8 +51,8 @@ Result<TimeSpan> parse_span(const std::string& text) {
             return span;
         }
     }
-    return wrong("--still '" + text +
-                 "': wants two times in seconds from the first sample, FROM,TO, such as 0,120");
+    return invalid_argument("--still '" + text +
+                            "': wants two times in seconds from the first sample, FROM,TO, such as 0,120");
 }
 
 // What rates are shown in: SI, unless the columns are counts without a scale.
@@ -128,7 +126,9 @@ private:
                  segments_within(recording.segments, recording.rate_hz, {0.0, *duration_s})) {
                 rows = segment.first + segment.count;
             }
-            if (rows == 0) { return wrong("--duration '" + request_.duration + "' holds no sample"); }
+            if (rows == 0) {
+                return invalid_argument("--duration '" + request_.duration + "' holds no sample");
+            }
             recording = first_rows(std::move(recording), rows);
         }
         return recording;
@@ -175,8 +175,9 @@ private:
         if (!request_.still.empty()) {
             GYROLOG_TRY(still_, parse_span(request_.still));
             if (segments_within(recording_.segments, recording_.rate_hz, still_).empty()) {
-                return wrong(fmt::format("--still {}: the recording has no sample there, it lasts {:.6g} s",
-                                         request_.still, recording_.duration_s()));
+                return invalid_argument(
+                    fmt::format("--still {}: the recording has no sample there, it lasts {:.6g} s",
+                                request_.still, recording_.duration_s()));
             }
             still_.to_s = std::min(still_.to_s, recording_.duration_s());
             return {};
@@ -196,8 +197,8 @@ private:
             same = here[i].name == there[i].name && here[i].units.size() == there[i].units.size();
         }
         if (!same) {
-            return wrong("--calibration '" + request_.calibration +
-                         "' does not have the axes and units that '" + recording_.name + "' has");
+            return invalid_argument("--calibration '" + request_.calibration +
+                                    "' does not have the axes and units that '" + recording_.name + "' has");
         }
         return other;
     }
@@ -346,8 +347,8 @@ Status check(const Request& request) {
         !std::filesystem::is_directory(there)) {
         return {};
     }
-    return wrong("'" + request.output +
-                 "': a denoised recording is text; end its name in .csv (.gz, .xz, .zst)");
+    return invalid_argument("'" + request.output +
+                            "': a denoised recording is text; end its name in .csv (.gz, .xz, .zst)");
 }
 
 ExitCode denoise_command(Console& console, const Request& request) {

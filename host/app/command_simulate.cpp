@@ -47,8 +47,6 @@ struct Story {
     std::vector<std::string> warnings;
 };
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
 bool is_text(const std::string& path) {
     for (const char* ending : {".csv", ".csv.gz", ".csv.xz", ".csv.zst", ".csv.bz2"}) {
         if (path.ends_with(ending)) { return true; }
@@ -61,15 +59,17 @@ bool is_text(const std::string& path) {
 
 Status check(const SimulateOptions& options) {
     if (options.model.empty()) {
-        return wrong("give the MODEL to simulate (.json), or --effects to see what a model may list");
+        return invalid_argument(
+            "give the MODEL to simulate (.json), or --effects to see what a model may list");
     }
-    if (options.output.empty()) { return wrong("give the recording to write with -o"); }
+    if (options.output.empty()) { return invalid_argument("give the recording to write with -o"); }
     if (!options.makes_capture() && !is_text(options.output)) {
-        return wrong("'" + options.output +
-                     "' has none of the endings that tell the format: .csv (.gz, .xz, .zst), .pcapng");
+        return invalid_argument(
+            "'" + options.output +
+            "' has none of the endings that tell the format: .csv (.gz, .xz, .zst), .pcapng");
     }
     if (options.makes_capture() && !options.like.empty()) {
-        return wrong(
+        return invalid_argument(
             "--like with a capture: the virtual board makes its own time stamps; write a .csv instead");
     }
     const NamedPath read[] = {{"MODEL", options.model}, {"--like", options.like}};
@@ -99,11 +99,13 @@ std::vector<std::string> effect_names(const SensorModel& model) {
 Result<std::uint64_t> samples_of(double duration_s, double rate_hz) {
     const double samples = std::round(duration_s * rate_hz);
     if (samples < 1.0) {
-        return wrong(fmt::format("--duration {:g} s at {:g} Hz holds no sample", duration_s, rate_hz));
+        return invalid_argument(
+            fmt::format("--duration {:g} s at {:g} Hz holds no sample", duration_s, rate_hz));
     }
     if (samples > samples_max) {
-        return wrong(fmt::format("--duration {:g} s at {:g} Hz is {:.3g} samples; at most 2^40 = {:.3g}",
-                                 duration_s, rate_hz, samples, samples_max));
+        return invalid_argument(
+            fmt::format("--duration {:g} s at {:g} Hz is {:.3g} samples; at most 2^40 = {:.3g}", duration_s,
+                        rate_hz, samples, samples_max));
     }
     return static_cast<std::uint64_t>(samples);
 }
@@ -130,7 +132,7 @@ Result<std::shared_ptr<const RecordedWorld>> read_like(const SimulateOptions& op
     auto read = read_recording({options.like, options.rate_hz, std::nullopt});
     if (!read.ok()) { return in_context("--like", std::move(read).error()); }
     auto recording = std::make_shared<const Recording>(std::move(read).value());
-    if (recording->rows() == 0) { return wrong("--like '" + options.like + "' has no samples"); }
+    if (recording->rows() == 0) { return invalid_argument("--like '" + options.like + "' has no samples"); }
     for (const std::string& warning : recording->warnings) {
         story.warnings.push_back(options.like + ": " + warning);
     }

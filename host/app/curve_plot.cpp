@@ -5,25 +5,20 @@
 #include <fmt/format.h>
 
 #include "analysis/plot/allan_figure.hpp"
+#include "host/app/analysis_plot.hpp"
 #include "host/base/file_output.hpp"
 
 namespace gyrolog {
 namespace {
 
-std::optional<PlottedCoefficient> plotted(const NoiseFit& fit, NoiseTerm term) {
-    const FittedCoefficient& coefficient = fit[term];
-    if (coefficient.state != FittedCoefficient::State::identified) { return std::nullopt; }
-    return PlottedCoefficient{coefficient.value, coefficient.sd};
-}
-
 AllanTrace trace_of(const PrintedCurveReport& curve) {
     AllanTrace trace;
     trace.name = curve.name;
     trace.curve = curve.curve;
-    trace.N = plotted(curve.fit.noise, NoiseTerm::N);
-    trace.B = plotted(curve.fit.noise, NoiseTerm::B);
+    trace.N = plotted_coefficient(curve.fit.noise, NoiseTerm::N);
+    trace.B = plotted_coefficient(curve.fit.noise, NoiseTerm::B);
     if (trace.B && curve.slopes.B) { trace.B->tau_s = curve.slopes.B->tau_s; }
-    trace.K = plotted(curve.fit.noise, NoiseTerm::K);
+    trace.K = plotted_coefficient(curve.fit.noise, NoiseTerm::K);
     for (const AllanPoint& point : curve.curve.points) {
         const double variance = curve.fit.noise.best.allan_variance(point.tau_s);
         if (variance > 0.0) { trace.model.push_back({point.tau_s, std::sqrt(variance)}); }

@@ -5,18 +5,15 @@
 #include <fmt/format.h>
 
 namespace gyrolog {
-namespace {
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
-}  // namespace
+namespace {}  // namespace
 
 Result<DenoiseDesign> design_of(const DenoiseChoice& choice, double rate_hz) {
     DenoiseDesign chosen;
     chosen.method = denoise_method(choice.method).value_or(DenoiseMethod::joint);
     chosen.rate = default_rate_design(chosen.method, rate_hz);
     if (chosen.method == DenoiseMethod::wavelet && (choice.bandwidth_hz || !choice.rate_model.empty())) {
-        return wrong("--bandwidth and --rate-model are of the Kalman filter: use them with kalman or joint");
+        return invalid_argument(
+            "--bandwidth and --rate-model are of the Kalman filter: use them with kalman or joint");
     }
     if (!choice.rate_model.empty()) {
         chosen.rate.model = rate_model(choice.rate_model).value_or(RateModel::free);
@@ -24,7 +21,7 @@ Result<DenoiseDesign> design_of(const DenoiseChoice& choice, double rate_hz) {
     if (choice.bandwidth_hz) {
         if (chosen.rate.model == RateModel::free) {
             if (!choice.rate_model.empty()) {
-                return wrong("a free rate has no bandwidth: use --rate-model walk or trend");
+                return invalid_argument("a free rate has no bandwidth: use --rate-model walk or trend");
             }
             chosen.rate.model = RateModel::trend;
         }
@@ -33,7 +30,7 @@ Result<DenoiseDesign> design_of(const DenoiseChoice& choice, double rate_hz) {
         chosen.rate.bandwidth_hz = default_rate_design(DenoiseMethod::joint, rate_hz).bandwidth_hz;
     }
     if (chosen.rate.model != RateModel::free && !(chosen.rate.bandwidth_hz < 0.45 * rate_hz)) {
-        return wrong(
+        return invalid_argument(
             fmt::format("--bandwidth {:g} Hz: less than {:.4g} Hz, 0.45 of the rate, can be told apart from "
                         "noise; --rate-model free passes everything",
                         chosen.rate.bandwidth_hz, 0.45 * rate_hz));

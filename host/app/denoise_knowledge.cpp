@@ -8,11 +8,7 @@
 #include "host/formats/model_json.hpp"
 
 namespace gyrolog {
-namespace {
-
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
-}  // namespace
+namespace {}  // namespace
 
 TimeSpan still_part_of(const Recording& recording) {
     std::vector<std::vector<double>> means;
@@ -61,7 +57,7 @@ Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<
     std::vector<std::vector<NoiseModel>> given;
     for (const AxisKnowledge& axis : knowledge) {
         if (models.size() != 1 && models.size() != axis.units.size()) {
-            return wrong(
+            return invalid_argument(
                 fmt::format("{} models for {} units on axis {}: give one for all, or one for each, "
                             "in the units' order",
                             models.size(), axis.units.size(), axis.axis));
@@ -74,8 +70,8 @@ Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<
             noise.coefficients = model.axes.at(at).noise;
             noise.converter = {model.lsb_rad_s, rate_hz};
             if (!(noise.coefficients.N_rad_per_sqrt_s > 0.0)) {
-                return wrong("model '" + paths[models.size() == 1 ? 0 : i] + "' has no N on axis " +
-                             axis.axis + ": nothing to weigh its unit by");
+                return invalid_argument("model '" + paths[models.size() == 1 ? 0 : i] +
+                                        "' has no N on axis " + axis.axis + ": nothing to weigh its unit by");
             }
             units.push_back(noise);
         }

@@ -27,8 +27,6 @@ constexpr std::size_t batch_rows_most = std::size_t{1} << 16U;
 constexpr std::int64_t flush_interval_ns = 1'000'000'000;
 constexpr double longest_pause_s = 1e9;
 
-Error wrong(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
-
 // Gyros of which nothing is known, to try a model on.
 Recording three_axes(double rate_hz) {
     Recording recording;
@@ -99,7 +97,8 @@ void LiveDenoiseOptions::declare(CLI::App& app) {
 Status LiveDenoiseOptions::check(std::optional<double> rate_hz) const {
     if (!wanted()) {
         if (output.empty() && model.empty() && !choice.bandwidth_hz) { return {}; }
-        return wrong("--denoise-out, --denoise-model and --bandwidth are of --denoise: add --denoise METHOD");
+        return invalid_argument(
+            "--denoise-out, --denoise-model and --bandwidth are of --denoise: add --denoise METHOD");
     }
     constexpr double any_rate_hz = 1e9;
     const auto design = design_of(choice, rate_hz.value_or(any_rate_hz));
@@ -144,7 +143,8 @@ Result<std::unique_ptr<LiveDenoise>> LiveDenoise::create(Setup setup) {
     const auto there = std::filesystem::status(setup.output, none);
     const bool special = std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
     if (!special && !setup.output.ends_with(".csv")) {
-        return wrong("--denoise-out '" + setup.output + "': it is text that grows; end its name in .csv");
+        return invalid_argument("--denoise-out '" + setup.output +
+                                "': it is text that grows; end its name in .csv");
     }
     if (std::filesystem::is_regular_file(there) && !setup.overwrite) {
         return Error{ErrorCode::failed,

@@ -4,9 +4,9 @@
 
 #include <cassert>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace gyrolog {
 
@@ -30,39 +30,54 @@ struct Error {
         message;  // one lower-case clause that names the thing that failed and, where there is one, the mend
 };
 
-// Either a value or an Error. The value may be read only after ok() was seen true.
+inline Error invalid_argument(std::string message) {
+    return {ErrorCode::invalid_argument, std::move(message)};
+}
+inline Error malformed(std::string message) { return {ErrorCode::malformed, std::move(message)}; }
+
+// Either a value or an Error. Reading the one that is not there is our own bug and aborts, in a release build
+// too: the value may be read only after ok() was seen true, the error only after it was seen false.
 template <typename T>
 class [[nodiscard]] Result {
 public:
-    Result(T value)
-        : state_(std::in_place_index<0>, std::move(value)) {}  // NOLINT(google-explicit-constructor)
-    Result(Error error)
-        : state_(std::in_place_index<1>, std::move(error)) {}  // NOLINT(google-explicit-constructor)
+    Result(T value) : value_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+    Result(Error error) : error_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
 
-    bool ok() const { return state_.index() == 0; }
+    bool ok() const { return value_.has_value(); }
     explicit operator bool() const { return ok(); }
 
-    T& value() & { return *checked(std::get_if<0>(&state_)); }
-    const T& value() const& { return *checked(std::get_if<0>(&state_)); }
-    T&& value() && { return std::move(*checked(std::get_if<0>(&state_))); }
+    T& value() & {
+        abort_unless(ok());
+        return *value_;
+    }
+    const T& value() const& {
+        abort_unless(ok());
+        return *value_;
+    }
+    T&& value() && { return std::move(value()); }
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
     T& operator*() & { return value(); }
     const T& operator*() const& { return value(); }
-    T&& operator*() && { return std::move(*this).value(); }
+    T&& operator*() && { return std::move(value()); }
 
-    const Error& error() const& { return *checked(std::get_if<1>(&state_)); }
-    Error&& error() && { return std::move(*checked(std::get_if<1>(&state_))); }
-
-private:
-    // Reading what is not there is our own bug, in a release build too.
-    template <typename Alternative>
-    static Alternative* checked(Alternative* alternative) {
-        if (alternative == nullptr) { std::abort(); }
-        return alternative;
+    const Error& error() const& {
+        abort_unless(!ok());
+        return error_;
+    }
+    Error&& error() && {
+        abort_unless(!ok());
+        return std::move(error_);
     }
 
-    std::variant<T, Error> state_;
+private:
+    static void abort_unless(bool it_is_there) {
+        if (!it_is_there) { std::abort(); }
+    }
+
+    // Not a variant: the compiler takes much longer for one, and there are hundreds.
+    std::optional<T> value_;
+    Error error_{ErrorCode::failed, {}};
 };
 
 template <>

@@ -495,7 +495,7 @@ Judgement silent_until_asked(const Dialogue& dialogue) {
     return findings.judgement(why_not_asked(dialogue, "nothing came"));
 }
 
-constexpr std::array rules{
+constexpr std::array all_device_rules{
     Rule{"8.1", "A rising DTR brings HELLO, CONFIG, EVENT started, SAMPLES", rising_dtr},
     Rule{"8.2", "A falling DTR brings EVENT stopped, then nothing", falling_dtr},
     Rule{"8.3", "START and STOP do the same without DTR", start_and_stop},
@@ -513,6 +513,6 @@ constexpr std::array rules{
 
 }  // namespace
 
-std::span<const Rule> device_rules() { return rules; }
+std::span<const Rule> device_rules() { return all_device_rules; }
 
 }  // namespace gyrolog

@@ -195,7 +195,7 @@ Judgement refuses_other_version(const Dialogue& dialogue) {
     return refused(dialogue, Ask::other_version, "a CONFIGURE of major version 2");
 }
 
-constexpr std::array rules{
+constexpr std::array all_frame_rules{
     Rule{"1.2", "Every frame is ended by a 00", unended_bytes},
     Rule{"1.3", "Frames have both delimiters; commands are taken with one or many between them", delimiters},
     Rule{"1.4", "The header has version 1, and flags in SAMPLES only", header},
@@ -212,6 +212,6 @@ constexpr std::array rules{
 
 }  // namespace
 
-std::span<const Rule> frame_rules() { return rules; }
+std::span<const Rule> frame_rules() { return all_frame_rules; }
 
 }  // namespace gyrolog

@@ -556,7 +556,7 @@ Judgement bad_values(const Dialogue& dialogue) {
     return findings.judgement(why_not_asked(dialogue, "no CONFIGURE was answered"));
 }
 
-constexpr std::array rules{
+constexpr std::array all_message_rules{
     Rule{"4.1", "The device sends the types that are its own", known_types},
     Rule{"4.2", "Reserved bytes are 0; short commands are refused, long ones taken", lengths_and_reserved},
     Rule{"4.3.1", "SAMPLES have a known layout and at least one sample", samples_values},
@@ -577,6 +577,6 @@ constexpr std::array rules{
 
 }  // namespace
 
-std::span<const Rule> message_rules() { return rules; }
+std::span<const Rule> message_rules() { return all_message_rules; }
 
 }  // namespace gyrolog

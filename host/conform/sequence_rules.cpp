@@ -263,7 +263,7 @@ Judgement nominal_rate(const Dialogue& dialogue) {
     return findings.judgement("too few SAMPLES came");
 }
 
-constexpr std::array rules{
+constexpr std::array all_sequence_rules{
     Rule{"5.1", "Each frame has the next sequence number, across stops and starts", numbers},
     Rule{"5.2", "Indices begin at 0 at each start", index_from_zero},
     Rule{"5.3", "Samples sent and lost_samples account for every index", index_accounts},
@@ -276,6 +276,6 @@ constexpr std::array rules{
 
 }  // namespace
 
-std::span<const Rule> sequence_rules() { return rules; }
+std::span<const Rule> sequence_rules() { return all_sequence_rules; }
 
 }  // namespace gyrolog

@@ -105,13 +105,13 @@ Judgement endpoints(const Dialogue& dialogue) {
     return findings.judgement({});
 }
 
-constexpr std::array rules{
+constexpr std::array all_usb_rules{
     Rule{"10.1", "The device is known by its id or product, and its serial is its uid", identity},
     Rule{"10.2", "Interfaces and endpoints are those of the table", endpoints},
 };
 
 }  // namespace
 
-std::span<const Rule> usb_rules() { return rules; }
+std::span<const Rule> usb_rules() { return all_usb_rules; }
 
 }  // namespace gyrolog

@@ -16,8 +16,6 @@ namespace {
 constexpr double smallest = 1e-15;
 constexpr double largest = 1e15;
 
-Error malformed(std::string message) { return {ErrorCode::malformed, std::move(message)}; }
-
 struct CurveUnit {
     std::string_view ending;
     double rad_per_s;

@@ -15,8 +15,6 @@
 namespace gyrolog {
 namespace {
 
-Error malformed(std::string message) { return {ErrorCode::malformed, std::move(message)}; }
-
 struct InputColumn {
     std::string header;
     std::optional<CsvColumn> meaning;  // nothing: ignored

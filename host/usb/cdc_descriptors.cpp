@@ -29,13 +29,15 @@ std::uint16_t load_u16(ByteView bytes, std::size_t at) {
     return static_cast<std::uint16_t>(bytes[at] | (bytes[at + 1] << 8U));
 }
 
-Error malformed(const std::string& what) { return {ErrorCode::malformed, "USB descriptors: " + what}; }
+Error malformed_descriptors(const std::string& what) { return malformed("USB descriptors: " + what); }
 
 // Takes the first descriptor off `rest`. Every descriptor begins with its own length and type, so a length
 // below two would stand still and one past the end would read somebody else's memory.
 Result<ByteView> take_descriptor(ByteView& rest) {
-    if (rest.size() < 2 || rest[0] < 2) { return malformed("a descriptor is shorter than its header"); }
-    if (rest[0] > rest.size()) { return malformed("a descriptor runs past the end"); }
+    if (rest.size() < 2 || rest[0] < 2) {
+        return malformed_descriptors("a descriptor is shorter than its header");
+    }
+    if (rest[0] > rest.size()) { return malformed_descriptors("a descriptor runs past the end"); }
     const ByteView descriptor = rest.first(rest[0]);
     rest = rest.subspan(rest[0]);
     return descriptor;
@@ -83,12 +85,13 @@ Status take_endpoint(Walk& walk, ByteView endpoint) {
     const std::uint8_t address = endpoint[2];
     const auto packet_bytes = static_cast<std::uint16_t>(load_u16(endpoint, 4) & packet_bytes_mask);
     if (!is_bulk_packet_size(packet_bytes)) {
-        return malformed("a bulk endpoint has packets of " + std::to_string(packet_bytes) + " bytes");
+        return malformed_descriptors("a bulk endpoint has packets of " + std::to_string(packet_bytes) +
+                                     " bytes");
     }
     const bool in = (address & endpoint_direction_in) != 0;
     std::uint8_t& place = in ? walk.layout.endpoint_in : walk.layout.endpoint_out;
     if (place != 0) { return {}; }
-    if ((address & 0x0FU) == 0) { return malformed("a bulk endpoint has the number 0"); }
+    if ((address & 0x0FU) == 0) { return malformed_descriptors("a bulk endpoint has the number 0"); }
     place = address;
     (in ? walk.layout.packet_in_bytes : walk.layout.packet_out_bytes) = packet_bytes;
     return {};
@@ -97,11 +100,15 @@ Status take_endpoint(Walk& walk, ByteView endpoint) {
 Status take(Walk& walk, ByteView descriptor) {
     switch (descriptor[1]) {
         case type_interface:
-            if (descriptor.size() < interface_bytes_min) { return malformed("an interface is too short"); }
+            if (descriptor.size() < interface_bytes_min) {
+                return malformed_descriptors("an interface is too short");
+            }
             begin_interface(walk, descriptor);
             return {};
         case type_endpoint:
-            if (descriptor.size() < endpoint_bytes_min) { return malformed("an endpoint is too short"); }
+            if (descriptor.size() < endpoint_bytes_min) {
+                return malformed_descriptors("an endpoint is too short");
+            }
             return take_endpoint(walk, descriptor);
         case type_class_specific_interface:
             if (walk.in_control_interface && descriptor.size() >= union_bytes_min &&
@@ -117,14 +124,18 @@ Status take(Walk& walk, ByteView descriptor) {
 }  // namespace
 
 Result<ByteView> find_configuration(ByteView descriptors, std::uint8_t configuration) {
-    if (descriptors.size() < device_descriptor_bytes) { return malformed("no device descriptor"); }
+    if (descriptors.size() < device_descriptor_bytes) {
+        return malformed_descriptors("no device descriptor");
+    }
     ByteView rest = descriptors.subspan(device_descriptor_bytes);
     while (!rest.empty()) {
-        if (rest.size() < configuration_bytes_min) { return malformed("a configuration is too short"); }
+        if (rest.size() < configuration_bytes_min) {
+            return malformed_descriptors("a configuration is too short");
+        }
         const std::size_t total_bytes = load_u16(rest, 2);
         if (rest[1] != type_configuration || total_bytes < configuration_bytes_min ||
             total_bytes > rest.size()) {
-            return malformed("a configuration's length is wrong");
+            return malformed_descriptors("a configuration's length is wrong");
         }
         if (rest[5] == configuration) { return rest.first(total_bytes); }
         rest = rest.subspan(total_bytes);
@@ -135,10 +146,12 @@ Result<ByteView> find_configuration(ByteView descriptors, std::uint8_t configura
 Result<CdcLayout> parse_cdc_configuration(ByteView configuration) {
     if (configuration.size() < configuration_bytes_min || configuration[1] != type_configuration ||
         configuration[0] < configuration_bytes_min) {
-        return malformed("no configuration descriptor");
+        return malformed_descriptors("no configuration descriptor");
     }
     const std::size_t total_bytes = load_u16(configuration, 2);
-    if (total_bytes > configuration.size()) { return malformed("the configuration is cut short"); }
+    if (total_bytes > configuration.size()) {
+        return malformed_descriptors("the configuration is cut short");
+    }
 
     Walk walk;
     walk.layout.configuration = configuration[5];
