@@ -3,16 +3,14 @@
 
 Headers take most of the time of compilers and checkers; sources that share them are quicker together.
 
-usage: tools/source_groups.py DIRECTORY SOURCE...     writes the texts there; prints what to compile, ;-separated
+usage: tools/source_groups.py --lines N DIRECTORY SOURCE...     groups of N lines at most; writes the texts there; prints what to compile, ;-separated
 """
+import argparse
 import os
 import re
 import subprocess
-import sys
 from pathlib import Path
 
-# A group is compiled again whenever one of its sources is edited: half a minute at most, with all headers.
-LINES_A_GROUP = 2000
 ROOT = Path(__file__).resolve().parent.parent
 INCLUDE_FOLDERS = (Path("."), Path("firmware_protocol/include"))
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
@@ -20,8 +18,11 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 # What stands at the beginning of a line in this layout is declared in a namespace's own scope.
 TYPE = r"^(?:struct|class|union|enum(?: class)?|using) (?:[\w:]+::)?(\w+)"
 NAMED = r"^(?!return |template|using|struct|class|enum|TEST)[\w\[][\w:<>,&*\[\] ]*[ &*](\w+)"
-TYPES_AND_VALUES = re.compile(TYPE + "|" + NAMED + "(?: = |[{;])", re.MULTILINE)
-FUNCTIONS_AND_TESTS = re.compile(NAMED + r"\(|^TEST\w*\((\w+, \w+)\)", re.MULTILINE)
+TYPES_AND_VALUES = re.compile(TYPE + "|" + NAMED + r"(?: = |[{;\[])", re.MULTILINE)
+ALIASES = re.compile(r"^using (?:[\w:]*::)?(\w+)([^;]*);", re.MULTILINE)
+FUNCTIONS = re.compile(NAMED + r"\(([^()]*)", re.MULTILINE)
+TESTS = re.compile(r"^TEST\w*\((\w+, \w+)\)", re.MULTILINE)
+CLASS = re.compile(r"(?<![\w:])[A-Z]\w*")  # in this project's spelling
 DEFINED_TYPES = re.compile(r"^(?:struct|class|union|enum(?: class)?) (\w+)[^;\n]*\{", re.MULTILINE)
 LOCAL = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
 ONCE_A_PROGRAM = ("int main(", "LLVMFuzzerTestOneInput(")
@@ -74,9 +75,20 @@ class Tree:
         """What a header declares, and which types it defines."""
         if path not in self.names_of_headers:
             text = self.text(path)
-            self.names_of_headers[path] = (names(TYPES_AND_VALUES, text) | names(FUNCTIONS_AND_TESTS, text),
+            self.names_of_headers[path] = (names(TYPES_AND_VALUES, text) | {name for name, _ in FUNCTIONS.findall(text)},
                                            set(DEFINED_TYPES.findall(text)))
         return self.names_of_headers[path]
+
+
+def classes_of(parameters):
+    """Of each parameter the class of this project, or None."""
+    found = [CLASS.search(parameter) for parameter in parameters.split(",")]
+    return tuple(name and name.group() for name in found)
+
+
+def are_overloads(some, others):
+    """Whether no call can mean one of these functions as well as one of those: two classes stand in the same place."""
+    return all(any(a and b and a != b for a, b in zip(one, other)) for one in some for other in others)
 
 
 class Joined:
@@ -87,8 +99,12 @@ class Joined:
         local = "".join(LOCAL.findall(text))
         self.sources = [source]
         self.lines = text.count("\n")
+        self.aliases = dict(ALIASES.findall(local))
         self.values = names(TYPES_AND_VALUES, local)
-        self.own = self.values | names(FUNCTIONS_AND_TESTS, local) | {once for once in ONCE_A_PROGRAM if once in text}
+        self.own = names(TESTS, local) | {once for once in ONCE_A_PROGRAM if once in text}
+        self.functions = {}  # with the classes of their parameters
+        for name, parameters in FUNCTIONS.findall(local):
+            self.functions.setdefault(name, set()).add(classes_of(parameters))
         self.of_headers = set()
         self.types = {}  # with the header that defines each
         for header in tree.headers(source):
@@ -97,19 +113,28 @@ class Joined:
             self.types.update(dict.fromkeys(types, header))
 
     def fits(self, other):
-        return not (self.own & other.own or self.values & other.of_headers or self.of_headers & other.values
+        return not (self.own & other.own
+                    or any(name not in self.aliases or self.aliases[name] != other.aliases.get(name)
+                           for name in self.values & other.values)
+                    or self.values & other.functions.keys() or self.functions.keys() & other.values
+                    or any(not are_overloads(self.functions[name], other.functions[name])
+                           for name in self.functions.keys() & other.functions.keys())
+                    or self.values & other.of_headers or self.of_headers & other.values
                     or any(other.types.get(name, header) != header for name, header in self.types.items()))
 
     def add(self, other):
         self.sources += other.sources
         self.lines += other.lines
+        self.aliases.update(other.aliases)
         self.values |= other.values
         self.own |= other.own
+        for name, parameters in other.functions.items():
+            self.functions.setdefault(name, set()).update(parameters)
         self.of_headers |= other.of_headers
         self.types.update(other.types)
 
 
-def groups_of(sources, lines_most=LINES_A_GROUP):
+def groups_of(sources, lines_most):
     """Groups of C++ sources in which no local name is there twice or declared by a header that one of them includes."""
     tree = Tree(ROOT)
     groups = []
@@ -133,11 +158,15 @@ def write_group(directory, group):
 
 
 def main():
-    directory = Path(sys.argv[1])
-    directory.mkdir(parents=True, exist_ok=True)
-    sources = [Path(name).relative_to(ROOT) for name in sys.argv[2:]]
-    groups = groups_of([source for source in sources if source.suffix == ".cpp"])
-    compiled = [write_group(directory, group) if len(group) > 1 else ROOT / group[0] for group in groups]
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("--lines", type=int, required=True)
+    arguments.add_argument("directory", type=Path)
+    arguments.add_argument("sources", nargs="*")
+    wanted = arguments.parse_args()
+    wanted.directory.mkdir(parents=True, exist_ok=True)
+    sources = [Path(name).relative_to(ROOT) for name in wanted.sources]
+    groups = groups_of([source for source in sources if source.suffix == ".cpp"], wanted.lines)
+    compiled = [write_group(wanted.directory, group) if len(group) > 1 else ROOT / group[0] for group in groups]
     compiled += [ROOT / source for source in sources if source.suffix != ".cpp"]
     print(";".join(str(file) for file in compiled), end="")
 

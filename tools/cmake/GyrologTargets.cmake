@@ -31,10 +31,15 @@ find_package(nlohmann_json 3.11 REQUIRED)
 
 add_library(gyrolog_settings INTERFACE)
 # A simulated sample must be the same bits with both compilers: no contraction to fused multiply-add.
-target_compile_options(gyrolog_settings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wformat=2
-  $<$<BOOL:${GYROLOG_WERROR}>:-Werror> -ffp-contract=off
-  $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast -Woverloaded-virtual -Wnon-virtual-dtor>)
+target_compile_options(gyrolog_settings INTERFACE -ffp-contract=off)
+if(GYROLOG_WARNINGS)
+  target_compile_options(gyrolog_settings INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wformat=2
+    $<$<BOOL:${GYROLOG_WERROR}>:-Werror>
+    $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast -Woverloaded-virtual -Wnon-virtual-dtor>)
+else()
+  target_compile_options(gyrolog_settings INTERFACE -w)
+endif()
 # For the compiler cache: the text behind the preprocessor names the precompiled header.
 target_compile_options(gyrolog_settings INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess>)
 target_include_directories(gyrolog_settings INTERFACE ${CMAKE_SOURCE_DIR})
@@ -63,25 +68,43 @@ function(gyrolog_join variable name)
   if(GYROLOG_JOIN_SOURCES)
     list(TRANSFORM joined REPLACE "^([^/].*)$" "${CMAKE_CURRENT_SOURCE_DIR}/\\1")
     execute_process(COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/source_groups.py
-      ${CMAKE_BINARY_DIR}/joined/${name} ${joined} OUTPUT_VARIABLE joined COMMAND_ERROR_IS_FATAL ANY)
+      --lines ${GYROLOG_JOINED_LINES} ${CMAKE_BINARY_DIR}/joined/${name} ${joined} OUTPUT_VARIABLE joined COMMAND_ERROR_IS_FATAL ANY)
   endif()
   set(${variable} "${joined}" PARENT_SCOPE)
 endfunction()
 
-# gyrolog_library(NAME SOURCES ... LINK ... [PRECOMPILE <header>...] [OPTIMISE option]): a static library with the
-# project's settings. PRECOMPILE: headers that most of its sources include and that are long to read. OPTIMISE: in
-# release builds, in place of -O2.
+# gyrolog_precompile_standard_headers(TARGET option...): the parts of the standard library that most sources include,
+# read once for all of them.
+function(gyrolog_precompile_standard_headers name)
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "" @ONLY)
+  add_library(${name} STATIC ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  target_link_libraries(${name} PRIVATE gyrolog_settings)
+  target_compile_options(${name} PRIVATE ${ARGN})
+  target_precompile_headers(${name} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory>
+    <mutex> <numeric> <optional> <span> <string> <string_view> <utility> <vector>)
+endfunction()
+gyrolog_precompile_standard_headers(gyrolog_standard_headers)
+gyrolog_precompile_standard_headers(gyrolog_standard_headers_O1 $<$<CONFIG:Release>:-O1>)
+
+# gyrolog_library(NAME SOURCES ... LINK ... [PRECOMPILE <header>...] [RUNS_BRIEFLY]): a static library with the
+# project's settings. PRECOMPILE: headers that most of its sources include and that are long to read, in place of those
+# of the standard library. RUNS_BRIEFLY: nothing in it runs for long, so that it need not be optimised for long: in
+# release builds -O1 in place of -O2.
 function(gyrolog_library name)
-  cmake_parse_arguments(arg "" "OPTIMISE" "SOURCES;LINK;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "RUNS_BRIEFLY" "" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   gyrolog_join(sources ${name} ${arg_SOURCES})
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC ${arg_LINK} PRIVATE gyrolog_settings)
   target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
+  set(precompiled gyrolog_standard_headers)
+  if(arg_RUNS_BRIEFLY)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    set(precompiled gyrolog_standard_headers_O1)
+  endif()
   if(arg_PRECOMPILE)
     target_precompile_headers(${name} PRIVATE ${arg_PRECOMPILE})
-  endif()
-  if(arg_OPTIMISE)
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${arg_OPTIMISE}>)
+  elseif(NOT arg_SOURCES MATCHES "\\.c(;|$)")
+    target_precompile_headers(${name} REUSE_FROM ${precompiled})
   endif()
 endfunction()
 
