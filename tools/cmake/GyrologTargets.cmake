@@ -52,9 +52,6 @@ if(GYROLOG_SANITIZE)
   # -Wmaybe-uninitialized misfires on instrumented code.
   target_compile_options(gyrolog_settings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
-if(GYROLOG_FUZZ)
-  target_compile_options(gyrolog_settings INTERFACE -fsanitize=fuzzer-no-link)
-endif()
 if(GYROLOG_JOIN_SOURCES)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
   # One source's local name is another's variable.
@@ -118,9 +115,11 @@ function(gyrolog_precompile_test_headers)
     <gtest/gtest.h> <nlohmann/json.hpp>)
 endfunction()
 
-# gyrolog_test(NAME SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds]): one GoogleTest binary, one ctest entry.
+# gyrolog_test(NAME SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds] [NOT_INSTRUMENTED test...]): one GoogleTest
+# binary, one ctest entry. NOT_INSTRUMENTED: searches and statistics of many seconds, which sanitizers make minutes, and
+# whose code other tests run as well.
 function(gyrolog_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT;NOT_INSTRUMENTED" ${ARGN})
   if(NOT GYROLOG_TESTS)
     return()
   endif()
@@ -136,6 +135,10 @@ function(gyrolog_test name)
   # Instrumented, only the default tier without its statistics is run: the others are not built.
   if(GYROLOG_SANITIZE AND NOT arg_LABELS STREQUAL "default")
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+  if(GYROLOG_SANITIZE AND arg_NOT_INSTRUMENTED)
+    list(JOIN arg_NOT_INSTRUMENTED ":" left_out)
+    list(APPEND arg_ENVIRONMENT "GTEST_FILTER=-${left_out}")
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
