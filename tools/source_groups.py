@@ -101,7 +101,7 @@ class Joined:
         self.lines = text.count("\n")
         self.aliases = dict(ALIASES.findall(local))
         self.values = names(TYPES_AND_VALUES, local)
-        self.own = names(TESTS, local) | {once for once in ONCE_A_PROGRAM if once in text}
+        self.own = set(TESTS.findall(local)) | {once for once in ONCE_A_PROGRAM if once in text}
         self.functions = {}  # with the classes of their parameters
         for name, parameters in FUNCTIONS.findall(local):
             self.functions.setdefault(name, set()).add(classes_of(parameters))

@@ -13,7 +13,8 @@ class Sans : public testing::Test {
 protected:
     void SetUp() override {
         std::string problem;
-        auto opened = Typeface::open(std::string(Typeface::debian_directory) + "/DejaVuSans.ttf", problem);
+        auto opened =
+            Typeface::open(std::filesystem::path(Typeface::debian_directory) / "DejaVuSans.ttf", problem);
         ASSERT_TRUE(opened.has_value()) << problem;
         face = std::move(opened);
     }
