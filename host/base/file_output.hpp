@@ -8,9 +8,8 @@
 
 namespace gyrolog {
 
-// Replaces the file at `path` by `contents`: written beside it and renamed, so that a failure leaves what was
-// there. A path that is no regular file (a pipe, /dev/stdout) is written directly. Errors: storage_failed,
-// disk_full, not_found (the folder is missing), permission_denied.
+// Replaces the file at `path` by `contents`, as ReplacingFile does. Errors: storage_failed, disk_full,
+// not_found (the folder is missing), permission_denied.
 Status write_file(const std::string& path, ByteView contents);
 
 }  // namespace gyrolog

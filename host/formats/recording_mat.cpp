@@ -1,12 +1,14 @@
 #include "host/formats/recording_mat.hpp"
 
 #include <array>
+#include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include <matio.h>
+#include <unistd.h>
+
+#include "host/base/replacing_file.hpp"
 
 namespace gyrolog {
 namespace {
@@ -179,32 +181,34 @@ std::size_t variables_in(const std::string& path) {
     return count;
 }
 
-std::string write_part(const ExportSource& source, const std::string& path) {
+// matio hardly ever tells why it fails: a disk that takes no more bytes of ours took none of its either.
+Error why_failed(ReplacingFile& file, std::string failure) {
+    constexpr std::array<std::uint8_t, 65536> more{};
+    static_cast<void>(::lseek(file.descriptor(), 0, SEEK_END));
+    const Status room = file.write(more);
+    return room.ok() ? Error{ErrorCode::failed, std::move(failure)} : room.error();
+}
+
+Status replace_mat(const ExportSource& source, const std::string& path) {
+    GYROLOG_TRY(ReplacingFile file, ReplacingFile::create(path));
     std::size_t written = 0;
+    std::string failure;
     {
-        const MatFile file(
-            Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, written by gyrolog", MAT_FT_MAT5));
-        if (!file) { return "the file cannot be created"; }
-        if (std::string failure = write_all(file.get(), source, written); !failure.empty()) {
-            return failure;
-        }
+        const MatFile mat(Mat_CreateVer(file.written_path().c_str(),
+                                        "MATLAB 5.0 MAT-file, written by gyrolog", MAT_FT_MAT5));
+        failure = mat ? write_all(mat.get(), source, written) : "the file cannot be created";
     }
-    return variables_in(path) == written ? "" : "writing failed; is the disk full?";
+    if (failure.empty() && variables_in(file.written_path()) != written) {
+        failure = "what was written cannot be read back";
+    }
+    return failure.empty() ? file.commit() : why_failed(file, std::move(failure));
 }
 
 }  // namespace
 
 Status write_recording_mat(const ExportSource& source, const std::string& path) {
-    const std::string part = path + ".part";
-    std::string failure = write_part(source, part);
-    if (failure.empty()) {
-        std::error_code problem;
-        std::filesystem::rename(part, path, problem);
-        if (problem) { failure = problem.message(); }
-    }
-    if (failure.empty()) { return {}; }
-    static_cast<void>(std::remove(part.c_str()));
-    return Error{ErrorCode::failed, "write '" + path + "': " + failure};
+    const Status done = replace_mat(source, path);
+    return done.ok() ? done : in_context("write '" + path + "'", done.error());
 }
 
 }  // namespace gyrolog

@@ -62,13 +62,12 @@ void TextWriter::Close::operator()(void* archive) const { archive_write_free(han
 
 Result<TextWriter> TextWriter::create(const std::string& path, TextGrowth growth) {
     TextWriter writer;
-    writer.path_ = path;
-    std::error_code none;
-    const std::filesystem::file_status there = std::filesystem::status(path, none);
-    const bool direct = growth == TextGrowth::growing ||
-                        (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there));
-    if (std::filesystem::is_directory(there)) { return Error{ErrorCode::failed, "it is a folder"}; }
-    const std::string written = direct ? path : path + ".part";
+    if (growth == TextGrowth::whole) {
+        GYROLOG_TRY(ReplacingFile replacing, ReplacingFile::create(path));
+        writer.file_.emplace(std::move(replacing));
+    } else if (std::error_code none; std::filesystem::is_directory(path, none)) {
+        return Error{ErrorCode::failed, "it is a folder"};
+    }
     archive* file = archive_write_new();
     writer.archive_.reset(file);
     archive_write_set_format_raw(file);
@@ -84,8 +83,9 @@ Result<TextWriter> TextWriter::create(const std::string& path, TextGrowth growth
     // Without this the file would be filled up to a multiple of a tape's block.
     archive_write_set_bytes_in_last_block(file, 1);
     if (growth == TextGrowth::growing) { archive_write_set_bytes_per_block(file, 0); }
-    if (archive_write_open_filename(file, written.c_str()) != ARCHIVE_OK) { return error_of(file); }
-    if (!direct) { writer.beside_ = written; }
+    const int opened = writer.file_ ? archive_write_open_fd(file, writer.file_->descriptor())
+                                    : archive_write_open_filename(file, path.c_str());
+    if (opened != ARCHIVE_OK) { return error_of(file); }
     archive_entry* entry = archive_entry_new();
     archive_entry_set_pathname(entry, "text");
     archive_entry_set_filetype(entry, AE_IFREG);
@@ -108,19 +108,7 @@ Status TextWriter::close() {
     if (archive_write_close(handle(archive_.get())) != ARCHIVE_OK) {
         return error_of(handle(archive_.get()));
     }
-    if (beside_.empty()) { return {}; }
-    std::error_code problem;
-    std::filesystem::rename(beside_, path_, problem);
-    if (problem) { return Error{ErrorCode::storage_failed, problem.message()}; }
-    beside_.clear();
-    return {};
-}
-
-TextWriter::~TextWriter() {
-    if (!archive_ || beside_.empty()) { return; }  // moved from, or done
-    archive_.reset();
-    std::error_code none;
-    std::filesystem::remove(beside_, none);
+    return file_ ? file_->commit() : Status();
 }
 
 }  // namespace gyrolog

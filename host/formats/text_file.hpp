@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "host/base/replacing_file.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
@@ -28,8 +30,7 @@ private:
 
 // How a file comes to be.
 enum class TextGrowth {
-    // Written beside the file that it shall be and put in its place by close(), so that a failure leaves what
-    // was there. A path that is no regular file (a pipe, /dev/stdout) is written directly.
+    // A ReplacingFile, put in its place by close().
     whole,
     // Under its own name from the first byte, and handed to the system by every write(): whoever reads it
     // sees it grow, and a failure leaves what came before.
@@ -42,7 +43,7 @@ public:
     TextWriter(TextWriter&&) = default;
     TextWriter& operator=(TextWriter&&) = delete;
     // Without close() nothing is left of a whole file.
-    ~TextWriter();
+    ~TextWriter() = default;
 
     Status write(std::string_view text);
     // The file is whole only after close() said so.
@@ -54,9 +55,8 @@ private:
     };
     TextWriter() = default;
 
+    std::optional<ReplacingFile> file_;  // none for one that grows
     std::unique_ptr<void, Close> archive_;
-    std::string path_;
-    std::string beside_;  // where it is written until then; empty: at path_
 };
 
 }  // namespace gyrolog

@@ -1,12 +1,17 @@
 #include "host/base/file_output.hpp"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include "host/base/replacing_file.hpp"
+#include "host/base/unfinished_files.hpp"
 #include "tests/support/needs.hpp"
 
 namespace gyrolog {
@@ -52,6 +57,90 @@ TEST_F(FileOutput, AFullDiskLeavesTheOldContents) {
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().code, ErrorCode::disk_full);
     EXPECT_TRUE(fs::exists("/dev/full"));
+}
+
+TEST_F(FileOutput, KeepsTheModeOfWhatWasThere) {
+    std::ofstream(path("a")) << "first";
+    ASSERT_EQ(chmod(path("a").c_str(), 0640), 0);
+    ASSERT_TRUE(write_file(path("a"), as_bytes("second")).ok());
+    struct stat there {};
+    ASSERT_EQ(stat(path("a").c_str(), &there), 0);
+    EXPECT_EQ(there.st_mode & 0777U, 0640U);
+}
+
+TEST_F(FileOutput, OfANewFileHasTheModeThatTheUserWants) {
+    const mode_t before = umask(027);
+    const Status written = write_file(path("a"), as_bytes("x"));
+    umask(before);
+    ASSERT_TRUE(written.ok());
+    struct stat there {};
+    ASSERT_EQ(stat(path("a").c_str(), &there), 0);
+    EXPECT_EQ(there.st_mode & 0777U, 0640U);
+}
+
+TEST_F(FileOutput, KeepsTheOwnerOfWhatWasThere) {
+    if (geteuid() != 0) { GTEST_SKIP() << "needs root, who can give files away"; }
+    std::ofstream(path("a")) << "first";
+    ASSERT_EQ(chown(path("a").c_str(), 65534, 65534), 0);
+    ASSERT_TRUE(write_file(path("a"), as_bytes("second")).ok());
+    struct stat there {};
+    ASSERT_EQ(stat(path("a").c_str(), &there), 0);
+    EXPECT_EQ(there.st_uid, 65534U);
+    EXPECT_EQ(there.st_gid, 65534U);
+}
+
+TEST_F(FileOutput, ReplacesALinkAndLeavesWhatItShowedTo) {
+    std::ofstream(path("target")) << "precious";
+    fs::create_symlink(path("target"), path("a"));
+    ASSERT_TRUE(write_file(path("a"), as_bytes("x")).ok());
+    EXPECT_FALSE(fs::is_symlink(path("a")));
+    EXPECT_EQ(contents(path("target")), "precious");
+}
+
+TEST_F(FileOutput, OfALongNameIsWrittenToo) {
+    const std::string name(250, 'n');
+    ASSERT_TRUE(write_file(path(name.c_str()), as_bytes("x")).ok());
+    EXPECT_EQ(contents(path(name.c_str())), "x");
+}
+
+// The process ends at each step of writing, as a crash or a full power cut ends it: the old contents or the
+// new, never less. What a signal that is caught leaves is nothing but that.
+TEST_F(FileOutput, KilledAtAnyStepLeavesTheOldOrTheNew) {
+    const std::string old_contents(100'000, 'o');
+    const std::string new_contents(200'000, 'n');
+    for (int step = 0; step < 4; ++step) {
+        for (const bool caught : {false, true}) {
+            ASSERT_TRUE(write_file(path("a"), as_bytes(old_contents)).ok());
+            const pid_t child = fork();
+            ASSERT_GE(child, 0);
+            if (child == 0) {
+                auto file = ReplacingFile::create(path("a"));
+                const auto end = [&](int here) {
+                    if (step != here) { return; }
+                    if (caught) { remove_unfinished_files(); }
+                    static_cast<void>(raise(SIGKILL));
+                };
+                if (!file.ok()) { _exit(1); }
+                end(0);
+                if (!file->write(as_bytes(new_contents).first(100'000)).ok()) { _exit(1); }
+                end(1);
+                if (!file->write(as_bytes(new_contents).subspan(100'000)).ok()) { _exit(1); }
+                end(2);
+                if (!file->commit().ok()) { _exit(1); }
+                end(3);
+                _exit(1);
+            }
+            int status = 0;
+            ASSERT_EQ(waitpid(child, &status, 0), child);
+            ASSERT_TRUE(WIFSIGNALED(status)) << "step " << step;
+            EXPECT_EQ(contents(path("a")), step < 3 ? old_contents : new_contents) << "step " << step;
+            const auto files = std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+            EXPECT_EQ(files, caught || step == 3 ? 1 : 2) << "step " << step;
+            for (const auto& entry : fs::directory_iterator(folder_)) {
+                if (entry.path() != path("a")) { fs::remove(entry.path()); }
+            }
+        }
+    }
 }
 
 }  // namespace
