@@ -7,6 +7,7 @@
 #include "analysis/simulate/fitted_model.hpp"
 #include "host/app/analysis_plot.hpp"
 #include "host/app/command.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
@@ -34,48 +35,48 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
     return options;
 }
 
+Status write_fitted_model(const AnalysisRequest& request, const Recording& recording,
+                          const AnalysisReport& report) {
+    if (report.unit.name == "lsb") {
+        return Error{ErrorCode::invalid_argument,
+                     "a model needs rates, and this recording has counts: give their scale with --lsb-dps"};
+    }
+    if (std::ranges::none_of(report.axes, [](const AxisReport& axis) {
+            return axis.axis == "x" || axis.axis == "y" || axis.axis == "z";
+        })) {
+        return Error{ErrorCode::invalid_argument,
+                     "a model is of one sensor with axes x, y and z, and this recording has none of them"};
+    }
+    return write_model(fitted_model(report, recording), request.model_path);
+}
+
 Status write_results(Console& console, const AnalysisRequest& request, const Recording& recording,
                      const AnalysisReport& report) {
-    // What was worked out is shown before a file that cannot be written ends this.
+    ResultOutput results(console);
     request.on_stage("report");
-    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", analysis_text(report))); }
-    if (!request.json_path.empty()) {
-        request.on_stage("json");
-        GYROLOG_CHECK(write_text(console, request.json_path, analysis_json(report)));
-    }
-    if (!request.plot_path.empty()) {
-        request.on_stage("plot");
-        GYROLOG_CHECK(write_analysis_plot(report, request.plot_path));
-    }
-    if (!request.histogram_path.empty()) {
-        GYROLOG_CHECK(write_histogram_plot(report, recording, request.histogram_path));
-    }
-    if (!request.model_path.empty()) {
-        if (report.unit.name == "lsb") {
-            return Error{
-                ErrorCode::invalid_argument,
-                "a model needs rates, and this recording has counts: give their scale with --lsb-dps"};
-        }
-        if (std::ranges::none_of(report.axes, [](const AxisReport& axis) {
-                return axis.axis == "x" || axis.axis == "y" || axis.axis == "z";
-            })) {
-            return Error{
-                ErrorCode::invalid_argument,
-                "a model is of one sensor with axes x, y and z, and this recording has none of them"};
-        }
-        request.on_stage("model");
-        GYROLOG_CHECK(write_model(fitted_model(report, recording), request.model_path));
-    }
-    for (const std::string* path :
-         {&request.json_path, &request.plot_path, &request.histogram_path, &request.model_path}) {
-        if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
-    }
-    return {};
+    if (request.json_path != "-") { results.show(analysis_text(report)); }
+    request.on_stage("json");
+    results.text(request.json_path, [&] { return analysis_json(report); });
+    request.on_stage("plot");
+    results.file(request.plot_path, [&] { return write_analysis_plot(report, request.plot_path); });
+    results.file(request.histogram_path,
+                 [&] { return write_histogram_plot(report, recording, request.histogram_path); });
+    request.on_stage("model");
+    results.file(request.model_path, [&] { return write_fitted_model(request, recording, report); });
+    return results.finish();
 }
 
 }  // namespace
 
 ExitCode analyze_to_files(Console& console, const char* command, const AnalysisRequest& request) {
+    const NamedPath read[] = {{"RECORDING", request.recording_path}};
+    const NamedPath written_paths[] = {{"--json", request.json_path},
+                                       {"--plot", request.plot_path},
+                                       {"--histogram", request.histogram_path},
+                                       {"--model", request.model_path}};
+    if (const Status fine = check_output_paths(read, written_paths); !fine.ok()) {
+        return report_error(console, command, fine.error());
+    }
     const auto options = options_of(request);
     if (!options.ok()) { return report_error(console, command, options.error()); }
     const auto recording =

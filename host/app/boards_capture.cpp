@@ -14,6 +14,8 @@
 #include "host/app/capture_run.hpp"
 #include "host/app/command.hpp"
 #include "host/app/device_choice.hpp"
+#include "host/app/output_paths.hpp"
+#include "host/app/stop_signal.hpp"
 
 namespace gyrolog {
 namespace {
@@ -107,12 +109,18 @@ Result<Boards> open_all(const CaptureOptions& options, const std::vector<std::st
         serials.push_back(source.source->identity().serial);
         opened.push_back(std::move(source));
     }
+    std::vector<std::string> files;
+    for (const std::string& uri : devices) { files.push_back(file_of_device(uri)); }
+    std::vector<NamedPath> read;
+    for (const std::string& file : files) { read.push_back({"--device", file}); }
     Boards boards;
     boards.reserve(opened.size());
     for (std::size_t i = 0; i < opened.size(); ++i) {
         const bool alone = !serials[i].empty() && std::ranges::count(serials, serials[i]) == 1;
         CaptureRequest own = request;
         own.path = path_of_board(path, serials[i], alone ? 0U : static_cast<unsigned>(i) + 1U);
+        const NamedPath written[] = {{"--output", own.path}};
+        GYROLOG_CHECK(check_output_paths(read, written));
         if (opened[i].keeps_limit) {
             own.duration_s.reset();
             own.samples.reset();
@@ -155,6 +163,7 @@ ExitCode capture_boards(Console& console, const char* command, const CaptureOpti
     for (const auto& board : boards) {
         console.err << "capturing from " << board->source().identity().uri << " to " << board->path() << '\n';
     }
+    const TidyEnd tidy;
     for (const auto& board : boards) { board->start(); }
     watch(console, boards);
     ExitCode code = ExitCode::ok;

@@ -9,6 +9,7 @@
 #include "host/app/command.hpp"
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
+#include "host/app/stop_signal.hpp"
 #include "host/session/load_capture.hpp"
 
 namespace gyrolog {
@@ -109,6 +110,7 @@ void tell_denoising(Console& console, LiveDenoise* denoise, LiveView* view) {
 // On a terminal: with the live view and its keys.
 Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, CaptureRequest request,
                                      LiveDenoise* denoise) {
+    const TidyEnd tidy;
     Observers observers;
     observers.add(denoise);
     request.observer = &observers;

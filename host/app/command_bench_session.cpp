@@ -10,6 +10,8 @@
 #include "host/app/analysis_run.hpp"
 #include "host/app/capture_run.hpp"
 #include "host/app/command.hpp"
+#include "host/app/device_choice.hpp"
+#include "host/app/output_paths.hpp"
 
 namespace gyrolog {
 namespace {
@@ -40,6 +42,21 @@ ExitCode bench_session(Console& console, BenchSessionOptions options) {
              "several boards at once: run `gyrolog capture`, then `gyrolog analyze` for each file"});
     }
     if (options.path.empty()) { options.path = name_by_time() + ".pcapng"; }
+    AnalysisRequest request;
+    request.recording_path = options.path;
+    request.json_path = without_extension(options.path) + ".json";
+    request.plot_path = without_extension(options.path) + ".png";
+    request.model_path = without_extension(options.path) + ".model.json";
+    const std::string device =
+        options.capture.devices.empty() ? std::string() : file_of_device(options.capture.devices.front());
+    const NamedPath read[] = {{"--device", device}};
+    const NamedPath written[] = {{"--output", options.path},
+                                 {"the report", request.json_path},
+                                 {"the figure", request.plot_path},
+                                 {"the noise model", request.model_path}};
+    if (const Status fine = check_output_paths(read, written); !fine.ok()) {
+        return report_error(console, "", fine.error());
+    }
     const CaptureResult captured = capture_to_file(console, "", options.capture, options.path, true);
     if (!captured.file_written) {
         if (captured.code == ExitCode::no_device) {
@@ -51,11 +68,6 @@ ExitCode bench_session(Console& console, BenchSessionOptions options) {
         console.err << "there is nothing to analyse\n";
         return captured.code == ExitCode::ok ? ExitCode::failed : captured.code;
     }
-    AnalysisRequest request;
-    request.recording_path = options.path;
-    request.json_path = without_extension(options.path) + ".json";
-    request.plot_path = without_extension(options.path) + ".png";
-    request.model_path = without_extension(options.path) + ".model.json";
     const ExitCode analysed = analyze_to_files(console, "analyze", request);
     // The capture's own verdict comes first: a lost device stays a lost device however well its data analyse.
     return captured.code == ExitCode::ok ? analysed : captured.code;

@@ -19,6 +19,20 @@ struct CaptureCommandOptions {
     std::string json;
 };
 
+// Nothing that the board is made of or that denoising knows is written over.
+Status check_paths(const CaptureCommandOptions& options, const std::vector<std::string>& devices) {
+    std::vector<std::string> files;
+    files.reserve(devices.size());
+    for (const std::string& uri : devices) { files.push_back(file_of_device(uri)); }
+    std::vector<NamedPath> read{{"--denoise-model", options.capture.denoise.model}};
+    for (const std::string& file : files) { read.push_back({"--device", file}); }
+    const std::string denoised =
+        options.capture.denoise.wanted() ? options.capture.denoise.output_of(options.path) : "";
+    const NamedPath written[] = {
+        {"--output", options.path}, {"--denoise-out", denoised}, {"--json", options.json}};
+    return check_output_paths(read, written);
+}
+
 Status check_denoise(const CaptureCommandOptions& options, std::size_t boards) {
     const LiveDenoiseOptions& denoise = options.capture.denoise;
     GYROLOG_CHECK(denoise.check(options.capture.rate_hz));
@@ -28,11 +42,7 @@ Status check_denoise(const CaptureCommandOptions& options, std::size_t boards) {
                      "--denoise is of one board: capture several without it, and denoise their array "
                      "afterwards, `gyrolog denoise A.pcapng B.pcapng C.pcapng -o FUSED.csv`"};
     }
-    const std::string output = denoise.output_of(options.path);
-    const NamedPath read[] = {{"--denoise-model", denoise.model}};
-    const NamedPath written[] = {
-        {"--output", options.path}, {"--denoise-out", output}, {"--json", options.json}};
-    return check_output_paths(read, written);
+    return {};
 }
 
 ExitCode capture(Console& console, const CaptureCommandOptions& options) {
@@ -40,6 +50,9 @@ ExitCode capture(Console& console, const CaptureCommandOptions& options) {
     if (!devices.ok()) {
         report_error(console, "capture", devices.error());
         return exit_code_of_opening(devices.error());
+    }
+    if (const Status fine = check_paths(options, *devices); !fine.ok()) {
+        return report_error(console, "capture", fine.error());
     }
     if (const Status fine = check_denoise(options, devices->size()); !fine.ok()) {
         return report_error(console, "capture", fine.error());
@@ -58,7 +71,9 @@ ExitCode capture(Console& console, const CaptureCommandOptions& options) {
     if (!result.file_written || options.json.empty()) { return result.code; }
     const auto stored = load_capture(options.path, false);
     if (!stored.ok()) { return report_error(console, "capture", stored.error()); }
-    const Status written = write_json(console, options.json, check_json(options.path, *stored));
+    ResultOutput results(console);
+    results.json(options.json, [&] { return check_json(options.path, *stored); });
+    const Status written = results.finish();
     return written.ok() ? result.code : report_error(console, "capture", written.error());
 }
 

@@ -4,6 +4,7 @@
 
 #include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
 
 namespace gyrolog {
@@ -25,15 +26,19 @@ std::shared_ptr<CheckOptions> declare(CLI::App& app) {
 ExitCode tell(Console& console, const char* command, const CheckOptions& options,
               nlohmann::ordered_json (*as_json)(const std::string&, const LoadedCapture&),
               std::string (*as_text)(const std::string&, const LoadedCapture&), ExitCode when_missing) {
+    const NamedPath read[] = {{"FILE", options.path}};
+    const NamedPath paths[] = {{"--json", options.json}};
+    if (const Status fine = check_output_paths(read, paths); !fine.ok()) {
+        return report_error(console, command, fine.error());
+    }
     const auto capture = load_capture(options.path, false);
     if (!capture.ok()) { return report_error(console, command, capture.error()); }
-    if (!options.json.empty()) {
-        if (const Status written = write_json(console, options.json, as_json(options.path, *capture));
-            !written.ok()) {
-            return report_error(console, command, written.error());
-        }
+    ResultOutput results(console);
+    if (options.json != "-") { results.show(as_text(options.path, *capture)); }
+    results.json(options.json, [&] { return as_json(options.path, *capture); });
+    if (const Status written = results.finish(); !written.ok()) {
+        return report_error(console, command, written.error());
     }
-    if (options.json != "-") { console.out << as_text(options.path, *capture); }
     return nothing_missing(*capture) ? ExitCode::ok : when_missing;
 }
 

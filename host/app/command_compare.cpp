@@ -84,13 +84,12 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
         if (console.progress) {
             console.err << fmt::format("\r  simulation {} of {}", done, options.simulations) << std::flush;
         }
-        return !console.stop_wanted();
+        return true;
     };
     auto comparison =
         compare_with_model(std::make_shared<const Recording>(std::move(recording)), model,
                            std::filesystem::path(request.other_path).filename().string(), options);
     if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
-    if (!comparison) { return Error{ErrorCode::failed, "interrupted; nothing is written"}; }
     comparison->notes = file.notes;
     return *std::move(comparison);
 }
@@ -115,21 +114,17 @@ Status write_plot(const Comparison& comparison, const std::string& path) {
 }
 
 Status write_results(Console& console, const CompareRequest& request, const Comparison& comparison) {
+    ResultOutput results(console);
     if (request.json_path != "-") {
-        GYROLOG_CHECK(write_text(console, "-", comparison_text(comparison)));
+        results.show(comparison_text(comparison));
     } else {
         for (const std::string& warning : comparison.warnings) {
             console.err << "gyrolog compare: warning: " << warning << '\n';
         }
     }
-    if (!request.json_path.empty()) {
-        GYROLOG_CHECK(write_text(console, request.json_path, comparison_json(comparison)));
-    }
-    if (!request.plot_path.empty()) { GYROLOG_CHECK(write_plot(comparison, request.plot_path)); }
-    for (const std::string* path : {&request.json_path, &request.plot_path}) {
-        if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
-    }
-    return {};
+    results.text(request.json_path, [&] { return comparison_json(comparison); });
+    results.file(request.plot_path, [&] { return write_plot(comparison, request.plot_path); });
+    return results.finish();
 }
 
 ExitCode compare(Console& console, const CompareRequest& request) {

@@ -4,6 +4,7 @@
 
 #include "host/app/command.hpp"
 #include "host/app/result_output.hpp"
+#include "host/app/stop_signal.hpp"
 #include "host/conform/conformance.hpp"
 #include "host/conform/conversation.hpp"
 #include "host/formats/conform_report.hpp"
@@ -28,7 +29,10 @@ ExitCode conform(Console& console, const ConformOptions& options) {
     if (!opened.ok()) { return fail_to_open(console, opened.error()); }
     console.err << "gyrolog conform: talking to " << opened->source->identity().uri
                 << " for about ten seconds\n";
-    const auto dialogue = converse(*opened->source, [&] { return !console.stop_wanted(); });
+    const auto dialogue = [&] {
+        const TidyEnd tidy;  // the board is left as it was found
+        return converse(*opened->source, [&] { return !console.stop_wanted(); });
+    }();
     if (!dialogue.ok()) {
         if (dialogue.error().code == ErrorCode::unsupported) {
             report_error(
@@ -40,18 +44,13 @@ ExitCode conform(Console& console, const ConformOptions& options) {
         return fail_to_open(console, dialogue.error());
     }
     const ConformanceReport report = judge(*dialogue);
-    if (!options.transcript.empty()) {
-        if (const Status written = write_text(console, options.transcript, transcript_text(*dialogue));
-            !written.ok()) {
-            return report_error(console, "conform", written.error());
-        }
+    ResultOutput results(console);
+    if (options.json != "-") { results.show(conform_text(report)); }
+    results.text(options.transcript, [&] { return transcript_text(*dialogue); });
+    results.json(options.json, [&] { return conform_json(report); });
+    if (const Status written = results.finish(); !written.ok()) {
+        return report_error(console, "conform", written.error());
     }
-    if (!options.json.empty()) {
-        if (const Status written = write_json(console, options.json, conform_json(report)); !written.ok()) {
-            return report_error(console, "conform", written.error());
-        }
-    }
-    if (options.json != "-") { console.out << conform_text(report); }
     return report.conforms() ? ExitCode::ok : ExitCode::not_conforming;
 }
 

@@ -319,22 +319,18 @@ private:
 
 Status write_results(Console& console, const Request& request, const DenoiseRun& run) {
     const DenoiseReport& report = run.report();
+    ResultOutput results(console);
     if (request.json_path == "-") {
         for (const std::string& warning : report.warnings) {
             console.err << "gyrolog denoise: warning: " << warning << '\n';
         }
     } else {
-        GYROLOG_CHECK(write_text(console, "-", denoise_text(report)));
+        results.show(denoise_text(report));
     }
-    if (!request.output.empty()) { GYROLOG_CHECK(run.write_recording()); }
-    if (!request.json_path.empty()) {
-        GYROLOG_CHECK(write_json(console, request.json_path, denoise_json(report)));
-    }
-    if (!request.plot_path.empty()) { GYROLOG_CHECK(run.write_plot()); }
-    for (const std::string* path : {&request.output, &request.json_path, &request.plot_path}) {
-        if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
-    }
-    return {};
+    results.file(request.output, [&] { return run.write_recording(); });
+    results.json(request.json_path, [&] { return denoise_json(report); });
+    results.file(request.plot_path, [&] { return run.write_plot(); });
+    return results.finish();
 }
 
 Status check(const Request& request) {

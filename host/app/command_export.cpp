@@ -5,6 +5,7 @@
 #include "analysis/noise/analyze.hpp"
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/formats/export_format.hpp"
 #include "host/formats/model_json.hpp"
@@ -68,6 +69,11 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
 }
 
 ExitCode export_to_file(Console& console, const ExportOptions& options) {
+    const NamedPath read[] = {{"RECORDING", options.source}};
+    const NamedPath written[] = {{"--output", options.output}};
+    if (const Status fine = check_output_paths(read, written); !fine.ok()) {
+        return report_error(console, "export", fine.error());
+    }
     const ExportFormat* format = export_format_of(options.output);
     if (format == nullptr) {
         return report_error(

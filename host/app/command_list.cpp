@@ -29,13 +29,15 @@ nlohmann::ordered_json list_json(const UsbSurvey& survey) {
     return {{"schema", "gyrolog-list/1"}, {"devices", devices}};
 }
 
-void print_list(std::ostream& out, const UsbSurvey& survey) {
+std::string list_text(const UsbSurvey& survey) {
+    std::string text;
     for (const UsbBoard& board : survey.boards) {
-        out << fmt::format("{:<20} {:04x}:{:04x}  {:<28} {}\n", board.uri(), board.vendor_id,
-                           board.product_id, board.product.empty() ? "(name not readable)" : board.product,
-                           board_state_name(board.state));
-        if (!board.why.empty()) { out << "    " << board.why << '\n'; }
+        text += fmt::format("{:<20} {:04x}:{:04x}  {:<28} {}\n", board.uri(), board.vendor_id,
+                            board.product_id, board.product.empty() ? "(name not readable)" : board.product,
+                            board_state_name(board.state));
+        if (!board.why.empty()) { text += "    " + board.why + '\n'; }
     }
+    return text;
 }
 
 ExitCode list(Console& console, const ListOptions& options) {
@@ -43,12 +45,12 @@ ExitCode list(Console& console, const ListOptions& options) {
     if (!usb.ok()) { return report_error(console, "list", usb.error()); }
     const auto survey = survey_usb(**usb);
     if (!survey.ok()) { return report_error(console, "list", survey.error()); }
-    if (!options.json.empty()) {
-        if (const Status written = write_json(console, options.json, list_json(*survey)); !written.ok()) {
-            return report_error(console, "list", written.error());
-        }
+    ResultOutput results(console);
+    if (options.json != "-") { results.show(list_text(*survey)); }
+    results.json(options.json, [&] { return list_json(*survey); });
+    if (const Status written = results.finish(); !written.ok()) {
+        return report_error(console, "list", written.error());
     }
-    if (options.json != "-") { print_list(console.out, *survey); }
     if (survey->boards.empty()) {
         const auto none = choose_board(*survey, "");
         console.err << "gyrolog list: " << none.error().message << '\n';

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/app/command.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/result_output.hpp"
 #include "host/capture/recover.hpp"
@@ -32,24 +33,31 @@ nlohmann::ordered_json recovery_json(const RecoverOptions& options, const Recove
             {"header_rewritten", report.header_rewritten}};
 }
 
+std::string recovery_text(const RecoverOptions& options, const RecoveryReport& report) {
+    const BlockAccounts& source = report.source;
+    const std::uint64_t left_out = source.bytes_damaged + source.bytes_in_tail;
+    return fmt::format("{}: {} of {} kept, {} bytes left out in {} damaged places{}\n", options.recovered,
+                       format_bytes(report.bytes_kept), format_bytes(source.bytes_total),
+                       format_count(left_out), source.damaged_ranges,
+                       source.bytes_in_tail > 0 ? " and a torn tail" : "");
+}
+
 ExitCode recover(Console& console, const RecoverOptions& options) {
+    const NamedPath read[] = {{"FILE", options.damaged}};
+    const NamedPath paths[] = {{"--output", options.recovered}, {"--json", options.json}};
+    if (const Status fine = check_output_paths(read, paths); !fine.ok()) {
+        return report_error(console, "recover", fine.error());
+    }
     const auto report = recover_capture(options.damaged, options.recovered);
     if (!report.ok()) { return report_error(console, "recover", report.error()); }
-    if (!options.json.empty()) {
-        const Status written = write_json(console, options.json, recovery_json(options, *report));
-        if (!written.ok()) { return report_error(console, "recover", written.error()); }
-    }
     if (report->header_rewritten) {
         console.err << "gyrolog recover: the header was lost; which board this was is no longer known\n";
     }
-    if (options.json == "-") { return ExitCode::ok; }
-    const BlockAccounts& source = report->source;
-    const std::uint64_t left_out = source.bytes_damaged + source.bytes_in_tail;
-    console.out << fmt::format("{}: {} of {} kept, {} bytes left out in {} damaged places{}\n",
-                               options.recovered, format_bytes(report->bytes_kept),
-                               format_bytes(source.bytes_total), format_count(left_out),
-                               source.damaged_ranges, source.bytes_in_tail > 0 ? " and a torn tail" : "");
-    return ExitCode::ok;
+    ResultOutput results(console);
+    if (options.json != "-") { results.show(recovery_text(options, *report)); }
+    results.json(options.json, [&] { return recovery_json(options, *report); });
+    const Status written = results.finish();
+    return written.ok() ? ExitCode::ok : report_error(console, "recover", written.error());
 }
 
 }  // namespace

@@ -212,8 +212,9 @@ Json answer(const SimulateOptions& options, const Story& story, const Simulation
 
 // The unit itself, once nothing is left that could refuse it.
 Status write_unit(Console& console, const SimulateOptions& options, const SensorModel& model) {
-    if (options.model_out.empty()) { return {}; }
-    return write_text(console, options.model_out, format_model(model));
+    ResultOutput results(console);
+    results.text(options.model_out, [&] { return format_model(model); });
+    return results.finish();
 }
 
 ExitCode make_text(Console& console, const SimulateOptions& options, Story& story) {
@@ -243,8 +244,9 @@ ExitCode make_text(Console& console, const SimulateOptions& options, Story& stor
     const auto outcome = simulate_to_text(console, story.file.model, request, options.output);
     if (!outcome.ok()) { return fail(outcome.error()); }
     tell(console, options, story, *outcome);
-    if (options.json.empty()) { return ExitCode::ok; }
-    const Status written = write_json(console, options.json, answer(options, story, *outcome));
+    ResultOutput results(console);
+    results.json(options.json, [&] { return answer(options, story, *outcome); });
+    const Status written = results.finish();
     return written.ok() ? ExitCode::ok : fail(written.error());
 }
 
@@ -267,20 +269,23 @@ ExitCode make_capture(Console& console, const SimulateOptions& options, const St
         capture_source_to_file(console, "simulate", {std::move(source).value(), true}, request, false);
     if (!result.file_written) { return result.code; }
     for (const std::string& note : story.file.notes) { console.err << "  " << note << '\n'; }
-    if (options.json.empty()) { return result.code; }
     SimulationOutcome outcome;
     outcome.samples = result.link.samples.good;
     outcome.instants = outcome.samples + result.link.samples.missing;
     outcome.dropouts = result.link.dropouts.size() + result.link.dropouts_unlisted;
     outcome.rate_hz = options.rate_hz.value_or(story.file.model.rate_hz);
     outcome.interrupted = console.stop_wanted();
-    const Status written = write_json(console, options.json, answer(options, story, outcome));
+    ResultOutput results(console);
+    results.json(options.json, [&] { return answer(options, story, outcome); });
+    const Status written = results.finish();
     return written.ok() ? result.code : report_error(console, "simulate", written.error());
 }
 
 ExitCode show_effects(Console& console, const SimulateOptions& options) {
-    const Status shown = options.json.empty() ? write_text(console, "-", effect_catalogue_text())
-                                              : write_json(console, options.json, effect_catalogue_json());
+    ResultOutput results(console);
+    if (options.json.empty()) { results.show(effect_catalogue_text()); }
+    results.json(options.json, effect_catalogue_json);
+    const Status shown = results.finish();
     return shown.ok() ? ExitCode::ok : report_error(console, "simulate", shown.error());
 }
 

@@ -138,22 +138,18 @@ Result<Outcome> diagnose(const CurveDiagnosisRequest& request) {
 
 Status write_results(Console& console, const CurveDiagnosisRequest& request, const Outcome& outcome) {
     const CurveDiagnosisReport& report = outcome.report;
-    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", curve_diagnosis_text(report))); }
-    if (!request.json_path.empty()) {
-        GYROLOG_CHECK(write_text(console, request.json_path, curve_diagnosis_json(report)));
-    }
-    if (!request.plot_path.empty()) {
+    ResultOutput results(console);
+    if (request.json_path != "-") { results.show(curve_diagnosis_text(report)); }
+    results.text(request.json_path, [&] { return curve_diagnosis_json(report); });
+    results.file(request.plot_path, [&] {
         const Diagnosis diagnosis = as_diagnosis(report);
         std::vector<std::string> facts{
             fmt::format("bands: reading error of {:.3g} %, 95 %", 100.0 * report.options.reading_error)};
-        GYROLOG_CHECK(write_diagnosis_plot(diagnosis, verdict_sentence(diagnosis, "curve"), std::move(facts),
-                                           request.plot_path));
-    }
-    if (!request.model_out_path.empty()) {
-        GYROLOG_CHECK(write_text(console, request.model_out_path, format_model(*outcome.corrected)));
-    }
-    tell_written(console, {request.json_path, request.plot_path, request.model_out_path});
-    return {};
+        return write_diagnosis_plot(diagnosis, verdict_sentence(diagnosis, "curve"), std::move(facts),
+                                    request.plot_path);
+    });
+    results.text(request.model_out_path, [&] { return format_model(*outcome.corrected); });
+    return results.finish();
 }
 
 Status check(const CurveDiagnosisRequest& request) {

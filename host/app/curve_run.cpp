@@ -6,6 +6,7 @@
 #include "host/app/command.hpp"
 #include "host/app/curve_model_file.hpp"
 #include "host/app/curve_plot.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
 #include "host/formats/curve_csv.hpp"
 #include "host/formats/curve_json.hpp"
@@ -23,25 +24,27 @@ void warn(Console& console, const char* command, const std::vector<std::string>&
 
 Status write_results(Console& console, const char* command, const CurveRequest& request,
                      const CurveReport& report) {
-    if (request.json_path != "-") { GYROLOG_CHECK(write_text(console, "-", curve_text(report))); }
-    if (!request.json_path.empty()) {
-        GYROLOG_CHECK(write_text(console, request.json_path, curve_json(report)));
-    }
-    if (!request.plot_path.empty()) { GYROLOG_CHECK(write_curve_plot(report, request.plot_path)); }
-    if (!request.model_path.empty()) {
+    ResultOutput results(console);
+    if (request.json_path != "-") { results.show(curve_text(report)); }
+    results.text(request.json_path, [&] { return curve_json(report); });
+    results.file(request.plot_path, [&] { return write_curve_plot(report, request.plot_path); });
+    results.file(request.model_path, [&]() -> Status {
         GYROLOG_TRY(const ModelOfCurves result, model_of_curves(report, request.rate_hz));
         warn(console, command, result.warnings);
-        GYROLOG_CHECK(write_model(result.model, request.model_path));
-    }
-    for (const std::string* path : {&request.json_path, &request.plot_path, &request.model_path}) {
-        if (!path->empty() && *path != "-") { console.err << "written: " << *path << '\n'; }
-    }
-    return {};
+        return write_model(result.model, request.model_path);
+    });
+    return results.finish();
 }
 
 }  // namespace
 
 ExitCode analyze_curve_to_files(Console& console, const char* command, const CurveRequest& request) {
+    const NamedPath read[] = {{"--curve", request.curve_path}};
+    const NamedPath written_paths[] = {
+        {"--json", request.json_path}, {"--plot", request.plot_path}, {"--model", request.model_path}};
+    if (const Status fine = check_output_paths(read, written_paths); !fine.ok()) {
+        return report_error(console, command, fine.error());
+    }
     auto curves = read_curve_csv(request.curve_path);
     if (!curves.ok()) { return report_error(console, command, curves.error()); }
     CurveFitOptions options;

@@ -95,4 +95,14 @@ std::string path_of_board(const std::string& path, const std::string& serial, un
     return stem + "-" + name + path.substr(stem.size());
 }
 
+std::string file_of_device(const std::string& uri) {
+    const auto parsed = parse_source_uri(uri);
+    if (!parsed.ok()) { return {}; }
+    if (parsed->kind == SourceUri::Kind::replay) { return parsed->rest; }
+    for (const auto& [key, value] : parsed->options) {
+        if (key == "model") { return value; }
+    }
+    return {};
+}
+
 }  // namespace gyrolog

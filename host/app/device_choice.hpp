@@ -18,4 +18,8 @@ Result<std::vector<std::string>> choose_devices(const std::vector<std::string>& 
 // apart, from 1; of 0 there is but one.
 std::string path_of_board(const std::string& path, const std::string& serial, unsigned number);
 
+// The file that a device is made of, as a user names it: a recorded stream or a simulated board's model;
+// empty for others, and for a name that is not understood.
+std::string file_of_device(const std::string& uri);
+
 }  // namespace gyrolog

@@ -50,10 +50,4 @@ void tell_warnings(Console& console, const std::vector<std::string>& warnings) {
     }
 }
 
-void tell_written(Console& console, const std::vector<std::string>& paths) {
-    for (const std::string& path : paths) {
-        if (!path.empty() && path != "-") { console.err << "written: " << path << '\n'; }
-    }
-}
-
 }  // namespace gyrolog

@@ -20,7 +20,5 @@ Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string title, std::
                             const std::string& path);
 
 void tell_warnings(Console& console, const std::vector<std::string>& warnings);
-// "written: FILE" for each that is a file.
-void tell_written(Console& console, const std::vector<std::string>& paths);
 
 }  // namespace gyrolog

@@ -9,8 +9,11 @@ namespace {
 
 bool same_file(const std::string& a, const std::string& b) {
     if (a.empty() || b.empty() || a == "-" || b == "-") { return false; }
-    if (a == b) { return true; }
     std::error_code none;
+    // A terminal or /dev/null takes what it gets, and keeps nothing.
+    const auto there = std::filesystem::status(a, none);
+    if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) { return false; }
+    if (a == b) { return true; }
     if (std::filesystem::equivalent(a, b, none)) { return true; }
     // Not there yet: two ways to write one name.
     const auto place_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a, none), none);

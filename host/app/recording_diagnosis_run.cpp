@@ -69,7 +69,7 @@ DiagnosisOptions options_of(Console& console, const RecordingDiagnosisRequest& r
         if (console.progress) {
             console.err << fmt::format("\r\x1b[K  {}  {:.0f} %", what, 100.0 * share) << std::flush;
         }
-        return !console.stop_wanted();
+        return true;
     };
     return options;
 }
@@ -92,7 +92,6 @@ Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& r
                      : request.average > 1 ? diagnose_means(read, file.model, name, options)
                                            : diagnose(read.samples, file.model, name, options);
     if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
-    if (!diagnosis) { return Error{ErrorCode::failed, "interrupted; nothing is written"}; }
     append_warnings(diagnosis->warnings, read);
     append_new(diagnosis->warnings, file.notes);
     append_warnings(diagnosis->warnings, second);
@@ -112,23 +111,19 @@ std::vector<std::string> facts_of(const Diagnosis& diagnosis) {
 }
 
 Status write_results(Console& console, const RecordingDiagnosisRequest& request, const Diagnosis& diagnosis) {
+    ResultOutput results(console);
     if (request.json_path != "-") {
-        GYROLOG_CHECK(write_text(console, "-", diagnosis_text(diagnosis)));
+        results.show(diagnosis_text(diagnosis));
     } else {
         tell_warnings(console, diagnosis.warnings);
     }
-    if (!request.json_path.empty()) {
-        GYROLOG_CHECK(write_text(console, request.json_path, diagnosis_json(diagnosis)));
-    }
-    if (!request.plot_path.empty()) {
-        GYROLOG_CHECK(write_diagnosis_plot(diagnosis, verdict_sentence(diagnosis), facts_of(diagnosis),
-                                           request.plot_path));
-    }
-    if (!request.model_out_path.empty()) {
-        GYROLOG_CHECK(write_text(console, request.model_out_path, format_model(diagnosis.corrected)));
-    }
-    tell_written(console, {request.json_path, request.plot_path, request.model_out_path});
-    return {};
+    results.text(request.json_path, [&] { return diagnosis_json(diagnosis); });
+    results.file(request.plot_path, [&] {
+        return write_diagnosis_plot(diagnosis, verdict_sentence(diagnosis), facts_of(diagnosis),
+                                    request.plot_path);
+    });
+    results.text(request.model_out_path, [&] { return format_model(diagnosis.corrected); });
+    return results.finish();
 }
 
 }  // namespace

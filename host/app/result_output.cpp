@@ -1,7 +1,5 @@
 #include "host/app/result_output.hpp"
 
-#include <cerrno>
-
 #include <nlohmann/json.hpp>
 
 #include "host/base/file_output.hpp"
@@ -9,19 +7,39 @@
 
 namespace gyrolog {
 
-Status write_json(Console& console, const std::string& path, nlohmann::ordered_json answer) {
-    answer["reported_by"] = program_name();
-    return write_text(console, path, answer.dump(2) + "\n");
+void ResultOutput::file(const std::string& path, const std::function<Status()>& write) {
+    if (path.empty()) { return; }
+    const Status done = write();
+    if (done.ok()) {
+        written_.push_back(path);
+    } else if (error_) {
+        error_->message += "; " + done.error().message;
+    } else {
+        error_ = done.error();
+    }
 }
 
-Status write_text(Console& console, const std::string& path, const std::string& text) {
-    if (path != "-") { return write_file(path, as_bytes(text)); }
-    errno = 0;
-    console.out << text << std::flush;
-    if (console.out.good()) { return {}; }
-    // A stream keeps no reason, but the write that failed has just left one.
-    if (errno == ENOSPC) { return Error{ErrorCode::disk_full, "write to standard output: disk full"}; }
-    return Error{ErrorCode::storage_failed, "write to standard output failed"};
+void ResultOutput::text(const std::string& path, const std::function<std::string()>& text) {
+    if (path == "-") {
+        show(text());
+    } else {
+        file(path, [&] { return write_file(path, as_bytes(text())); });
+    }
+}
+
+void ResultOutput::json(const std::string& path, const std::function<nlohmann::ordered_json()>& answer) {
+    text(path, [&] {
+        nlohmann::ordered_json signed_answer = answer();
+        signed_answer["reported_by"] = program_name();
+        return signed_answer.dump(2) + "\n";
+    });
+}
+
+// Whether standard output took it is asked once, when the program ends.
+Status ResultOutput::finish() {
+    console_.out << shown_ << std::flush;
+    for (const std::string& path : written_) { console_.err << "written: " << path << '\n'; }
+    return error_ ? Status(*error_) : Status();
 }
 
 }  // namespace gyrolog

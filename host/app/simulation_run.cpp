@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "host/app/quantity.hpp"
+#include "host/app/stop_signal.hpp"
 #include "host/formats/recording_csv.hpp"
 
 namespace gyrolog {
@@ -73,6 +74,7 @@ Result<SimulationOutcome> simulate_to_text(Console& console, const SensorModel& 
     Recording piece;
     {
         ProgressLine progress(console);
+        const TidyEnd tidy;
         while (!outcome.interrupted && simulator.next(piece)) {
             GYROLOG_CHECK(file.append(piece));
             holes.see(piece);

@@ -1,0 +1,52 @@
+#include "host/app/standard_output.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace gyrolog {
+
+StandardOutput::Buffer::Buffer() { setp(text_.data(), text_.data() + text_.size()); }
+
+// After a failure nothing more is written: text with a hole in it would be worse than none.
+bool StandardOutput::Buffer::write_out() {
+    const char* next = pbase();
+    while (problem_ == 0 && next < pptr()) {
+        const ssize_t written = ::write(STDOUT_FILENO, next, static_cast<std::size_t>(pptr() - next));
+        if (written >= 0) {
+            next += written;
+        } else if (errno != EINTR) {
+            problem_ = errno;
+        }
+    }
+    setp(text_.data(), text_.data() + text_.size());
+    return problem_ == 0;
+}
+
+StandardOutput::Buffer::int_type StandardOutput::Buffer::overflow(int_type character) {
+    if (!write_out()) { return traits_type::eof(); }
+    return traits_type::eq_int_type(character, traits_type::eof())
+               ? traits_type::not_eof(character)
+               : sputc(traits_type::to_char_type(character));
+}
+
+int StandardOutput::Buffer::sync() { return write_out() ? 0 : -1; }
+
+StandardOutput::StandardOutput() : std::ostream(nullptr) { rdbuf(&buffer_); }
+
+Status StandardOutput::finish() {
+    flush();
+    switch (buffer_.problem()) {
+        case 0:
+        case EPIPE:
+            return {};
+        case ENOSPC:
+            return Error{ErrorCode::disk_full, "write to standard output: disk full"};
+        default:
+            return Error{ErrorCode::storage_failed,
+                         std::string("write to standard output: ") + std::strerror(buffer_.problem())};
+    }
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,40 @@
+// Standard output as a stream that remembers why a write failed.
+#pragma once
+
+#include <array>
+#include <ostream>
+#include <streambuf>
+
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+class StandardOutput final : public std::ostream {
+public:
+    StandardOutput();
+
+    // Writes out what is left. A reader that went away (`| head`) has what it wanted: that is no error.
+    // Errors: disk_full, storage_failed.
+    Status finish();
+
+private:
+    class Buffer final : public std::streambuf {
+    public:
+        Buffer();
+        int problem() const { return problem_; }  // errno of the first write that failed; 0: none
+
+    protected:
+        int_type overflow(int_type character) override;
+        int sync() override;
+
+    private:
+        bool write_out();
+
+        std::array<char, 65536> text_{};
+        int problem_ = 0;
+    };
+
+    Buffer buffer_;
+};
+
+}  // namespace gyrolog

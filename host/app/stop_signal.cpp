@@ -1,0 +1,62 @@
+#include "host/app/stop_signal.hpp"
+
+#include <array>
+#include <csignal>
+
+#include "host/app/live_keys.hpp"
+#include "host/base/unfinished_files.hpp"
+
+namespace gyrolog {
+namespace {
+
+std::atomic<int> noted = 0;
+std::atomic<int> tidy_ends = 0;
+
+static_assert(std::atomic<int>::is_always_lock_free, "signal handlers write it");
+
+// The signal comes again when its handler returns, and finds nobody who catches it.
+void end_by(int number) {
+    static_cast<void>(std::signal(number, SIG_DFL));
+    static_cast<void>(std::raise(number));
+}
+
+void on_stop_signal(int number) {
+    give_terminal_back();
+    int none = 0;
+    if (tidy_ends.load() > 0 && noted.compare_exchange_strong(none, number)) { return; }
+    remove_unfinished_files();
+    end_by(number);
+}
+
+void on_crash(int number) {
+    give_terminal_back();
+    end_by(number);
+}
+
+void install(int number, void (*handler)(int)) {
+    struct sigaction before {};
+    if (sigaction(number, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) { return; }
+    struct sigaction action {};
+    action.sa_handler = handler;
+    sigaction(number, &action, nullptr);
+}
+
+}  // namespace
+
+void install_stop_signals() {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) { install(number, on_stop_signal); }
+    for (const int number : {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) {
+        // A sanitizer tells of a crash in its own handler.
+        struct sigaction before {};
+        if (sigaction(number, nullptr, &before) == 0 && before.sa_handler == SIG_DFL) {
+            install(number, on_crash);
+        }
+    }
+}
+
+TidyEnd::TidyEnd() { ++tidy_ends; }
+TidyEnd::~TidyEnd() { --tidy_ends; }
+
+const std::atomic<int>& noted_stop_signal() { return noted; }
+
+}  // namespace gyrolog

@@ -1,0 +1,239 @@
+// What a command writes: never over what it reads, whole or not at all, and whatever becomes of the one who
+// reads its standard output.
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "host/base/clock.hpp"
+#include "tests/support/needs.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+class Outputs : public testing::Test {
+protected:
+    // A capture, its samples as text, its model, and a printed curve.
+    void make_inputs(const char* duration = "20s") {
+        ASSERT_EQ(run_gyrolog(
+                      {"capture", "--device", "sim:rate=1000,seed=7", "--duration", duration, "-o", capture_})
+                      .exit_code,
+                  0);
+        ASSERT_EQ(run_gyrolog({"export", capture_, "-o", text_}).exit_code, 0);
+        ASSERT_EQ(run_gyrolog({"analyze", text_, "--model", model_}).exit_code, 0);
+        std::ofstream(curve_) << "tau_s,x_dps\n1,0.01\n2,0.007\n4,0.005\n8,0.0035\n16,0.0025\n32,0.0018\n";
+    }
+
+    std::set<std::string> names() const {
+        std::set<std::string> found;
+        for (const auto& entry : fs::directory_iterator(fs::path(capture_).parent_path())) {
+            found.insert(entry.path().filename().string());
+        }
+        return found;
+    }
+
+    TemporaryFolder folder_;
+    std::string capture_ = folder_.path("c.pcapng");
+    std::string text_ = folder_.path("c.csv");
+    std::string model_ = folder_.path("m.json");
+    std::string curve_ = folder_.path("curve.csv");
+};
+
+TEST_F(Outputs, AreNeverWrittenOverWhatIsRead) {
+    make_inputs();
+    const std::string link = folder_.path("link.csv");
+    const std::string second_name = folder_.path("second.csv");
+    fs::create_symlink(text_, link);
+    fs::create_hard_link(text_, second_name);
+    const std::string other = folder_.path("other.json");
+    const std::vector<std::vector<std::string>> commands{
+        {"analyze", capture_, "--json", capture_},
+        {"analyze", text_, "--model", text_},
+        {"analyze", text_, "--json", link},
+        {"analyze", link, "--json", text_},
+        {"analyze", text_, "--json", second_name},
+        {"analyze", text_, "--json",
+         folder_.path("../") + fs::path(text_).parent_path().filename().string() + "/c.csv"},
+        {"analyze", text_, "--json", other, "--model", other},
+        {"analyze", "--curve", curve_, "--json", curve_},
+        {"check", capture_, "--json", capture_},
+        {"info", capture_, "--json", capture_},
+        {"recover", capture_, "-o", capture_},
+        {"recover", capture_, "-o", folder_.path("r.pcapng"), "--json", capture_},
+        {"export", text_, "-o", text_},
+        {"export", link, "-o", text_},
+        {"export", model_, "-o", model_},
+        {"compare", text_, model_, "--json", text_},
+        {"diagnose", text_, "--model", model_, "--model-out", model_},
+        {"denoise", text_, "-o", text_},
+        {"simulate", model_, "-o", text_, "--model-out", model_},
+        {"capture", "--device", "replay:" + capture_, "-o", capture_, "--force"},
+        {"capture", "--device", "sim:model=" + model_, "-o", model_, "--force"},
+        {"capture", "--device", "sim:", "--samples", "10", "-o", other, "--json", other},
+        {"--device", "sim:model=" + model_, "-o", model_, "--force"},
+        {"--device", "sim:model=" + folder_.path("b.model.json"), "-o", folder_.path("b.pcapng")},
+    };
+    fs::copy_file(model_, folder_.path("b.model.json"));
+    const auto before = names();
+    for (const std::vector<std::string>& command : commands) {
+        std::string line;
+        for (const std::string& word : command) { line += word + " "; }
+        std::array<std::string, 4> contents;
+        const std::array paths{capture_, text_, model_, curve_};
+        for (std::size_t i = 0; i < paths.size(); ++i) { contents[i] = read_whole_file(paths[i]); }
+        const ProgramResult result = run_gyrolog(command);
+        EXPECT_EQ(result.exit_code, 2) << line << result.err;
+        EXPECT_THAT(result.err, AnyOf(HasSubstr("are the same file"), HasSubstr("has none of the endings")))
+            << line;
+        for (std::size_t i = 0; i < paths.size(); ++i) {
+            EXPECT_EQ(read_whole_file(paths[i]), contents[i]) << line << "wrote over " << paths[i];
+        }
+    }
+    EXPECT_EQ(names(), before);
+}
+
+// `| head -0`: the reader is gone before the first byte.
+TEST_F(Outputs, AreAllWrittenWhereNobodyReadsTheReport) {
+    make_inputs();
+    const std::string json = folder_.path("a.json");
+    const std::string plot = folder_.path("a.png");
+    const std::vector<std::vector<std::string>> commands{
+        {"analyze", text_, "--json", json, "--plot", plot},
+        {"analyze", "--curve", curve_, "--json", json, "--plot", plot},
+        {"compare", text_, model_, "--simulations", "39", "--json", json, "--plot", plot},
+        {"diagnose", text_, "--model", model_, "--simulations", "39", "--json", json, "--plot", plot},
+        {"denoise", text_, "--json", json, "--plot", plot},
+        {"check", capture_, "--json", json},
+        {"info", capture_, "--json", json},
+    };
+    for (const std::vector<std::string>& arguments : commands) {
+        fs::remove(json);
+        fs::remove(plot);
+        std::vector<std::string> command{gyrolog_path()};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        std::array<int, 2> out{};
+        ASSERT_EQ(pipe2(out.data(), O_CLOEXEC), 0);
+        close(out[0]);
+        const std::string errors = folder_.path("err");
+        const int err = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+        const pid_t child = start_program(command, out[1], err);
+        close(out[1]);
+        close(err);
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFEXITED(status)) << arguments[0];
+        EXPECT_EQ(WEXITSTATUS(status), 0) << arguments[0];
+        EXPECT_THAT(read_whole_file(errors), Not(HasSubstr("standard output"))) << arguments[0];
+        EXPECT_GT(read_whole_file(json).size(), 100U) << arguments[0];
+        const bool draws = arguments.back() == plot;
+        if (draws) { EXPECT_GT(read_whole_file(plot).size(), 1000U) << arguments[0]; }
+    }
+}
+
+TEST_F(Outputs, AFileThatCannotBeWrittenCostsNoOther) {
+    make_inputs();
+    const std::string plot = folder_.path("a.png");
+    const ProgramResult result =
+        run_gyrolog({"analyze", text_, "--json", folder_.path("no/a.json"), "--plot", plot});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, HasSubstr("no/a.json': no such folder"));
+    EXPECT_THAT(result.out, HasSubstr("20000 samples"));
+    EXPECT_GT(read_whole_file(plot).size(), 1000U);
+}
+
+TEST_F(Outputs, AFullDiskBehindStandardOutputIsSaid) {
+    if (!has_full_disk()) { GTEST_SKIP() << needs_full_disk; }
+    make_inputs();
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"info", capture_},
+                                               {"check", capture_},
+                                               {"analyze", text_},
+                                               {"--help"},
+                                               {"simulate", "--effects"}}) {
+        std::vector<std::string> command{gyrolog_path()};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        const int full = open("/dev/full", O_WRONLY | O_CLOEXEC);
+        const std::string errors = folder_.path("err");
+        const int err = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+        const pid_t child = start_program(command, full, err);
+        close(full);
+        close(err);
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_EQ(WEXITSTATUS(status), 6) << arguments[0];
+        EXPECT_THAT(read_whole_file(errors), HasSubstr("write to standard output: disk full"))
+            << arguments[0];
+    }
+    EXPECT_EQ(run_gyrolog({"export", capture_, "-o", "/dev/full"}).exit_code, 2) << "no ending, no format";
+    fs::create_symlink("/dev/full", folder_.path("full.mat"));
+    fs::create_symlink("/dev/full", folder_.path("full.csv"));
+    EXPECT_EQ(run_gyrolog({"export", capture_, "-o", folder_.path("full.mat")}).exit_code, 6);
+    EXPECT_EQ(run_gyrolog({"export", capture_, "-o", folder_.path("full.csv")}).exit_code, 6);
+}
+
+// At any stage: reading, working, writing.
+TEST_F(Outputs, OneSignalEndsEveryCommandAtOnceAndLeavesNoHalfFile) {
+    make_inputs();
+    const std::string long_text = folder_.path("long.csv");
+    ASSERT_EQ(
+        run_gyrolog({"simulate", model_, "-o", long_text, "--duration", "10min", "--rate", "1000"}).exit_code,
+        0);
+    const auto before = names();
+    const std::vector<std::vector<std::string>> commands{
+        {"analyze", long_text, "--m", "all", "--json", folder_.path("a.json")},
+        {"export", long_text, "-o", folder_.path("e.csv.xz")},
+        {"compare", long_text, model_, "--json", folder_.path("a.json")},
+        {"diagnose", long_text, "--model", model_, "--json", folder_.path("a.json")},
+        {"denoise", long_text, "-o", folder_.path("d.csv.xz")},
+    };
+    const auto end_by = [&](const std::vector<std::string>& command, int number, int after_ms) {
+        const ProgramResult result =
+            run_gyrolog_and_signal(command, std::chrono::milliseconds(after_ms), number);
+        const double took_s = static_cast<double>(host_now().monotonic_ns - result.signalled_ns) * 1e-9;
+        const std::string what = command[0] + " after " + std::to_string(after_ms) + " ms";
+        ASSERT_NE(result.signalled_ns, 0) << what << ": it has too little to do for this test";
+        EXPECT_EQ(result.exit_code, 128 + number) << what;
+        EXPECT_LE(took_s, 1.0) << what;
+        EXPECT_EQ(names(), before) << what;
+    };
+    for (const std::vector<std::string>& command : commands) {
+        for (const int after_ms : {30, 300, 1000}) { end_by(command, SIGINT, after_ms); }
+    }
+    for (const int number : {SIGTERM, SIGHUP}) { end_by(commands[1], number, 500); }
+}
+
+// nohup, and a job in the background of a script.
+TEST_F(Outputs, AnIgnoredSignalStaysIgnored) {
+    const ProgramResult result = [&] {
+        struct sigaction ignored {};
+        ignored.sa_handler = SIG_IGN;
+        struct sigaction before {};
+        sigaction(SIGHUP, &ignored, &before);
+        ProgramResult ended = run_gyrolog_and_signal(
+            {"capture", "--device", "sim:rate=100,realtime=1", "--duration", "2s", "-o", capture_},
+            std::chrono::milliseconds(500), SIGHUP, capture_);
+        sigaction(SIGHUP, &before, nullptr);
+        return ended;
+    }();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.signalled_ns, 0);
+    EXPECT_THAT(result.err, HasSubstr("200 samples"));
+}
+
+}  // namespace
+}  // namespace gyrolog
