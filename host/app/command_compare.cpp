@@ -82,14 +82,15 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
     ModelComparisonOptions options = request.simulations;
     options.on_progress = [&](std::size_t done) {
         if (console.progress) {
-            console.err << fmt::format("\r  simulation {} of {}", done, options.simulations) << std::flush;
+            console.drawing() << fmt::format("\r  simulation {} of {}", done, options.simulations)
+                              << std::flush;
         }
         return true;
     };
     auto comparison =
         compare_with_model(std::make_shared<const Recording>(std::move(recording)), model,
                            std::filesystem::path(request.other_path).filename().string(), options);
-    if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
+    if (console.progress) { console.drawing() << "\r\x1b[K" << std::flush; }
     comparison->notes = file.notes;
     return *std::move(comparison);
 }

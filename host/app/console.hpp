@@ -8,10 +8,13 @@ namespace gyrolog {
 
 struct Console {
     std::ostream& out;                         // the result and nothing else
-    std::ostream& err;                         // messages, warnings, errors, progress
+    std::ostream& err;                         // messages, warnings, errors
     bool progress = false;                     // err is a terminal: a line may be redrawn
     const std::atomic<int>* signal = nullptr;  // set to the signal's number once the user wants to stop
+    std::ostream* screen = nullptr;            // the terminal behind err, which obeys
 
+    // For lines that are redrawn. What comes from outside goes there as printable() only.
+    std::ostream& drawing() const { return screen == nullptr ? err : *screen; }
     bool stop_wanted() const { return signal != nullptr && signal->load() != 0; }
 };
 

@@ -8,6 +8,7 @@
 
 #include "host/app/allan_chart.hpp"
 #include "host/app/quantity.hpp"
+#include "host/base/printable.hpp"
 
 namespace gyrolog {
 namespace {
@@ -75,7 +76,7 @@ void LiveView::show(const CaptureProgress& progress) {
     if (allan_ != nullptr) { add_allan(lines, terminal.columns, terminal.rows); }
     if (denoise_ != nullptr) { lines.push_back("  " + denoise_->line()); }
     if (keys_ != nullptr) { lines.push_back(keys_line(progress)); }
-    for (std::string& line : lines) { line = cut(line, terminal.columns - 1); }
+    for (std::string& line : lines) { line = cut(printable(line), terminal.columns - 1); }
     draw(lines);
 }
 
@@ -117,14 +118,14 @@ void LiveView::draw(const std::vector<std::string>& lines) {
     if (lines_drawn_ > 1) { text += fmt::format("\x1b[{}A", lines_drawn_ - 1); }
     for (std::size_t i = 0; i < lines.size(); ++i) { text += (i == 0 ? "\x1b[K" : "\n\x1b[K") + lines[i]; }
     if (lines.size() < lines_drawn_) { text += "\x1b[J"; }
-    console_.err << text << std::flush;
+    console_.drawing() << text << std::flush;
     lines_drawn_ = lines.size();
 }
 
 void LiveView::finish() {
     if (lines_drawn_ == 0) { return; }
     // The keys mean nothing any more.
-    console_.err << (keys_ != nullptr ? "\r\x1b[K" : "\n") << std::flush;
+    console_.drawing() << (keys_ != nullptr ? "\r\x1b[K" : "\n") << std::flush;
     lines_drawn_ = 0;
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "host/app/command_line.hpp"
+#include "host/app/printable_stream.hpp"
 #include "host/app/program_revision.hpp"
 #include "host/app/standard_output.hpp"
 #include "host/app/stop_signal.hpp"
@@ -18,8 +19,9 @@ int main(int argc, char** argv) {
     try {
         gyrolog::set_program_revision(gyrolog::program_revision);
         gyrolog::StandardOutput output;
-        const gyrolog::Console console{output, std::cerr, isatty(STDERR_FILENO) == 1,
-                                       &gyrolog::noted_stop_signal()};
+        gyrolog::PrintableStream messages(std::cerr);
+        const gyrolog::Console console{output, messages, isatty(STDERR_FILENO) == 1,
+                                       &gyrolog::noted_stop_signal(), &std::cerr};
         const gyrolog::ExitCode code =
             gyrolog::run_command_line(std::vector<std::string>(argv + 1, argv + argc), console);
         const gyrolog::Status told = output.finish();
@@ -28,7 +30,7 @@ int main(int argc, char** argv) {
         const bool graver = code != gyrolog::ExitCode::ok;
         return static_cast<int>(graver ? code : gyrolog::exit_code_of(told.error()));
     } catch (const std::exception& error) {
-        std::cerr << "gyrolog: " << error.what() << '\n';
+        std::cerr << "gyrolog: " << gyrolog::printable(error.what()) << '\n';
         return static_cast<int>(gyrolog::ExitCode::failed);
     }
 }

@@ -67,7 +67,7 @@ DiagnosisOptions options_of(Console& console, const RecordingDiagnosisRequest& r
     options.threads = request.threads;
     options.on_progress = [&console](const char* what, double share) {
         if (console.progress) {
-            console.err << fmt::format("\r\x1b[K  {}  {:.0f} %", what, 100.0 * share) << std::flush;
+            console.drawing() << fmt::format("\r\x1b[K  {}  {:.0f} %", what, 100.0 * share) << std::flush;
         }
         return true;
     };
@@ -91,7 +91,7 @@ Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& r
                          ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
                      : request.average > 1 ? diagnose_means(read, file.model, name, options)
                                            : diagnose(read.samples, file.model, name, options);
-    if (console.progress) { console.err << "\r\x1b[K" << std::flush; }
+    if (console.progress) { console.drawing() << "\r\x1b[K" << std::flush; }
     append_warnings(diagnosis->warnings, read);
     append_new(diagnosis->warnings, file.notes);
     append_warnings(diagnosis->warnings, second);

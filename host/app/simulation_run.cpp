@@ -31,11 +31,11 @@ public:
         shown_ = now;
         const auto done = static_cast<double>(simulator.samples_done());
         const auto all = static_cast<double>(simulator.samples());
-        console_.err << fmt::format("\r\x1b[K  {} of {}  {} samples  {:.0f} %",
-                                    format_elapsed(done / simulator.rate_hz()),
-                                    format_elapsed(all / simulator.rate_hz()),
-                                    format_count(simulator.samples_done()), 100.0 * done / all)
-                     << std::flush;
+        console_.drawing() << fmt::format("\r\x1b[K  {} of {}  {} samples  {:.0f} %",
+                                          format_elapsed(done / simulator.rate_hz()),
+                                          format_elapsed(all / simulator.rate_hz()),
+                                          format_count(simulator.samples_done()), 100.0 * done / all)
+                           << std::flush;
         drawn_ = true;
     }
 

@@ -11,11 +11,12 @@ StandardOutput::Buffer::Buffer() { setp(text_.data(), text_.data() + text_.size(
 
 // After a failure nothing more is written: text with a hole in it would be worse than none.
 bool StandardOutput::Buffer::write_out() {
-    const char* next = pbase();
-    while (problem_ == 0 && next < pptr()) {
-        const ssize_t written = ::write(STDOUT_FILENO, next, static_cast<std::size_t>(pptr() - next));
+    const std::string shown = printable_.take({pbase(), static_cast<std::size_t>(pptr() - pbase())});
+    std::string_view rest = shown;
+    while (problem_ == 0 && !rest.empty()) {
+        const ssize_t written = ::write(STDOUT_FILENO, rest.data(), rest.size());
         if (written >= 0) {
-            next += written;
+            rest.remove_prefix(static_cast<std::size_t>(written));
         } else if (errno != EINTR) {
             problem_ = errno;
         }

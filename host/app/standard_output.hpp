@@ -1,10 +1,12 @@
-// Standard output as a stream that remembers why a write failed.
+// Standard output as a stream in which text from outside cannot command a terminal, and which remembers why a
+// write failed. JSON passes as it is: what is shown otherwise is written the same way in its strings.
 #pragma once
 
 #include <array>
 #include <ostream>
 #include <streambuf>
 
+#include "host/base/printable.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
@@ -31,6 +33,7 @@ private:
         bool write_out();
 
         std::array<char, 65536> text_{};
+        PrintableText printable_;
         int problem_ = 0;
     };
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
+#include "host/formats/input_limits.hpp"
 #include "host/formats/text_file.hpp"
 
 namespace gyrolog {
@@ -48,18 +51,25 @@ Status CsvTable::feed(std::string_view piece) {
         const std::size_t end = piece.find('\n');
         if (end == std::string_view::npos) {
             rest_.append(piece);
-            return {};
+            return check_length(rest_);
         }
         if (rest_.empty()) {
             GYROLOG_CHECK(line(piece.substr(0, end)));
         } else {
             rest_.append(piece.substr(0, end));
+            GYROLOG_CHECK(check_length(rest_));
             GYROLOG_CHECK(line(rest_));
             rest_.clear();
         }
         piece.remove_prefix(end + 1);
     }
     return {};
+}
+
+Status CsvTable::check_length(std::string_view line) const {
+    if (line.size() <= input_limits.line_bytes_most) { return {}; }
+    return malformed(fmt::format("line {} is longer than {} bytes: no table of numbers", number_ + 1,
+                                 input_limits.line_bytes_most));
 }
 
 Status CsvTable::finish() {
@@ -126,8 +136,8 @@ Status CsvTable::field(CsvTableColumn& column, const char*& at, const char* end)
         at = stop;
         while (at != end && is_blank(*at)) { ++at; }
         if (problem != std::errc() || (at != end && *at != ',') || std::isinf(value)) {
-            return malformed(place(column) + "'" + std::string(begin, std::find(begin, end, ',')) +
-                             "' is no number; leave the field empty where a value is missing");
+            return malformed(place(column) + in_quotes({begin, std::find(begin, end, ',')}) +
+                             " is no number; leave the field empty where a value is missing");
         }
     }
     if (std::isnan(value)) {
@@ -143,11 +153,15 @@ Status CsvTable::field(CsvTableColumn& column, const char*& at, const char* end)
 Status CsvTable::header(std::string_view text) {
     GYROLOG_CHECK(check_encoding(text));
     if (text.starts_with("\xEF\xBB\xBF")) { text.remove_prefix(3); }
+    std::set<std::string> names;
     while (true) {
         const std::size_t comma = text.find(',');
         const std::string name(trimmed(text.substr(0, comma)));
-        for (const CsvTableColumn& column : columns_) {
-            if (column.header == name) { return malformed("line 1: column '" + name + "' appears twice"); }
+        if (!names.insert(name).second) {
+            return malformed("line 1: column " + in_quotes(name) + " appears twice");
+        }
+        if (names.size() > input_limits.columns_most) {
+            return malformed(fmt::format("line 1 names more than {} columns", input_limits.columns_most));
         }
         CsvTableColumn column;
         column.header = name;
@@ -165,7 +179,7 @@ Status CsvTable::wrong_count(std::string_view text) const {
 }
 
 std::string CsvTable::place(const CsvTableColumn& column) const {
-    return "line " + std::to_string(number_) + ", column '" + column.header + "': ";
+    return "line " + std::to_string(number_) + ", column " + in_quotes(column.header) + ": ";
 }
 
 Status read_csv_file(CsvTable& table, const std::string& path, std::size_t lines_most) {

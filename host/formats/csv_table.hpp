@@ -47,6 +47,7 @@ private:
     Status field(CsvTableColumn& column, const char*& at, const char* end) const;
     void end_line();
     Status wrong_count(std::string_view text) const;
+    Status check_length(std::string_view line) const;
     std::string place(const CsvTableColumn& column) const;
 
     std::string example_;

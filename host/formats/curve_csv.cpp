@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
 #include "host/formats/csv_table.hpp"
 
 namespace gyrolog {
@@ -54,7 +55,8 @@ Status judge_header(std::vector<CsvTableColumn>& columns) {
         } else if (!deviation) {
             continue;
         } else if (std::ranges::find(names, deviation->name) != names.end()) {
-            return malformed("line 1: curve '" + deviation->name + "' appears twice, in different units");
+            return malformed("line 1: curve " + in_quotes(deviation->name) +
+                             " appears twice, in different units");
         } else {
             names.push_back(deviation->name);
         }
@@ -102,8 +104,9 @@ Result<PrintedCurves> curves_of(std::vector<CsvTableColumn>& columns, std::strin
         }
         AllanCurve curve = curve_of(tau->values, column.values, deviation->unit->rad_per_s);
         if (curve.points.size() < curve_fit_points_min) {
-            return malformed(fmt::format("column '{}': {} points; a model needs {} at least", column.header,
-                                         curve.points.size(), curve_fit_points_min));
+            return malformed(fmt::format("column {}: {} points; a model needs {} at least",
+                                         in_quotes(column.header), curve.points.size(),
+                                         curve_fit_points_min));
         }
         curves.curves.push_back({deviation->name, std::move(curve)});
     }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/printable.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -50,7 +52,7 @@ const ExportedAxis* ExportSource::gyro_axis(std::string_view axis) const {
 
 ExportSource export_source(const Recording& recording, const AnalysisReport& report) {
     ExportSource source;
-    source.name = report.name;
+    source.name = printable(report.name);  // it stands in comments of programs
     source.rate_hz = report.rate_hz;
     source.confidence = report.confidence;
     source.recording = &recording;
@@ -72,7 +74,7 @@ ExportSource export_source(const Recording& recording, const AnalysisReport& rep
 
 ExportSource export_source(const SensorModel& model, const std::string& name) {
     ExportSource source;
-    source.name = name;
+    source.name = printable(name);
     source.rate_hz = model.rate_hz;
     source.full_scale_rad_s = model.full_scale_rad_s;
     if (model.lsb_rad_s > 0.0) { source.lsb_rad_s = model.lsb_rad_s; }

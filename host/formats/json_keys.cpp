@@ -3,25 +3,46 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
+#include "host/formats/input_limits.hpp"
 #include "host/formats/json.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-constexpr int nesting_max = 32;
+// What is beyond the limits, ends the reading: the library's own time grows with the square of an object's
+// keys.
+class LimitedParse {
+public:
+    std::optional<Json> parse(std::string_view text) {
+        keys_ = 0;
+        const auto watch = [this](int depth, Json::parse_event_t event, Json& /*value*/) {
+            keys_ += event == Json::parse_event_t::key ? 1 : 0;
+            if (depth > input_limits.json_nesting_most) {
+                refusal_ = "nested more than " + std::to_string(input_limits.json_nesting_most) + " deep";
+            } else if (keys_ > input_limits.json_keys_most) {
+                refusal_ = "more than " + std::to_string(input_limits.json_keys_most) + " keys";
+            }
+            if (!refusal_.empty()) { throw std::length_error(refusal_); }
+            return true;
+        };
+        try {
+            Json document = Json::parse(text, watch, false);
+            if (!document.is_discarded()) { return document; }
+        } catch (const std::length_error&) {  // said in refusal_
+        }
+        return std::nullopt;
+    }
+    // Empty: within the limits.
+    const std::string& refusal() const { return refusal_; }
 
-std::optional<Json> parse(std::string_view text, bool& too_deep) {
-    const auto watch = [&](int depth, Json::parse_event_t /*event*/, Json& /*value*/) {
-        if (depth > nesting_max) { too_deep = true; }
-        return !too_deep;
-    };
-    Json document = Json::parse(text, watch, false);
-    if (document.is_discarded() || too_deep) { return std::nullopt; }
-    return document;
-}
+private:
+    std::size_t keys_ = 0;
+    std::string refusal_;
+};
 
 // JSON has no NaN, no infinity and no 1e999, but programs write them. Put in quotes they parse, and the error
 // can name the key that holds one.
@@ -65,11 +86,11 @@ Result<JsonDocument> parse_json_document(std::string_view text, const std::strin
     const auto malformed = [&](const std::string& why) {
         return Error{ErrorCode::malformed, "model '" + name + "': " + why};
     };
-    bool too_deep = false;
-    std::optional<Json> document = parse(text, too_deep);
+    LimitedParse limited;
+    std::optional<Json> document = limited.parse(text);
     const bool plain = document.has_value();
-    if (!plain && !too_deep) { document = parse(quote_non_finite(text), too_deep); }
-    if (too_deep) { return malformed("nested more than " + std::to_string(nesting_max) + " deep"); }
+    if (!plain && limited.refusal().empty()) { document = limited.parse(quote_non_finite(text)); }
+    if (!limited.refusal().empty()) { return malformed(limited.refusal()); }
     if (!document || !document->is_object()) { return malformed("not a JSON object"); }
     const auto schema = document->find("schema");
     if (schema == document->end()) { return malformed("schema is missing"); }

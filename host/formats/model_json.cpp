@@ -13,8 +13,10 @@
 
 #include "analysis/recording/standard_gravity.hpp"
 #include "host/base/file_output.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/datasheet_json.hpp"
 #include "host/formats/gyroparams_json.hpp"
+#include "host/formats/input_limits.hpp"
 #include "host/formats/json.hpp"
 #include "host/formats/json_keys.hpp"
 #include "host/formats/text_file.hpp"
@@ -241,8 +243,8 @@ Result<ModelFile> parse_model_file(std::string_view text, const std::string& nam
         file.model = read_gyroparams(document.json, problem, file.notes);
     } else {
         return Error{ErrorCode::unsupported,
-                     fmt::format("model '{}': schema is '{}', not '{}' (or '{}', '{}')", name, schema,
-                                 schema_name, datasheet_schema, gyroparams_schema)};
+                     fmt::format("model '{}': schema is {}, not '{}' (or '{}', '{}')", name,
+                                 in_quotes(schema), schema_name, datasheet_schema, gyroparams_schema)};
     }
     // Numbers that are each fine can make one that is not finite.
     if (!problem && schema != schema_name && !parse_model(format_model(file.model), name).ok()) {
@@ -312,6 +314,10 @@ Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed) {
         if (!piece.ok()) { return in_context("read model '" + path + "'", piece.error()); }
         if (piece->empty()) { return parse_model_file(text, path, seed); }
         text.append(*piece);
+        if (text.size() > input_limits.json_bytes_most) {
+            return Error{ErrorCode::malformed, fmt::format("read model '{}': longer than {} bytes: no model",
+                                                           path, input_limits.json_bytes_most)};
+        }
     }
     return in_context("read model '" + path + "'", reader.error());
 }

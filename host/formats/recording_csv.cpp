@@ -9,6 +9,7 @@
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/recording/grid.hpp"
 #include "analysis/recording/standard_gravity.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/csv_column.hpp"
 #include "host/formats/csv_table.hpp"
 
@@ -188,8 +189,8 @@ Result<Column> column_of(InputColumn& input, const CsvReadOptions& options) {
         column.unit = "lsb";
     } else {
         return Error{ErrorCode::invalid_argument,
-                     "column '" + input.header +
-                         "' is in counts: give their scale with --lsb-dps (degrees per second per count)"};
+                     "column " + in_quotes(input.header) +
+                         " is in counts: give their scale with --lsb-dps (degrees per second per count)"};
     }
     const auto& reals = std::get<std::vector<double>>(column.data);
     if (fits_counts(reals)) {

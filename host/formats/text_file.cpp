@@ -1,5 +1,6 @@
 #include "host/formats/text_file.hpp"
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
@@ -32,6 +33,24 @@ Error error_of(archive* file) {
     }
 }
 
+// Those that libarchive knows itself. For others it would run programs, and which is for the file to say.
+Status know_compressions(archive* file) {
+    struct Compression {
+        int (*know)(archive*);
+        const char* name;
+    };
+    constexpr std::array compressions{Compression{archive_read_support_filter_gzip, "gzip"},
+                                      Compression{archive_read_support_filter_xz, "xz"},
+                                      Compression{archive_read_support_filter_zstd, "zstd"},
+                                      Compression{archive_read_support_filter_bzip2, "bzip2"}};
+    for (const auto& [know, name] : compressions) {
+        if (know(file) != ARCHIVE_OK) {
+            return Error{ErrorCode::unsupported, std::string("this system's libarchive cannot read ") + name};
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 void TextReader::Close::operator()(void* archive) const { archive_read_free(handle(archive)); }
@@ -40,10 +59,14 @@ Result<TextReader> TextReader::open(const std::string& path) {
     TextReader reader;
     archive* file = archive_read_new();
     reader.archive_.reset(file);
-    archive_read_support_filter_all(file);
+    GYROLOG_CHECK(know_compressions(file));
     archive_read_support_format_raw(file);
     archive_read_support_format_empty(file);
     if (archive_read_open_filename(file, path.c_str(), piece_bytes) != ARCHIVE_OK) { return error_of(file); }
+    // The last filter is the file itself.
+    if (archive_filter_count(file) > 2) {
+        return Error{ErrorCode::malformed, "compressed more than once: decompress it first"};
+    }
     archive_entry* entry = nullptr;
     const int header = archive_read_next_header(file, &entry);
     if (header != ARCHIVE_OK && header != ARCHIVE_EOF) { return error_of(file); }

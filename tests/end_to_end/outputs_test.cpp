@@ -235,5 +235,40 @@ TEST_F(Outputs, AnIgnoredSignalStaysIgnored) {
     EXPECT_THAT(result.err, HasSubstr("200 samples"));
 }
 
+// Names may hold what a terminal obeys, and what another program takes for a line of code.
+TEST_F(Outputs, ANameFromOutsideCommandsNobody) {
+    const std::string evil = folder_.path(
+        "night\x1b[2J\n\xC2\x9B"
+        "31mdelete.pcapng");
+    const ProgramResult captured =
+        run_gyrolog({"capture", "--device", "sim:rate=1000,seed=7", "--duration", "20s", "-o", evil});
+    ASSERT_EQ(captured.exit_code, 0) << captured.err;
+    const std::string script = folder_.path("noise.m");
+    const std::string yaml = folder_.path("noise.yaml");
+    const auto shows_only = [](const std::string& text) {
+        EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
+        EXPECT_EQ(text.find("\xC2\x9B"), std::string::npos) << text;
+    };
+    shows_only(captured.err);
+    for (const std::vector<std::string>& command :
+         std::vector<std::vector<std::string>>{{"info", evil},
+                                               {"check", evil},
+                                               {"analyze", evil},
+                                               {"analyze", evil, "--json", "-"},
+                                               {"export", evil, "-o", script},
+                                               {"export", evil, "-o", yaml},
+                                               {"check", evil + "none"}}) {
+        const ProgramResult result = run_gyrolog(command);
+        shows_only(result.out);
+        shows_only(result.err);
+    }
+    for (const std::string& path : {script, yaml}) {
+        const std::string text = read_whole_file(path);
+        ASSERT_FALSE(text.empty());
+        shows_only(text);
+        EXPECT_THAT(text, HasSubstr("\\u000a\\u009b31mdelete"));
+    }
+}
+
 }  // namespace
 }  // namespace gyrolog

@@ -1,0 +1,22 @@
+// How much a file that is read may ask for. What is beyond is no recording, curve or model that anyone made,
+// and is refused in time and memory that do not depend on it.
+#pragma once
+
+#include <cstddef>
+
+namespace gyrolog {
+
+struct InputLimits {
+    // Of text, without its line break. A thousand gyros with three axes of 25 digits take 75 kB.
+    std::size_t line_bytes_most = std::size_t{1} << 20;
+    // Of text: a thousand gyros with three axes, a temperature and a stamp each are 5000.
+    std::size_t columns_most = 10'000;
+    // Of a model: one with 33 effects on three axes and all their uncertainties takes 200 kB and 3000 keys.
+    std::size_t json_bytes_most = std::size_t{16} << 20;
+    std::size_t json_keys_most = 10'000;
+    int json_nesting_most = 32;
+};
+
+inline constexpr InputLimits input_limits;
+
+}  // namespace gyrolog

@@ -1,0 +1,125 @@
+// Files that were made to harm who reads them: refused in time and memory that do not depend on what they ask
+// for.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host/formats/input_limits.hpp"
+#include "host/formats/model_json.hpp"
+#include "host/formats/recording_csv.hpp"
+#include "host/formats/text_file.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::size_t long_message_bytes = 400;
+
+class HostileText : public testing::Test {
+protected:
+    // Written as the name's ending says.
+    std::string file(const std::string& name, std::string_view text) const {
+        const std::string path = folder_.path(name);
+        auto writer = TextWriter::create(path);
+        EXPECT_TRUE(writer.ok() && writer->write(text).ok() && writer->close().ok());
+        return path;
+    }
+    static std::string refusal_of_recording(const std::string& path) {
+        const auto read = read_recording_csv(path, {});
+        EXPECT_FALSE(read.ok());
+        const std::string message = read.ok() ? "" : read.error().message;
+        EXPECT_LT(message.size(), long_message_bytes);
+        return message;
+    }
+    static std::string refusal_of_model(const std::string& path) {
+        const auto read = read_model_file(path, 1);
+        EXPECT_FALSE(read.ok());
+        const std::string message = read.ok() ? "" : read.error().message;
+        EXPECT_LT(message.size(), long_message_bytes);
+        return message;
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(HostileText, CompressedInLayersIsRefused) {
+    const std::string once = file("once.csv.gz", std::string(100'000, 'a'));
+    const std::string twice = file("twice.csv.gz", read_whole_file(once));
+    EXPECT_THAT(refusal_of_recording(twice), HasSubstr("compressed more than once"));
+    EXPECT_THAT(refusal_of_model(file("thrice.json.xz", read_whole_file(twice))),
+                HasSubstr("compressed more than once"));
+}
+
+TEST_F(HostileText, ALineWithoutEndIsRefused) {
+    const std::string path = file("line.csv.gz", "t_s,gx_dps\n" + std::string(64U << 20U, '1'));
+    EXPECT_LT(std::filesystem::file_size(path), 100'000U);
+    EXPECT_THAT(refusal_of_recording(path), HasSubstr("line 2 is longer than 1048576 bytes"));
+    EXPECT_THAT(refusal_of_model(file("line.json.gz", std::string(64U << 20U, ' '))),
+                HasSubstr("longer than 16777216 bytes"));
+}
+
+// libarchive would run lrzip, lzop or grzip from the PATH for these, and decode the last.
+TEST_F(HostileText, NoProgramRunsForAFile) {
+    const std::string old_path = std::getenv("PATH");
+    for (const char* program : {"lrzip", "lzop", "grzip", "gzip", "uudecode"}) {
+        const std::string path = folder_.path(program);
+        std::ofstream(path) << "#!/bin/sh\ntouch " << folder_.path("it_ran") << "\n";
+        std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    }
+    setenv("PATH", (folder_.path(".") + ":" + old_path).c_str(), 1);
+    using namespace std::string_literals;
+    const std::string rows = "t_s,gx_dps\n0,1\n1,2\n";
+    for (const std::string& text :
+         {"LRZI\x00\x06"s + rows, "\x89LZO\x00\x0D\x0A\x1A\x0A"s + rows, "GRZipII\x00\x02\x04:)"s + rows,
+          "begin 644 run.csv\n3=%]S+&=X7V1P<PHP+#$*,2PR\"@``\n`\nend\n"s}) {
+        const auto read = read_recording_csv(file("strange.csv", text), {});
+        EXPECT_FALSE(read.ok());
+    }
+    setenv("PATH", old_path.c_str(), 1);
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("it_ran")));
+}
+
+std::string columns(std::size_t count) {
+    std::string header = "t_s,gx_dps";
+    for (std::size_t i = 2; i < count; ++i) { header += ",c" + std::to_string(i); }
+    return header + "\n0" + std::string(count - 1, ',') + "\n1" + std::string(count - 1, ',') + "\n";
+}
+
+TEST_F(HostileText, HasNoMoreColumnsThanAnyArray) {
+    EXPECT_THAT(refusal_of_recording(file("many.csv", columns(input_limits.columns_most + 1))),
+                HasSubstr("line 1 names more than 10000 columns"));
+    EXPECT_THAT(refusal_of_recording(file("most.csv", columns(input_limits.columns_most))),
+                Not(HasSubstr("names more than")));
+}
+
+TEST_F(HostileText, OfAModelHasNoMoreKeysThanAnyModel) {
+    std::string keys = R"({"schema": "gyrolog-model/1")";
+    for (int i = 0; i < 100'000; ++i) { keys += ", \"k" + std::to_string(i) + "\": 1"; }
+    EXPECT_THAT(refusal_of_model(file("keys.json", keys + "}")), HasSubstr("more than 10000 keys"));
+    // The same where a number is none, for which the text is read once more.
+    EXPECT_THAT(refusal_of_model(file("nan.json", R"({"a": NaN, )" + keys.substr(1) + "}")),
+                HasSubstr("more than 10000 keys"));
+    EXPECT_THAT(refusal_of_model(file("deep.json", std::string(100'000, '['))), HasSubstr("nested more"));
+}
+
+TEST_F(HostileText, IsCutAndShownInMessages) {
+    EXPECT_THAT(
+        refusal_of_model(file("schema.json", R"({"schema": ")" + std::string(1'000'000, 's') + "\"}")),
+        HasSubstr("ssss...'"));
+    const std::string twice = "t_s,\x1b[2J" + std::string(1000, 'x');
+    EXPECT_THAT(refusal_of_recording(file("twice.csv", twice + twice.substr(3) + "\n")),
+                AllOf(HasSubstr("column '\\u001b[2Jxxx"), HasSubstr("x...' appears twice")));
+    EXPECT_THAT(refusal_of_recording(file("field.csv", "t_s,gx_dps\n0,\x1b[2J\n")),
+                AllOf(HasSubstr("line 2, column 'gx_dps': '\\u001b[2J' is no number")));
+}
+
+}  // namespace
+}  // namespace gyrolog
