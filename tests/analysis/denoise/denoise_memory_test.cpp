@@ -9,16 +9,9 @@
 
 #include "analysis/denoise/array_denoiser.hpp"
 #include "tests/analysis/denoise/array_samples.hpp"
+#include "tests/support/instrumented.hpp"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    #define GYROLOG_MALLOC_IS_TAKEN
-#elif defined(__has_feature)
-    #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-        #define GYROLOG_MALLOC_IS_TAKEN
-    #endif
-#endif
-
-#ifndef GYROLOG_MALLOC_IS_TAKEN
+#if !GYROLOG_IS_INSTRUMENTED
 namespace {
 std::atomic<std::size_t> calls_of_malloc = 0;
 }
@@ -47,7 +40,7 @@ namespace gyrolog {
 namespace {
 
 TEST(DenoiseMemory, NothingIsAllocatedPerSample) {
-#ifdef GYROLOG_MALLOC_IS_TAKEN
+#if GYROLOG_IS_INSTRUMENTED
     GTEST_SKIP() << "needs malloc, which is the sanitizer's";
 #else
     const std::size_t before_all = calls_of_malloc;
