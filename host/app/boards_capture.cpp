@@ -110,8 +110,10 @@ Result<Boards> open_all(const CaptureOptions& options, const std::vector<std::st
         opened.push_back(std::move(source));
     }
     std::vector<std::string> files;
+    files.reserve(devices.size());
     for (const std::string& uri : devices) { files.push_back(file_of_device(uri)); }
     std::vector<NamedPath> read;
+    read.reserve(files.size());
     for (const std::string& file : files) { read.push_back({"--device", file}); }
     Boards boards;
     boards.reserve(opened.size());

@@ -25,6 +25,7 @@ Status check_paths(const CaptureCommandOptions& options, const std::vector<std::
     files.reserve(devices.size());
     for (const std::string& uri : devices) { files.push_back(file_of_device(uri)); }
     std::vector<NamedPath> read{{"--denoise-model", options.capture.denoise.model}};
+    read.reserve(files.size() + 1);
     for (const std::string& file : files) { read.push_back({"--device", file}); }
     const std::string denoised =
         options.capture.denoise.wanted() ? options.capture.denoise.output_of(options.path) : "";
