@@ -15,7 +15,7 @@ const EffectParam* find_param(const EffectDefinition& definition, std::string_vi
     return found == definition.params.end() ? nullptr : &*found;
 }
 
-std::string quoted(std::string_view text) { return std::string(1, '\'').append(text).append("'"); }
+std::string name_in_quotes(std::string_view text) { return std::string(1, '\'').append(text).append("'"); }
 
 std::optional<std::string> range_refusal(const EffectParam& param, double value) {
     if (param.range == EffectParam::Range::positive && value <= 0.0) { return "is not above zero"; }
@@ -61,13 +61,13 @@ RandomStream EffectUse::stream(std::size_t axis, unsigned part) const {
 
 std::optional<std::string> effect_refusal(const EffectModel& effect) {
     const EffectDefinition* definition = find_effect(effect.effect);
-    const std::string name = "effect " + quoted(effect.effect);
+    const std::string name = "effect " + name_in_quotes(effect.effect);
     if (definition == nullptr) { return name + " cannot be simulated by this version"; }
     for (const EffectParam& param : definition->params) {
         const auto given = effect.params.find(std::string(param.name));
         if (given == effect.params.end()) {
             if (!param.otherwise && !param.from_model) {
-                return name + " lacks its parameter " + quoted(param.name);
+                return name + " lacks its parameter " + name_in_quotes(param.name);
             }
         } else if (const auto refusal = range_refusal(param, given->second)) {
             return name + ": " + std::string(param.name) + " " + *refusal;
@@ -75,12 +75,12 @@ std::optional<std::string> effect_refusal(const EffectModel& effect) {
     }
     for (const auto& given : effect.params) {
         if (find_param(*definition, given.first) == nullptr) {
-            return name + " has no parameter " + quoted(given.first);
+            return name + " has no parameter " + name_in_quotes(given.first);
         }
     }
     for (const std::string& axis : effect.axes) {
         if (std::ranges::find(axis_names, axis) == axis_names.end()) {
-            return name + " names an axis " + quoted(axis) + " that is not x, y or z";
+            return name + " names an axis " + name_in_quotes(axis) + " that is not x, y or z";
         }
     }
     return std::nullopt;

@@ -16,7 +16,12 @@ enum DescriptorType : std::uint8_t {
     type_endpoint = 5,
     type_cs_interface = 0x24,
 };
-enum StringIndex : std::uint8_t { no_string = 0, manufacturer = 1, product = 2, serial_number = 3 };
+enum StringIndex : std::uint8_t {
+    no_string = 0,
+    manufacturer_string = 1,
+    product_string = 2,
+    serial_number_string = 3
+};
 enum EndpointKind : std::uint8_t { bulk = 2, interrupt = 3 };
 
 constexpr std::uint8_t class_communications = 0x02;
@@ -47,7 +52,7 @@ Bytes device_descriptor() {
     append(bytes, {type_device, low(usb_version), high(usb_version), class_communications, 0, 0,
                    GLP_USB_PACKET_BYTES, low(GLP_USB_VENDOR_ID), high(GLP_USB_VENDOR_ID),
                    low(GLP_USB_PRODUCT_ID), high(GLP_USB_PRODUCT_ID), low(device_version),
-                   high(device_version), manufacturer, product, serial_number, 1});
+                   high(device_version), manufacturer_string, product_string, serial_number_string, 1});
     return bytes;
 }
 
@@ -84,13 +89,13 @@ std::optional<Bytes> string_descriptor(std::uint8_t index, std::string_view seri
             bytes.push_back(low(english_us));
             bytes.push_back(high(english_us));
             break;
-        case manufacturer:
+        case manufacturer_string:
             text = virtual_board_manufacturer;
             break;
-        case product:
+        case product_string:
             text = virtual_board_product;
             break;
-        case serial_number:
+        case serial_number_string:
             text = serial;
             break;
         default:

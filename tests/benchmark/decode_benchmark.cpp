@@ -63,7 +63,7 @@ const Bytes& real_stream() {
     return stream;
 }
 
-void feed(StreamDecoder& decoder, ByteView stream) {
+void feed_transfers(StreamDecoder& decoder, ByteView stream) {
     HostTime arrival;
     for (std::size_t at = 0; at < stream.size(); at += transfer_bytes) {
         arrival.monotonic_ns += 1'000'000'000;
@@ -87,7 +87,7 @@ void copy(benchmark::State& state, const Bytes& stream) {
 void decode_for_accounts(benchmark::State& state, const Bytes& stream) {
     for (auto _ : state) {
         StreamDecoder decoder;
-        feed(decoder, stream);
+        feed_transfers(decoder, stream);
         const LinkReport report = decoder.report();
         if (report.frames.good < 1000 || report.frames.corrupted > 0 || report.frames.missing > 0) {
             state.SkipWithError("the stream did not decode");
@@ -100,7 +100,7 @@ void decode_into_recording(benchmark::State& state, const Bytes& stream) {
     std::uint64_t samples = 0;
     for (auto _ : state) {
         StreamDecoder decoder({.keep_samples = true});
-        feed(decoder, stream);
+        feed_transfers(decoder, stream);
         samples = decoder.report().samples.good;
         const auto recording = decoder.take_recording("benchmark");
         if (!recording.ok()) { state.SkipWithError("no recording came of it"); }

@@ -70,7 +70,7 @@ GapDomain uncorrected(GapDomain domain) {
     return domain;
 }
 
-Diagnosis diagnosis_of(std::vector<GapDomain> domains) {
+Diagnosis diagnosis_with(std::vector<GapDomain> domains) {
     Diagnosis diagnosis;
     diagnosis.recording_name = "night.csv";
     diagnosis.model_name = "model.json";
@@ -88,7 +88,7 @@ std::vector<std::string> legends_of(const Panel& panel) {
 }
 
 TEST(DiagnosisFigure, HasAColumnForEachAxisAndARowForEachWayOfLooking) {
-    const Diagnosis diagnosis = diagnosis_of(
+    const Diagnosis diagnosis = diagnosis_with(
         {allan_domain(0), time_domain(0), allan_domain(1), time_domain(1), allan_domain(2), time_domain(2)});
     const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
     EXPECT_EQ(figure.columns, 3);
@@ -96,11 +96,11 @@ TEST(DiagnosisFigure, HasAColumnForEachAxisAndARowForEachWayOfLooking) {
     EXPECT_EQ(figure.panels[1].caption, "y, gap 4.1 → 1.1: Allan deviation");
     EXPECT_EQ(figure.panels[3].caption, "x, gap 3.1 → 1.2: rate over time");
     EXPECT_EQ(figure.source, "night.csv  |  model.json");
-    const Diagnosis uneven = diagnosis_of({allan_domain(0), time_domain(0), allan_domain(1)});
+    const Diagnosis uneven = diagnosis_with({allan_domain(0), time_domain(0), allan_domain(1)});
     EXPECT_EQ(figure_of(DiagnosisFigure{uneven, "known", {}}).columns, 2);
-    const Diagnosis single = diagnosis_of({allan_domain(0), time_domain(0)});
+    const Diagnosis single = diagnosis_with({allan_domain(0), time_domain(0)});
     EXPECT_EQ(figure_of(DiagnosisFigure{single, "known", {}}).columns, 2);
-    const Diagnosis two = diagnosis_of({allan_domain(0), allan_domain(1)});
+    const Diagnosis two = diagnosis_with({allan_domain(0), allan_domain(1)});
     EXPECT_EQ(figure_of(DiagnosisFigure{two, "known", {}}).columns, 2);
 }
 
@@ -111,7 +111,7 @@ TEST(DiagnosisFigure, ShowsTheSixWaysOfLookingWithTheLargestGaps) {
         domains.back().name = "way " + std::to_string(i);
         domains.back().gap_before = i == 4 ? 0.5 : 10.0 - i;
     }
-    const Diagnosis diagnosis = diagnosis_of(domains);
+    const Diagnosis diagnosis = diagnosis_with(domains);
     const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
     ASSERT_EQ(figure.panels.size(), 6U);
     EXPECT_EQ(figure.panels[0].caption, "x, gap 10 → 1.2: way 0");
@@ -119,7 +119,7 @@ TEST(DiagnosisFigure, ShowsTheSixWaysOfLookingWithTheLargestGaps) {
 }
 
 TEST(DiagnosisFigure, ShowsALogarithmicQuantityInDecibelsOverTheMiddleOfTheModel) {
-    const Diagnosis diagnosis = diagnosis_of({allan_domain(0, 4.0)});
+    const Diagnosis diagnosis = diagnosis_with({allan_domain(0, 4.0)});
     const Panel panel = figure_of(DiagnosisFigure{diagnosis, "known", {}}).panels.at(0);
     const GapDomain& domain = diagnosis.domains[0];
     const Curve& before = panel.curves.at(0);
@@ -134,18 +134,18 @@ TEST(DiagnosisFigure, ShowsALogarithmicQuantityInDecibelsOverTheMiddleOfTheModel
 }
 
 TEST(DiagnosisFigure, ShowsALinearQuantityInItsUnitAndLongTimesInHours) {
-    const Diagnosis diagnosis = diagnosis_of({time_domain(0)});
+    const Diagnosis diagnosis = diagnosis_with({time_domain(0)});
     const Panel panel = figure_of(DiagnosisFigure{diagnosis, "known", {}}).panels.at(0);
     EXPECT_EQ(panel.y.title, "rate (deg/s)");
     EXPECT_EQ(panel.curves.at(4).y, diagnosis.domains[0].recording);
     EXPECT_EQ(panel.x.title, "time (h)");
     EXPECT_NEAR(panel.curves.at(4).x.back(), 7300.0 / 3600.0, 1e-12);
-    const Diagnosis brief = diagnosis_of({time_domain(0, 600.0)});
+    const Diagnosis brief = diagnosis_with({time_domain(0, 600.0)});
     EXPECT_EQ(figure_of(DiagnosisFigure{brief, "known", {}}).panels.at(0).x.title, "time (s)");
 }
 
 TEST(DiagnosisFigure, MarksWhatLiesOutsideBeforeAndAfter) {
-    const Diagnosis diagnosis = diagnosis_of({time_domain(0)});
+    const Diagnosis diagnosis = diagnosis_with({time_domain(0)});
     const Panel panel = figure_of(DiagnosisFigure{diagnosis, "known", {}}).panels.at(0);
     ASSERT_EQ(panel.curves.size(), 7U);
     const auto outside = std::ranges::count(diagnosis.domains[0].outside_before, true);
@@ -156,24 +156,24 @@ TEST(DiagnosisFigure, MarksWhatLiesOutsideBeforeAndAfter) {
 }
 
 TEST(DiagnosisFigure, WithoutCausesHasOneBandAndNoSecondNumber) {
-    const Diagnosis diagnosis = diagnosis_of({uncorrected(allan_domain(0))});
+    const Diagnosis diagnosis = diagnosis_with({uncorrected(allan_domain(0))});
     const Panel panel = figure_of(DiagnosisFigure{diagnosis, "unexplained", {}}).panels.at(0);
     EXPECT_EQ(panel.caption, "x, gap 4.1: Allan deviation");
     EXPECT_EQ(legends_of(panel), (std::vector<std::string>{"model, 95 %", "recording", "outside the model"}));
 }
 
 TEST(DiagnosisFigure, NamesEveryPartOnce) {
-    const Diagnosis diagnosis = diagnosis_of({allan_domain(0), time_domain(0)});
+    const Diagnosis diagnosis = diagnosis_with({allan_domain(0), time_domain(0)});
     const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
     EXPECT_EQ(legends_of(figure.panels[0]), (std::vector<std::string>{"model, 95 %", "recording"}));
     EXPECT_EQ(legends_of(figure.panels[1]),
               (std::vector<std::string>{"with the causes, 95 %", "outside the model"}));
-    const Diagnosis lone = diagnosis_of({time_domain(0)});
+    const Diagnosis lone = diagnosis_with({time_domain(0)});
     EXPECT_EQ(legends_of(figure_of(DiagnosisFigure{lone, "known", {}}).panels[0]).size(), 5U);
 }
 
 TEST(DiagnosisFigure, DrawsBandsAndMarksThatDifferInGreyToo) {
-    const Diagnosis diagnosis = diagnosis_of({allan_domain(0), time_domain(0)});
+    const Diagnosis diagnosis = diagnosis_with({allan_domain(0), time_domain(0)});
     const Rendering rendering = render(DiagnosisFigure{diagnosis, "known: temp_lag", {"200 simulations"}});
     ASSERT_TRUE(rendering.ok()) << rendering.problem;
     const Picture picture(rendering);
@@ -189,11 +189,11 @@ TEST(DiagnosisFigure, DrawsBandsAndMarksThatDifferInGreyToo) {
 }
 
 TEST(DiagnosisFigure, OfNothingToShowIsStillAPicture) {
-    const Diagnosis diagnosis = diagnosis_of({});
+    const Diagnosis diagnosis = diagnosis_with({});
     EXPECT_TRUE(render(DiagnosisFigure{diagnosis, "no gap", {}}).ok());
     GapDomain empty = allan_domain(0);
     for (double& value : empty.recording) { value = 0.0; }
-    const Diagnosis zeros = diagnosis_of({empty});
+    const Diagnosis zeros = diagnosis_with({empty});
     EXPECT_TRUE(render(DiagnosisFigure{zeros, "no gap", {}}).ok());
 }
 
