@@ -80,14 +80,19 @@ function(gyrolog_precompile_standard_headers name)
   target_precompile_headers(${name} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory>
     <mutex> <numeric> <optional> <span> <string> <string_view> <utility> <vector>)
 endfunction()
+# What runs briefly need not be optimised for long. Instrumented, half the time to compile it goes into optimising.
+if(GYROLOG_SANITIZE)
+  set(GYROLOG_BRIEF_OPTIMIZATION -O0)
+else()
+  set(GYROLOG_BRIEF_OPTIMIZATION $<$<CONFIG:Release>:-O1>)
+endif()
 set(GYROLOG_STANDARD_HEADERS gyrolog_standard_headers)
 gyrolog_precompile_standard_headers(${GYROLOG_STANDARD_HEADERS})
-gyrolog_precompile_standard_headers(${GYROLOG_STANDARD_HEADERS}_O1 $<$<CONFIG:Release>:-O1>)
+gyrolog_precompile_standard_headers(${GYROLOG_STANDARD_HEADERS}_brief ${GYROLOG_BRIEF_OPTIMIZATION})
 
 # gyrolog_library(NAME SOURCES ... LINK ... [PRECOMPILE <header>...] [RUNS_BRIEFLY]): a static library with the
 # project's settings. PRECOMPILE: headers that most of its sources include and that are long to read, in place of those
-# of the standard library. RUNS_BRIEFLY: nothing in it runs for long, so that it need not be optimised for long: in
-# release builds -O1 in place of -O2.
+# of the standard library. RUNS_BRIEFLY: nothing in it runs for long: GYROLOG_BRIEF_OPTIMIZATION is enough.
 function(gyrolog_library name)
   cmake_parse_arguments(arg "RUNS_BRIEFLY" "" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   gyrolog_join(sources ${name} ${arg_SOURCES})
@@ -96,8 +101,8 @@ function(gyrolog_library name)
   target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
   set(precompiled ${GYROLOG_STANDARD_HEADERS})
   if(arg_RUNS_BRIEFLY)
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-    set(precompiled ${GYROLOG_STANDARD_HEADERS}_O1)
+    target_compile_options(${name} PRIVATE ${GYROLOG_BRIEF_OPTIMIZATION})
+    set(precompiled ${GYROLOG_STANDARD_HEADERS}_brief)
   endif()
   if(arg_PRECOMPILE)
     target_precompile_headers(${name} PRIVATE ${arg_PRECOMPILE})
@@ -117,10 +122,10 @@ function(gyrolog_precompile_test_headers)
 endfunction()
 
 # gyrolog_test(NAME SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds] [NOT_INSTRUMENTED test...]): one GoogleTest
-# binary, one ctest entry. NOT_INSTRUMENTED: searches and statistics of many seconds, which sanitizers make minutes, and
-# whose code other tests run as well.
+# binary, one ctest entry. COMPUTES: its own loops take long, and are optimised. NOT_INSTRUMENTED: searches and
+# statistics of many seconds, which sanitizers make minutes, and whose code other tests run as well.
 function(gyrolog_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT;NOT_INSTRUMENTED" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTES" "TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT;NOT_INSTRUMENTED" ${ARGN})
   if(NOT GYROLOG_TESTS)
     return()
   endif()
@@ -128,7 +133,11 @@ function(gyrolog_test name)
   gyrolog_join(sources ${name} ${arg_SOURCES})
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE gyrolog_settings ${arg_LINK} GTest::gmock GTest::gtest_main)
-  target_precompile_headers(${name} REUSE_FROM gyrolog_test_headers)
+  if(arg_COMPUTES)
+    target_compile_options(${name} PRIVATE -O2)
+  else()
+    target_precompile_headers(${name} REUSE_FROM gyrolog_test_headers)
+  endif()
   add_test(NAME ${name} COMMAND ${name})
   if(NOT arg_LABELS)
     set(arg_LABELS default)
