@@ -13,7 +13,7 @@ local type_names = {
 }
 local event_names = {
     [1] = "started", [2] = "stopped", [3] = "sensor FIFO overflow", [4] = "bus error", [5] = "ring overflow",
-    [6] = "sensor fault", [7] = "text",
+    [6] = "sensor fault", [7] = "text", [8] = "data-ready silent",
 }
 local result_names = {
     [0] = "ok", [1] = "unknown command", [2] = "bad length", [3] = "bad value", [4] = "sensor fault",
@@ -38,6 +38,7 @@ local flag_bits = {
     field("bool", "flags.first_after_start", "First after start", 16, nil, 0x0008),
     field("bool", "flags.time_discontinuity", "Time discontinuity", 16, nil, 0x0010),
     field("bool", "flags.saturated", "Saturated", 16, nil, 0x0020),
+    field("bool", "flags.data_ready_silent", "Data-ready silent", 16, nil, 0x0040),
 }
 local sequence = field("uint32", "sequence", "Sequence")
 local crc = field("uint32", "crc", "Checksum", base.HEX)

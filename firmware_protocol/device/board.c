@@ -11,6 +11,10 @@ enum {
     FRAME_SPAN_MS = 40,
     STATUS_PERIOD_S = 1,
     HELLO_PERIOD_S = 5,
+    // No sensor's clock and no decimation by a timer makes a gap of so many periods.
+    SILENCE_MS = 250,
+    SILENCE_PERIODS = 4,
+    MENDING_PERIOD_S = 1,
     // Half the FIFO: the other half covers the time until the main loop comes.
     BATCH_BYTES = GLP_MPU_FIFO_BYTES / 2,
     BATCH_SAMPLES = GLP_BOARD_INSTANTS / 4,
@@ -187,6 +191,7 @@ static uint8_t* place_for_samples(glp_board* self) {
 static void pass_instants(glp_board* self, uint32_t count) {
     self->previous_ticks = instant_at(self, self->instants_done + count - 1U);
     self->previous_known = true;
+    self->heard_ticks = self->previous_ticks;
     self->instants_done += count;
     self->next_index += count;
 }
@@ -215,6 +220,27 @@ static void lose_instants(glp_board* self, uint32_t count, uint16_t why) {
     self->untold_samples += count;
     self->lost_samples += count;
     pass_instants(self, count);
+}
+
+// Instants that the rate calls for pass without an interrupt: their number is known, their ticks are those of
+// the nominal rate.
+static void lose_silence(glp_board* self, uint64_t count) {
+    lose_instants(self, 0, glp_flag_data_ready_silent);
+    self->heard_ticks = (self->heard_ticks + count * self->period_ticks) & self->tick_mask;
+    self->previous_ticks = self->heard_ticks;
+    self->previous_known = true;
+    self->next_index += count;
+    self->lost_samples += (uint32_t)count;
+    self->untold_samples += (uint32_t)count;
+}
+
+// Up to the first interrupt that comes again.
+static void end_silence(glp_board* self) {
+    if (!self->silent || (instants_pending(self) == 0U)) { return; }
+    self->silent = false;
+    const uint64_t since = elapsed(self, self->heard_ticks, instant_at(self, self->instants_done));
+    const uint64_t periods = (since + self->period_ticks / 2U) / self->period_ticks;
+    if ((since <= self->tick_mask / 2U) && (periods > 1U)) { lose_silence(self, periods - 1U); }
 }
 
 // How many of the oldest `count` instants follow each other at about the nominal distance. Where the first
@@ -425,6 +451,10 @@ static void adopt(glp_board* self, const glp_mpu_settings* settings, const glp_m
     glp_mpu_describe(settings, plan, &self->config);
     choose_samples_per_frame(self);
     self->period_ticks = (uint64_t)self->identity.tick_hz * 1000U / settings->rate_mHz;
+    self->silence_ticks = (uint64_t)self->identity.tick_hz * SILENCE_MS / 1000U;
+    if (self->silence_ticks < SILENCE_PERIODS * self->period_ticks) {
+        self->silence_ticks = SILENCE_PERIODS * self->period_ticks;
+    }
 }
 
 // Writes the plan into the sensor; from a hardware reset on if the sensor's state is in doubt.
@@ -455,21 +485,41 @@ static void clear_accounts(glp_board* self) {
     self->ring.high_water = self->ring.used;
 }
 
-static bool start(glp_board* self) {
-    if (!self->sensor_ready && !prepare_sensor(self)) { return false; }
-    clear_accounts(self);
+// The interrupt and the FIFO on, the FIFO empty.
+static bool start_sensor(glp_board* self) {
     self->interrupts_to_skip = 0;
     self->armed = true;
     uint32_t instants = self->instants;
-    if ((glp_mpu_start(self->hal, &self->plan, self->config.registers) != glp_mpu_ok) ||
-        (self->plan.fifo && !empty_fifo(self, &instants))) {
+    glp_mpu_fault fault = {0, 0};
+    glp_mpu_outcome outcome = glp_mpu_start(self->hal, &self->plan, self->config.registers, &fault);
+    if ((outcome == glp_mpu_ok) && self->plan.fifo && !empty_fifo(self, &instants)) {
+        outcome = glp_mpu_bus_error;
+    }
+    if (outcome != glp_mpu_ok) {
         self->armed = false;
-        return note_setup(self, glp_mpu_bus_error, (glp_mpu_fault){0, 0});
+        return note_setup(self, outcome, fault);
+    }
+    self->instants_done = instants;
+    return true;
+}
+
+static bool start(glp_board* self) {
+    if (!self->sensor_ready && !prepare_sensor(self)) { return false; }
+    clear_accounts(self);
+    if (!start_sensor(self)) {
+        // It has forgotten its set-up since: the host is told, and the stream starts under a new one.
+        const glp_mpu_outcome found = self->setup_outcome;
+        const glp_mpu_fault fault = self->setup_fault;
+        if ((found != glp_mpu_fault_found) || !prepare_sensor(self) || !start_sensor(self)) { return false; }
+        self->setup_outcome = found;
+        self->setup_fault = fault;
     }
     read_temperature(self);
-    self->instants_done = instants;
     self->streaming = true;
     self->status_ticks = now_ticks(self);
+    self->heard_ticks = self->status_ticks;
+    self->silent = false;
+    self->mended_ticks = self->status_ticks - (uint64_t)self->identity.tick_hz * MENDING_PERIOD_S;
     self->told_ticks = self->status_ticks - self->patience_ticks;
     return true;
 }
@@ -482,6 +532,9 @@ static void stop(glp_board* self) {
     // What the FIFO could not give any more was sampled all the same.
     const uint32_t pending = instants_pending(self);
     if (pending > 0U) { lose_instants(self, pending, 0); }
+    if (self->silent) {
+        lose_silence(self, elapsed(self, self->heard_ticks, now_ticks(self)) / self->period_ticks);
+    }
     self->streaming = false;
     if (glp_mpu_stop(self->hal) != glp_mpu_ok) {
         ++self->bus_errors;
@@ -504,6 +557,39 @@ void glp_board_on_line_state(glp_board* self, bool dtr) {
     start(self);
     introduce(self);
     tell_start(self);
+}
+
+// ----------------------------------------------------------------------------------------- a silent sensor
+
+// A sensor that was reset or lost its power sends no interrupts, and its registers show it. Where they are
+// right, the line or the sensing element is dead, which nothing here can mend.
+static void mend_sensor(glp_board* self) {
+    self->mended_ticks = now_ticks(self);
+    glp_mpu_fault fault = {0, 0};
+    const glp_mpu_outcome found = glp_mpu_check(self->hal, &self->plan, self->config.registers, &fault);
+    if (note_setup(self, found, fault)) { return; }
+    tell_setup(self);
+    self->armed = false;
+    if (!prepare_sensor(self) || !start_sensor(self)) { tell_setup(self); }
+}
+
+static void watch_data_ready(glp_board* self) {
+    const uint32_t pending = instants_pending(self);
+    const uint64_t last = (pending > 0U) ? instant_at(self, self->instants - 1U) : self->heard_ticks;
+    const uint64_t silent = elapsed(self, last, now_ticks(self));
+    // An interrupt that came after the clock was read lies ahead of it.
+    if ((silent <= self->silence_ticks) || (silent > self->tick_mask / 2U) || (self->period_ticks == 0U)) {
+        return;
+    }
+    if (pending > 0U) { lose_instants(self, pending, glp_flag_data_ready_silent); }
+    if (elapsed(self, self->mended_ticks, now_ticks(self)) >=
+        (uint64_t)self->identity.tick_hz * MENDING_PERIOD_S) {
+        mend_sensor(self);
+    }
+    self->silent = true;
+    lose_silence(self, elapsed(self, self->heard_ticks, now_ticks(self)) / self->period_ticks);
+    // What the FIFO may have taken meanwhile is of those instants.
+    self->resync = self->plan.fifo;
 }
 
 // ------------------------------------------------------------------------------------------------- commands
@@ -612,6 +698,8 @@ static void tell_losses(glp_board* self, uint64_t now) {
             send_event(self, glp_event_sensor_fifo_overflow, self->untold_index, lost, "");
         } else if ((why & glp_flag_bus_error) != 0) {
             send_event(self, glp_event_bus_error, self->untold_index, lost, "");
+        } else if ((why & glp_flag_data_ready_silent) != 0) {
+            send_event(self, glp_event_data_ready_silent, self->untold_index, lost, "");
         } else {
             send_event(self, glp_event_text, self->untold_index, lost,
                        "data-ready interrupts and FIFO disagreed");
@@ -637,7 +725,9 @@ static bool due(const glp_board* self, uint64_t* last, uint64_t now, uint32_t pe
 void glp_board_poll(glp_board* self) {
     if (self->streaming) {
         const uint64_t now = now_ticks(self);
+        end_silence(self);
         take_samples(self, now);
+        watch_data_ready(self);
         if (due(self, &self->hello_ticks, now, HELLO_PERIOD_S)) {
             send_hello(self);
             send_config(self);

@@ -8,6 +8,8 @@
 ///   - Every frame takes one sequence number when it is made. A frame that finds no room in the ring is
 ///     dropped whole: the wire never carries a torn frame, and the host sees the missing number.
 ///   - The samples of one frame are consecutive, and taken under one configuration.
+///   - While it streams the index keeps pace with the nominal rate: where the sensor's interrupt stays away,
+///     its instants are counted and lost.
 ///   - Nothing here waits for the host, and nothing is allocated.
 ///
 /// Threads: glp_board_on_data_ready and glp_board_on_sampling_instant may interrupt the others on a
@@ -68,6 +70,7 @@ typedef struct glp_board {
     uint8_t samples_per_frame_asked;  ///< 0: the board chooses
     uint64_t period_ticks;            ///< Nominal, of the output rate
     uint64_t patience_ticks;          ///< No sample waits longer for its frame to fill
+    uint64_t silence_ticks;           ///< Without an interrupt: the samples of that time are lost
 
     // Written by the interrupt while `armed`.
     volatile bool armed;
@@ -81,6 +84,9 @@ typedef struct glp_board {
     uint64_t next_index;      ///< Of the oldest instant not yet dealt with
     uint64_t previous_ticks;  ///< Of the instant before it
     bool previous_known;
+    bool silent;            ///< The interrupt stays away
+    uint64_t heard_ticks;   ///< Of the last instant that was dealt with, with or without an interrupt
+    uint64_t mended_ticks;  ///< When the sensor was last looked after because its interrupt stayed away
     uint32_t lost_samples;
     uint32_t lost_frames;
     uint32_t fifo_overflows;

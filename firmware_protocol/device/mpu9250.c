@@ -161,30 +161,44 @@ static bool read_told_registers(const glp_hal* hal, uint8_t registers[8]) {
     return true;
 }
 
-glp_mpu_outcome glp_mpu_apply(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8],
-                              glp_mpu_fault* fault) {
-    const register_value values[] = {{glp_mpu_smplrt_div, plan->smplrt_div},
-                                     {glp_mpu_config, plan->config},
-                                     {glp_mpu_gyro_config, plan->gyro_config},
-                                     {glp_mpu_accel_config, plan->accel_config},
-                                     {glp_mpu_accel_config2, plan->accel_config2},
-                                     {glp_mpu_fifo_en, 0},
-                                     {glp_mpu_int_enable, 0},
-                                     {glp_mpu_user_ctrl, idle_user_ctrl(hal)}};
-    // A 50 us pulse at each sample, which nothing has to clear. INT_STATUS is cleared by reading INT_STATUS
-    // only (INT_ANYRD_2CLEAR 0): reading the temperature must not hide an overflow.
-    const register_value pulse = {glp_mpu_int_pin_cfg, 0};
-    if (!write_all(hal, &pulse, 1) || !write_all(hal, values, sizeof values / sizeof values[0]) ||
-        !read_told_registers(hal, registers)) {
-        return glp_mpu_bus_error;
-    }
+// What they hold by the plan, idle or started; in the same order.
+static void wanted_registers(const glp_hal* hal, const glp_mpu_plan* plan, bool started, uint8_t wanted[8]) {
+    wanted[0] = plan->smplrt_div;
+    wanted[1] = plan->config;
+    wanted[2] = plan->gyro_config;
+    wanted[3] = plan->accel_config;
+    wanted[4] = plan->accel_config2;
+    wanted[5] = started ? plan->fifo_en : 0U;
+    wanted[6] = started ? (uint8_t)glp_mpu_int_raw_rdy : 0U;
+    wanted[7] = idle_user_ctrl(hal);
+    if (started && plan->fifo) { wanted[7] |= glp_mpu_user_ctrl_fifo_en; }
+}
+
+static glp_mpu_outcome check_registers(const glp_hal* hal, const uint8_t wanted[8], uint8_t registers[8],
+                                       glp_mpu_fault* fault) {
+    if (!read_told_registers(hal, registers)) { return glp_mpu_bus_error; }
     for (size_t i = 0; i < sizeof told_registers; ++i) {
-        if (registers[i] != values[i].value) {
+        if (registers[i] != wanted[i]) {
             *fault = (glp_mpu_fault){told_registers[i], registers[i]};
             return glp_mpu_fault_found;
         }
     }
     return glp_mpu_ok;
+}
+
+glp_mpu_outcome glp_mpu_apply(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8],
+                              glp_mpu_fault* fault) {
+    // A 50 us pulse at each sample, which nothing has to clear. INT_STATUS is cleared by reading INT_STATUS
+    // only (INT_ANYRD_2CLEAR 0): reading the temperature must not hide an overflow.
+    const register_value pulse = {glp_mpu_int_pin_cfg, 0};
+    if (!write_all(hal, &pulse, 1)) { return glp_mpu_bus_error; }
+    uint8_t wanted[8];
+    wanted_registers(hal, plan, false, wanted);
+    for (size_t i = 0; i < sizeof told_registers; ++i) {
+        const register_value one = {told_registers[i], wanted[i]};
+        if (!write_all(hal, &one, 1)) { return glp_mpu_bus_error; }
+    }
+    return check_registers(hal, wanted, registers, fault);
 }
 
 bool glp_mpu_fifo_empty(const glp_hal* hal) {
@@ -201,14 +215,21 @@ bool glp_mpu_overflow_clear(const glp_hal* hal) {
     return hal->sensor_read(hal->context, glp_mpu_int_status, &status, 1);
 }
 
-glp_mpu_outcome glp_mpu_start(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8]) {
-    const uint8_t fifo_switch = plan->fifo ? (uint8_t)glp_mpu_user_ctrl_fifo_en : 0U;
-    const register_value values[] = {{glp_mpu_fifo_en, plan->fifo_en},
-                                     {glp_mpu_user_ctrl, (uint8_t)(idle_user_ctrl(hal) | fifo_switch)},
-                                     {glp_mpu_int_enable, glp_mpu_int_raw_rdy}};
-    return (write_all(hal, values, sizeof values / sizeof values[0]) && read_told_registers(hal, registers))
-               ? glp_mpu_ok
-               : glp_mpu_bus_error;
+glp_mpu_outcome glp_mpu_start(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8],
+                              glp_mpu_fault* fault) {
+    uint8_t wanted[8];
+    wanted_registers(hal, plan, true, wanted);
+    const register_value values[] = {
+        {glp_mpu_fifo_en, wanted[5]}, {glp_mpu_user_ctrl, wanted[7]}, {glp_mpu_int_enable, wanted[6]}};
+    if (!write_all(hal, values, sizeof values / sizeof values[0])) { return glp_mpu_bus_error; }
+    return check_registers(hal, wanted, registers, fault);
+}
+
+glp_mpu_outcome glp_mpu_check(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8],
+                              glp_mpu_fault* fault) {
+    uint8_t wanted[8];
+    wanted_registers(hal, plan, true, wanted);
+    return check_registers(hal, wanted, registers, fault);
 }
 
 glp_mpu_outcome glp_mpu_stop(const glp_hal* hal) {

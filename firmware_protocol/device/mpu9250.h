@@ -113,9 +113,14 @@ glp_mpu_outcome glp_mpu_reset(const glp_hal* hal, uint8_t* who_am_i, glp_mpu_fau
 /// off.
 glp_mpu_outcome glp_mpu_apply(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8],
                               glp_mpu_fault* fault);
-/// Switches the data-ready interrupt and, if the plan uses it, the FIFO on; `registers` as above. The FIFO
-/// may already hold samples when this returns: empty it at a moment between two interrupts.
-glp_mpu_outcome glp_mpu_start(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8]);
+/// Switches the data-ready interrupt and, if the plan uses it, the FIFO on, and checks as glp_mpu_check does.
+/// The FIFO may already hold samples when this returns: empty it at a moment between two interrupts.
+glp_mpu_outcome glp_mpu_start(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8],
+                              glp_mpu_fault* fault);
+/// Whether a started sensor's registers still hold what the plan wants: a sensor that lost its power or was
+/// reset has forgotten it. `registers` as above.
+glp_mpu_outcome glp_mpu_check(const glp_hal* hal, const glp_mpu_plan* plan, uint8_t registers[8],
+                              glp_mpu_fault* fault);
 glp_mpu_outcome glp_mpu_stop(const glp_hal* hal);
 
 /// Two register writes; what is sampled between them is lost.

@@ -382,7 +382,8 @@ Judgement chosen_samples(const Dialogue& dialogue) {
 
 Judgement losses(const Dialogue& dialogue) {
     constexpr unsigned cause_flags = glp_flag_sensor_fifo_overflow | glp_flag_bus_error |
-                                     glp_flag_ring_overflow | glp_flag_time_discontinuity;
+                                     glp_flag_ring_overflow | glp_flag_time_discontinuity |
+                                     glp_flag_data_ready_silent;
     Findings findings;
     for (const Run& run : dialogue.runs) {
         std::optional<std::uint32_t> lost;

@@ -39,7 +39,7 @@ bool is_utf8(std::string_view text) {
 
 bool later_minor(const Dialogue& dialogue) {
     const auto hello = dialogue.hello();
-    return hello && hello->protocol_minor > 0;
+    return hello && hello->protocol_minor > GLP_PROTOCOL_MINOR;
 }
 
 Judgement known_types(const Dialogue& dialogue) {
@@ -395,8 +395,8 @@ Judgement event_rule(const Dialogue& dialogue) {
         const auto event = event_in(entry);
         if (!event) { continue; }
         findings.looked();
-        if ((event->code == 0 || event->code > glp_event_text) && !later_minor(dialogue)) {
-            findings.wrong("codes 1 to 7 from a device of version 1.0", std::to_string(event->code), &entry);
+        if ((event->code == 0 || event->code > glp_event_data_ready_silent) && !later_minor(dialogue)) {
+            findings.wrong("codes 1 to 8 from a device of version 1.1", std::to_string(event->code), &entry);
         }
         if (event->code == glp_event_started) {
             if (event->value != 0) {

@@ -223,7 +223,8 @@ Judgement instants(const Dialogue& dialogue) {
             const TranscriptEntry& entry = dialogue.entry(i);
             const auto samples = samples_in(entry);
             if (!samples) { continue; }
-            const bool told = (entry.flags & (glp_flag_time_discontinuity | glp_flag_first_after_start)) != 0;
+            const bool told = (entry.flags & (glp_flag_time_discontinuity | glp_flag_first_after_start |
+                                              glp_flag_data_ready_silent)) != 0;
             if (before && !told && samples->first_index > before->first_index) {
                 findings.looked();
                 const double periods = static_cast<double>(samples->first_index - before->first_index);

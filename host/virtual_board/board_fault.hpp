@@ -15,11 +15,14 @@ struct BoardFault {
         corrupt_byte,      // one byte arrives with a bit flipped
         reset,             // the microcontroller restarts, with a new boot id
         unplug,            // the device is gone, for `duration_s` or for good
+        int_lost,          // the sensor's data-ready interrupt does not reach the firmware, likewise
+        sensor_reset,      // the sensor forgets its set-up, as after a dip of its supply
+        sensor_frozen,     // the sensor gives one reading again and again, for `duration_s` or for good
     };
 
     Kind kind = Kind::unplug;
     double at_s = 0.0;        // device time since the first start of the stream
-    double duration_s = 0.0;  // of link_stall and unplug; 0 is for good
+    double duration_s = 0.0;  // of what may last; 0 is for good
 };
 
 }  // namespace gyrolog

@@ -23,7 +23,7 @@ struct FaultName {
     BoardFault::Kind kind;
 };
 
-constexpr std::array<FaultName, 8> fault_names = {{
+constexpr std::array<FaultName, 11> fault_names = {{
     {"fifo_overflow", BoardFault::Kind::fifo_overflow},
     {"bus_error", BoardFault::Kind::bus_error},
     {"link_stall", BoardFault::Kind::link_stall},
@@ -32,7 +32,14 @@ constexpr std::array<FaultName, 8> fault_names = {{
     {"corrupt_byte", BoardFault::Kind::corrupt_byte},
     {"reset", BoardFault::Kind::reset},
     {"unplug", BoardFault::Kind::unplug},
+    {"int_lost", BoardFault::Kind::int_lost},
+    {"sensor_reset", BoardFault::Kind::sensor_reset},
+    {"sensor_frozen", BoardFault::Kind::sensor_frozen},
 }};
+
+// Of these a fault may be given with its end.
+constexpr std::array lasting_faults = {BoardFault::Kind::link_stall, BoardFault::Kind::unplug,
+                                       BoardFault::Kind::int_lost, BoardFault::Kind::sensor_frozen};
 
 Error refused(std::string_view key, std::string_view value, const std::string& wanted) {
     std::string message = "simulated board: option ";
@@ -58,8 +65,7 @@ std::optional<BoardFault> parse_fault(std::string_view text) {
         BoardFault fault{.kind = known.kind};
         std::string_view from = text.substr(at + 1);
         const std::size_t dots = from.find("..");
-        const bool may_last =
-            known.kind == BoardFault::Kind::link_stall || known.kind == BoardFault::Kind::unplug;
+        const bool may_last = std::ranges::find(lasting_faults, known.kind) != lasting_faults.end();
         if (known.kind == BoardFault::Kind::link_stall && dots == std::string_view::npos) {
             return std::nullopt;
         }
@@ -84,10 +90,12 @@ Status parse_faults(std::string_view text, std::vector<BoardFault>& faults) {
         const std::size_t plus = rest.find('+');
         const auto fault = parse_fault(rest.substr(0, plus));
         if (!fault) {
+            std::string kinds;
+            for (const FaultName& known : fault_names) { kinds.append(" ").append(known.name); }
             return refused("fault", text,
-                           "wants KIND@SECONDS, several joined by '+', link_stall@FROM..TO, unplug@FROM..TO; "
-                           "kinds are fifo_overflow "
-                           "bus_error link_stall drop_packet duplicate_packet corrupt_byte reset unplug");
+                           "wants KIND@SECONDS, several joined by '+'; KIND@FROM..TO for link_stall, unplug, "
+                           "int_lost and sensor_frozen; kinds are" +
+                               kinds);
         }
         faults.push_back(*fault);
         if (plus == std::string_view::npos) { return {}; }

@@ -26,10 +26,10 @@ namespace gyrolog {
 //   clock_ppm=X      the sensor's clock against nominal, within 10000; without it 0 for a given model,
 //                    otherwise drawn from the seed
 //   first_tick=N, first_sequence=N, boot_id=N, ring=BYTES
-//   fault=KIND@SECONDS[+KIND@SECONDS...]   of device time since the start; link_stall@FROM..TO,
-//   unplug@FROM..TO
+//   fault=KIND@SECONDS[+KIND@SECONDS...]   of device time since the start; KIND@FROM..TO for link_stall,
+//                    unplug, int_lost and sensor_frozen
 //                    kinds: fifo_overflow bus_error link_stall drop_packet duplicate_packet corrupt_byte
-//                    reset unplug
+//                    reset unplug int_lost sensor_reset sensor_frozen
 //   breach=NAME      break one rule of the protocol (breaches.cpp): for trying `gyrolog conform`
 //   unplug=SECONDS, reset=SECONDS          the same as fault=unplug@SECONDS, fault=reset@SECONDS
 //   replug=SECONDS   when the cable that unplug= pulled is back; without it the board is gone for good

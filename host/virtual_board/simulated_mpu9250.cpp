@@ -209,8 +209,8 @@ void SimulatedMpu9250::store_sample_in_fifo() {
     for (std::size_t i = 0; i < size; ++i) { put_in_fifo(bytes[i]); }
 }
 
-bool SimulatedMpu9250::pass_instant() {
-    fields_ = counts_[place_];
+bool SimulatedMpu9250::pass_instant(bool frozen) {
+    if (!frozen) { fields_ = counts_[place_]; }
     go_to_next_slot();
     registers_[glp_mpu_int_status] |= glp_mpu_int_raw_rdy;
     if ((registers_[glp_mpu_user_ctrl] & glp_mpu_user_ctrl_fifo_en) != 0) { store_sample_in_fifo(); }

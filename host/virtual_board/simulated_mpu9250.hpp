@@ -51,8 +51,11 @@ public:
 
     // The next sampling instant that anything waits for; never_ns when neither interrupt nor FIFO is on.
     std::int64_t next_instant_ns() const { return next_instant_ns_; }
-    // Takes the sample of that instant. True when the interrupt pin pulses.
-    bool pass_instant();
+    // Takes the sample of that instant; frozen, the one before once more. True when the interrupt pin pulses.
+    bool pass_instant(bool frozen = false);
+
+    // All registers and the FIFO as at power-on.
+    void reset(std::int64_t now_ns);
 
     // Only each k-th sample is looked at (a port whose timer counts the interrupt pin): the others pass
     // unseen. 1 at reset. The FIFO must be off when k is not 1.
@@ -66,7 +69,6 @@ private:
     using Fields =
         std::array<std::int16_t, 7>;  // accel x y z, temperature, gyro x y z: the order of the registers
 
-    void reset(std::int64_t now_ns);
     void restart_clock(std::int64_t now_ns);
     void schedule(std::int64_t after_ns);
     bool samples_wanted() const;

@@ -28,6 +28,10 @@ double relative_sd_of_rate(const SensorModel& model) {
 
 std::int64_t to_ns(double duration_s) { return std::llround(duration_s * 1e9); }
 
+std::int64_t end_of(const BoardFault& fault, std::int64_t now_ns) {
+    return fault.duration_s > 0.0 ? now_ns + to_ns(fault.duration_s) : SimulatedMpu9250::never_ns;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<VirtualBoard>> VirtualBoard::create(VirtualBoardOptions options) {
@@ -226,7 +230,9 @@ void VirtualBoard::advance_to(std::int64_t time_ns) {
 }
 
 void VirtualBoard::take_instant() {
-    if (sensor_.pass_instant()) { glp_board_on_sampling_instant(&board_, ticks()); }
+    const bool frozen = now_ns_ < sensor_frozen_until_ns_;
+    const bool pulses = sensor_.pass_instant(frozen);
+    if (pulses && now_ns_ >= interrupt_lost_until_ns_) { glp_board_on_sampling_instant(&board_, ticks()); }
 }
 
 void VirtualBoard::meet_faults() {
@@ -270,6 +276,15 @@ void VirtualBoard::fault(const BoardFault& fault) {
             on_line_state(false);
             replug_ns_.reset();
             if (fault.duration_s > 0.0) { replug_ns_ = now_ns_ + to_ns(fault.duration_s); }
+            break;
+        case BoardFault::Kind::int_lost:
+            interrupt_lost_until_ns_ = end_of(fault, now_ns_);
+            break;
+        case BoardFault::Kind::sensor_reset:
+            sensor_.reset(now_ns_);
+            break;
+        case BoardFault::Kind::sensor_frozen:
+            sensor_frozen_until_ns_ = end_of(fault, now_ns_);
             break;
     }
 }

@@ -131,6 +131,8 @@ private:
     std::vector<BoardFault> due_;  // by time, the last one first
     std::int64_t main_loop_stalled_until_ns_ = 0;
     std::int64_t link_stalled_until_ns_ = 0;
+    std::int64_t interrupt_lost_until_ns_ = 0;
+    std::int64_t sensor_frozen_until_ns_ = 0;
     unsigned bus_errors_due_ = 0;
     std::size_t drop_bytes_due_ = 0;
     bool duplicate_due_ = false;

@@ -69,7 +69,7 @@ public:
             if ((parts & glp_mpu_fifo_en_temp) != 0) { push(glp_mpu_temp_out_h, 2); }
             if ((parts & glp_mpu_fifo_en_gyro) == glp_mpu_fifo_en_gyro) { push(glp_mpu_gyro_xout_h, 6); }
         }
-        return (registers[glp_mpu_int_enable] & glp_mpu_int_raw_rdy) != 0;
+        return !int_line_broken && (registers[glp_mpu_int_enable] & glp_mpu_int_raw_rdy) != 0;
     }
 
     std::uint8_t who_am_i = GLP_MPU_WHO_AM_I;
@@ -78,6 +78,7 @@ public:
     std::deque<std::uint8_t> fifo;
     std::vector<std::pair<std::uint8_t, std::uint8_t>> writes;
     bool bus_broken = false;
+    bool int_line_broken = false;
     int fifo_reads_to_fail = 0;
     std::uint32_t next = 0;
     std::uint16_t temperature = 0x0102;

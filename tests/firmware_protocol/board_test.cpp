@@ -1,6 +1,7 @@
 #include <memory>
 #include <numeric>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "bench_board.hpp"
@@ -320,6 +321,108 @@ TEST(Board, AMissedInterruptIsFoundFromTheFifosCount) {
     EXPECT_EQ(expect_accounted(frames) + bench.samples_under_way(), 109U);
     const glp_samples last = frames.back().samples();
     EXPECT_EQ(glp_sample_field(&last, 0, 0), static_cast<std::int16_t>(last.first_index));
+}
+
+// The instants that the events of this code tell as lost.
+std::uint64_t told_lost(const std::vector<ReceivedFrame>& frames, glp_event_code code) {
+    std::uint64_t lost = 0;
+    for (const ReceivedFrame& frame : frames) {
+        if (frame.type == glp_frame_event && frame.event().code == code) {
+            lost += static_cast<std::uint64_t>(frame.event().value);
+        }
+    }
+    return lost;
+}
+
+TEST(Board, AnInterruptThatStaysAwayIsToldAndCostsACountedNumberOfSamples) {
+    BenchBoard bench;
+    bench.boot_and_raise_dtr();
+    bench.run(100);
+    std::vector<ReceivedFrame> frames = bench.take_frames();
+    bench.sensor.int_line_broken = true;
+    bench.run(36);  // 0.36 s: longer than the limit of 0.25 s and the 0.1 s between two EVENTs
+    const std::vector<ReceivedFrame> soon = bench.take_frames();
+    EXPECT_GT(told_lost(soon, glp_event_data_ready_silent), 20U);
+    bench.run(264);
+    bench.sensor.int_line_broken = false;
+    bench.run(100);
+    const std::vector<ReceivedFrame> later = bench.take_frames();
+    frames.insert(frames.end(), soon.begin(), soon.end());
+    frames.insert(frames.end(), later.begin(), later.end());
+    EXPECT_EQ(expect_accounted(frames) + bench.samples_under_way(), 500U);
+    EXPECT_EQ(samples_in(frames) + bench.samples_under_way() + bench.board.lost_samples, 500U);
+    EXPECT_GE(bench.board.lost_samples, 300U);
+    EXPECT_LE(bench.board.lost_samples, 342U);  // and what the FIFO held at the first interrupt
+    EXPECT_EQ(told_lost(frames, glp_event_data_ready_silent) + told_lost(frames, glp_event_text),
+              bench.board.lost_samples);
+    EXPECT_EQ(told_lost(frames, glp_event_sensor_fault), 0U);
+    std::uint16_t flags = 0;
+    for (const ReceivedFrame& frame : later) {
+        if (frame.type == glp_frame_samples) { flags |= frame.flags; }
+    }
+    EXPECT_NE(flags & glp_flag_data_ready_silent, 0);
+}
+
+TEST(Board, StoppedInASilenceItHasCountedToTheStop) {
+    BenchBoard bench;
+    bench.boot_and_raise_dtr();
+    bench.run(100);
+    bench.sensor.int_line_broken = true;
+    bench.run(110);
+    glp_board_on_line_state(&bench.board, false);
+    glp_board_poll(&bench.board);
+    const std::vector<ReceivedFrame> frames = bench.take_frames();
+    EXPECT_EQ(frames.back().event().code, glp_event_stopped);
+    EXPECT_EQ(frames.back().event().index, 210U);
+    EXPECT_EQ(frames.back().event().value, 110);
+}
+
+TEST(Board, ASensorThatForgotItsSetUpIsSetUpAgainWhileItStreams) {
+    BenchBoard bench;
+    bench.boot_and_raise_dtr();
+    const std::uint8_t gyro_config = bench.sensor.registers[glp_mpu_gyro_config];
+    ASSERT_NE(gyro_config, 0);
+    bench.run(100);
+    bench.sensor.reset();
+    const std::uint64_t ticks_before = bench.ticks;
+    bench.run(200);
+    const std::uint64_t passed =
+        (bench.ticks - ticks_before) / bench.sample_period_us;  // its reset takes time
+    EXPECT_EQ(bench.sensor.registers[glp_mpu_gyro_config], gyro_config);
+    const std::vector<ReceivedFrame> frames = bench.take_frames();
+    EXPECT_NEAR(static_cast<double>(expect_accounted(frames) + bench.samples_under_way()),
+                static_cast<double>(100 + passed), 1.0);
+    EXPECT_LT(bench.board.lost_samples, 100U);
+    EXPECT_EQ(frames.back().samples().count, 4);
+    int faults = 0;
+    for (const ReceivedFrame& frame : frames) {
+        if (frame.type != glp_frame_event || frame.event().code != glp_event_sensor_fault) { continue; }
+        ++faults;
+        EXPECT_EQ(frame.event().value & 0xFF, 0) << "what the register held";
+    }
+    EXPECT_EQ(faults, 1);
+}
+
+TEST(Board, AStartFindsASensorThatForgotItsSetUpSinceTheLast) {
+    BenchBoard bench;
+    bench.boot_and_raise_dtr();
+    bench.run(10);
+    const std::uint8_t gyro_config = bench.sensor.registers[glp_mpu_gyro_config];
+    glp_board_on_line_state(&bench.board, false);
+    glp_board_poll(&bench.board);
+    bench.take_frames();
+    bench.sensor.reset();
+    glp_board_on_line_state(&bench.board, true);
+    glp_board_poll(&bench.board);
+    bench.run(8);
+    EXPECT_EQ(bench.sensor.registers[glp_mpu_gyro_config], gyro_config);
+    const std::vector<ReceivedFrame> frames = bench.take_frames();
+    EXPECT_EQ(types_of(frames),
+              (std::vector<std::uint8_t>{glp_frame_hello, glp_frame_config, glp_frame_event, glp_frame_event,
+                                         glp_frame_samples, glp_frame_samples}));
+    EXPECT_EQ(config_of(frames[1]).registers[2], gyro_config);
+    const std::vector<std::uint16_t> codes{frames[2].event().code, frames[3].event().code};
+    EXPECT_THAT(codes, testing::UnorderedElementsAre(glp_event_started, glp_event_sensor_fault));
 }
 
 TEST(Board, AJumpInTheInstantsEndsTheFrameAndFlagsTheNext) {

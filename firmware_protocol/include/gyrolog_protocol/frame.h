@@ -48,7 +48,8 @@ enum {
     glp_flag_ring_overflow = 0x0004,
     glp_flag_first_after_start = 0x0008,
     glp_flag_time_discontinuity = 0x0010,
-    glp_flag_saturated = 0x0020  ///< A sample of this frame stands at the end of the sensor's code range.
+    glp_flag_saturated = 0x0020,  ///< A sample of this frame stands at the end of the sensor's code range.
+    glp_flag_data_ready_silent = 0x0040  ///< The sensor's interrupt stayed away
 };
 
 /// A view: the payload belongs to whoever made the frame.

@@ -116,7 +116,8 @@ typedef enum glp_event_code {
     glp_event_ring_overflow = 5,
     glp_event_sensor_fault =
         6,  ///< WHO_AM_I or a register read back wrong; value = register << 8 | value read
-    glp_event_text = 7
+    glp_event_text = 7,
+    glp_event_data_ready_silent = 8  ///< The sensor's interrupt stayed away; value = samples lost
 } glp_event_code;
 
 typedef struct glp_event {
