@@ -17,12 +17,13 @@ constexpr std::uint64_t implausible_jump = std::uint64_t{1} << 40U;
 constexpr std::uint64_t sensor_fifo_bytes = 512;  // of an MPU-9250
 
 constexpr std::uint16_t cause_flags =
-    glp_flag_sensor_fifo_overflow | glp_flag_bus_error | glp_flag_ring_overflow;
+    glp_flag_sensor_fifo_overflow | glp_flag_bus_error | glp_flag_ring_overflow | glp_flag_data_ready_silent;
 
 DropoutCause cause_of(std::uint16_t flags) {
     if ((flags & glp_flag_sensor_fifo_overflow) != 0) { return DropoutCause::sensor_fifo_overflow; }
     if ((flags & glp_flag_bus_error) != 0) { return DropoutCause::bus_error; }
     if ((flags & glp_flag_ring_overflow) != 0) { return DropoutCause::ring_overflow; }
+    if ((flags & glp_flag_data_ready_silent) != 0) { return DropoutCause::data_ready_silent; }
     return DropoutCause::device;
 }
 
@@ -34,6 +35,8 @@ std::uint16_t flag_of_event(std::uint16_t code) {
             return glp_flag_bus_error;
         case glp_event_ring_overflow:
             return glp_flag_ring_overflow;
+        case glp_event_data_ready_silent:
+            return glp_flag_data_ready_silent;
         default:
             return 0;
     }
@@ -55,10 +58,14 @@ std::string_view dropout_cause_name(DropoutCause cause) {
             return "bus_error";
         case DropoutCause::ring_overflow:
             return "ring_overflow";
+        case DropoutCause::data_ready_silent:
+            return "data_ready_silent";
         case DropoutCause::device:
             return "device";
         case DropoutCause::link:
             return "link";
+        case DropoutCause::silent:
+            return "silent";
         case DropoutCause::unplugged:
             return "unplugged";
         case DropoutCause::reset:
@@ -176,6 +183,7 @@ void LinkAccounts::begin_run(std::uint64_t next_index, std::uint32_t lost_sample
     lost_samples_ = lost_samples;
     lost_unplaced_ = 0;
     tail_.reset();
+    silent_instants_ = 0;
 }
 
 std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, const glp_samples& samples) {
@@ -187,8 +195,11 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
         const bool from_zero = start_was_in_stream && samples.first_index < implausible_jump;
         const bool joins = in_run_ && (connection_lost_ || booted_since_samples_);
         LinkJoin next{.run_before = run_, .end_index = next_index_};
-        for (const LinkDropout& part : tail_gap()) { next.end_index += part.samples; }
-        enter(tail_gap());
+        // Before the first samples the gap is theirs: their index counts it.
+        if (in_run_) {
+            for (const LinkDropout& part : tail_gap()) { next.end_index += part.samples; }
+            enter(tail_gap());
+        }
         begin_run(from_zero ? 0 : samples.first_index, from_zero ? 0 : samples.lost_samples);
         if (joins) {
             next.run_after = run_;
@@ -220,6 +231,7 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
     booted_since_samples_ = false;
     connection_lost_ = false;
     tail_.reset();
+    silent_instants_ = 0;
     return SamplePlace{boot_, run_};
 }
 
@@ -239,13 +251,23 @@ std::vector<LinkDropout> LinkAccounts::split(std::uint64_t missing, std::uint64_
     return parts;
 }
 
-std::vector<LinkDropout> LinkAccounts::tail_gap() const {
-    if (!in_run_ || !tail_ || tail_->next_index <= next_index_) { return {}; }
+// What the board told of the time since the last sample. Before the first one its index counts from a start.
+std::vector<LinkDropout> LinkAccounts::told_gap() const {
+    if ((!in_run_ && !start_seen_) || !tail_ || tail_->next_index <= next_index_) { return {}; }
     const std::uint64_t passed = tail_->next_index - next_index_;
     if (passed >= implausible_jump) { return {}; }
     const std::uint64_t lost = lost_unplaced_ + counted_up(lost_samples_, tail_->lost_samples);
     const std::uint64_t missing = std::max(passed - std::min(passed, tail_->pending), std::min(passed, lost));
     return missing > 0 ? split(missing, lost, 0) : std::vector<LinkDropout>();
+}
+
+std::vector<LinkDropout> LinkAccounts::tail_gap() const {
+    std::vector<LinkDropout> gap = told_gap();
+    // A board that counts what it loses knows better than its clock.
+    if (gap.empty() && silent_instants_ > 0) {
+        gap.push_back({run_, next_index_, silent_instants_, DropoutCause::silent});
+    }
+    return gap;
 }
 
 void LinkAccounts::enter(const std::vector<LinkDropout>& gap) {

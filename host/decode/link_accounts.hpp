@@ -11,6 +11,7 @@
 // numbers prove nothing: such a join is told with its two ends, and the clocks say what lies between.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -26,8 +27,10 @@ enum class DropoutCause : std::uint8_t {
     sensor_fifo_overflow,  // the board says so
     bus_error,             // the board says so
     ring_overflow,         // the board says so: the host did not take frames in time
+    data_ready_silent,     // the board says so: the sensor's interrupt stayed away
     device,                // the board counted the loss, but the frame that names the cause was lost too
     link,                  // frames are missing, and the board counted no loss
+    silent,                // no sample came, by the board's clock, and the board counted none as lost
     unplugged,             // the connection was lost, and the board has kept its memory
     reset,                 // the board began anew, with or without a lost connection
 };
@@ -85,8 +88,11 @@ struct LinkReport {
     std::uint64_t hellos_contradicting = 0;
     std::uint64_t boots = 0;  // of the board, as far as the stream shows
     std::uint64_t runs = 0;
+    std::uint64_t samples_frozen = 0;  // of the good ones: one reading again and again
 
-    bool complete() const { return frames.missing == 0 && samples.missing == 0 && joins.empty(); }
+    bool complete() const {
+        return frames.missing == 0 && samples.missing == 0 && joins.empty() && samples_frozen == 0;
+    }
 };
 
 // Where a SAMPLES frame belongs. A run is a stretch with one boot, one start, one configuration and one
@@ -110,6 +116,8 @@ public:
     bool take_event(const glp_frame& frame, const glp_event& event);
     bool take_malformed(const glp_frame& frame);
     bool take_other(const glp_frame& frame);  // replies and unknown types
+    // So many instants have passed since the last sample by the board's clock (SampleLiveness); 0: none.
+    void note_silence(std::uint64_t instants) { silent_instants_ = std::max(silent_instants_, instants); }
 
     std::uint32_t boot() const { return boot_; }
     // What is known now. Samples that a STATUS or EVENT proves missing at the end are in it.
@@ -131,6 +139,7 @@ private:
     void begin_run(std::uint64_t next_index, std::uint32_t lost_samples);
     bool begins_grid(const glp_frame& frame, const glp_samples& samples) const;
     std::vector<LinkDropout> split(std::uint64_t missing, std::uint64_t lost, std::uint16_t flags) const;
+    std::vector<LinkDropout> told_gap() const;
     std::vector<LinkDropout> tail_gap() const;
     void enter(const std::vector<LinkDropout>& gap);
     void join(const LinkJoin& next);
@@ -162,6 +171,7 @@ private:
     std::uint8_t layout_ = 0;
     std::uint64_t frame_samples_ = 1;  // of a full frame, as configured or seen
     std::optional<Tail> tail_;
+    std::uint64_t silent_instants_ = 0;
     std::optional<std::uint32_t> status_lost_frames_;
 };
 

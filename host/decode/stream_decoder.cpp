@@ -38,6 +38,7 @@ bool StreamDecoder::take(const Transfer& transfer) {
     before_start_ = report();
     accounts_ = {};
     timeline_ = {};
+    liveness_ = SampleLiveness();
     builder_ = RecordingBuilder(options_.stream_bytes, options_.samples_per_row);
     hello_.reset();
     config_.reset();
@@ -49,6 +50,7 @@ bool StreamDecoder::take(const Transfer& transfer) {
 void StreamDecoder::begin_connection() {
     frames_.cut();
     accounts_.begin_connection();
+    liveness_.begin_clock();
     line_raised_ = false;
     ++connections_;
 }
@@ -79,6 +81,7 @@ void StreamDecoder::enter_joins(LinkReport& report) const {
 LinkReport StreamDecoder::report() const {
     LinkReport report = accounts_.report(frames_);
     enter_joins(report);
+    report.samples_frozen = liveness_.frozen_samples();
     report.hellos_contradicting = hellos_contradicting_;
     report.frames.corrupted += hellos_contradicting_;
     report.frames.corrupted_by_reason[glp_status_bad_value] += hellos_contradicting_;
@@ -99,8 +102,10 @@ void StreamDecoder::on_hello(const ReceivedFrame& frame, const glp_hello& hello)
         return;
     }
     if (!accounts_.take_hello(frame.frame, hello)) { return; }
+    if (hello_ && hello_->boot_id != hello.boot_id) { liveness_.begin_clock(); }
     hello_ = hello;
     timeline_.take_hello(hello);
+    liveness_.take_hello(hello);
     if (options_.observer != nullptr) { options_.observer->on_hello(frame, hello); }
 }
 
@@ -116,6 +121,7 @@ void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& sa
     if (!place) { return; }
     run_ = place->run;
     timeline_.take_samples(*place, samples, frame.arrival);
+    liveness_.take_samples(samples, config_ ? config_->rate_mHz * 1e-3 : 0.0);
     if (options_.keep_samples) { builder_.take_samples(*place, samples); }
     if (options_.observer != nullptr) { options_.observer->on_samples(frame, samples); }
 }
@@ -123,12 +129,20 @@ void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& sa
 void StreamDecoder::on_status(const ReceivedFrame& frame, const glp_device_status& status) {
     if (!accounts_.take_status(frame.frame, status)) { return; }
     status_ = status;
+    liveness_.take_status(status);
+    note_silence();
     if (options_.observer != nullptr) { options_.observer->on_status(frame, status); }
 }
 
 void StreamDecoder::on_event(const ReceivedFrame& frame, const glp_event& event) {
     if (!accounts_.take_event(frame.frame, event)) { return; }
+    liveness_.take_event(event);
+    note_silence();
     if (options_.observer != nullptr) { options_.observer->on_event(frame, event); }
+}
+
+void StreamDecoder::note_silence() {
+    accounts_.note_silence(liveness_.silent_instants(rate_hz().value_or(0.0)));
 }
 
 void StreamDecoder::on_reply(const ReceivedFrame& frame, const glp_reply& reply) {

@@ -18,6 +18,7 @@
 #include "host/decode/frame_decoder.hpp"
 #include "host/decode/link_accounts.hpp"
 #include "host/decode/recording_builder.hpp"
+#include "host/decode/sample_liveness.hpp"
 #include "host/decode/sample_timeline.hpp"
 #include "host/transport/transfer.hpp"
 
@@ -52,6 +53,7 @@ public:
     std::uint64_t intact_frames() const { return frames_.intact_frames(); }
     const std::optional<glp_config>& config() const { return config_; }
     const std::optional<glp_device_status>& device_status() const { return status_; }
+    const SampleLiveness& liveness() const { return liveness_; }
     // The sensor's rate in the present run: by the stamps, or nominal before there are enough of them.
     std::optional<double> rate_hz() const;
     // With its uncertainty; no value before there are enough stamps.
@@ -77,11 +79,13 @@ private:
     void on_unknown(const ReceivedFrame& frame) override;
     void on_malformed(const ReceivedFrame& frame, glp_status reason) override;
     void enter_joins(LinkReport& report) const;
+    void note_silence();
 
     StreamDecoderOptions options_;
     FrameDecoder frames_;
     LinkAccounts accounts_;
     SampleTimeline timeline_;
+    SampleLiveness liveness_;
     RecordingBuilder builder_;
     std::optional<glp_hello> hello_;
     std::optional<glp_config> config_;
