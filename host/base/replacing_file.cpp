@@ -128,17 +128,21 @@ Status ReplacingFile::write(ByteView contents) {
     return {};
 }
 
+Status ReplacingFile::take_place() {
+    if (!state_->unfinished) { return {}; }
+    if (::rename(state_->written_path.c_str(), state_->path.c_str()) != 0) { return storage_error(errno); }
+    state_->unfinished.reset();
+    sync_folder_of(state_->path);
+    return {};
+}
+
 Status ReplacingFile::commit() {
     int problem = 0;
     if (state_->unfinished && ::fsync(state_->descriptor) != 0) { problem = errno; }
     if (::close(state_->descriptor) != 0 && problem == 0) { problem = errno; }
     state_->descriptor = -1;
     if (problem != 0) { return storage_error(problem); }
-    if (!state_->unfinished) { return {}; }
-    if (::rename(state_->written_path.c_str(), state_->path.c_str()) != 0) { return storage_error(errno); }
-    state_->unfinished.reset();
-    sync_folder_of(state_->path);
-    return {};
+    return take_place();
 }
 
 }  // namespace gyrolog

@@ -29,6 +29,8 @@ public:
     const std::string& written_path() const;
 
     Status write(ByteView contents);
+    // Under its name from now on, whole or not: for a file that grows in its place.
+    Status take_place();
     // On the disk, and in its place.
     Status commit();
 

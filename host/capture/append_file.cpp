@@ -1,12 +1,15 @@
 #include "host/capture/append_file.hpp"
 
 #include <cerrno>
+#include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include <fcntl.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include "host/base/replacing_file.hpp"
 #include "host/capture/background_sync.hpp"
 
 namespace gyrolog {
@@ -39,7 +42,8 @@ Error errno_error(const std::string& what) {
 
 class PosixAppendFile final : public AppendFile {
 public:
-    PosixAppendFile(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
+    PosixAppendFile(int descriptor, std::string path, std::optional<ReplacingFile> replacing)
+        : descriptor_(descriptor), path_(std::move(path)), replacing_(std::move(replacing)) {}
     PosixAppendFile(const PosixAppendFile&) = delete;
     PosixAppendFile& operator=(const PosixAppendFile&) = delete;
     ~PosixAppendFile() override {
@@ -75,7 +79,15 @@ public:
         return sync_status(background_->begin());
     }
 
+    Status take_place() override {
+        if (!replacing_) { return {}; }
+        Status placed = replacing_->take_place();
+        return placed.ok() ? placed
+                           : Status(in_context("replace '" + path_ + "'", std::move(placed).error()));
+    }
+
     Status close() override {
+        replacing_.reset();
         background_.reset();
         const int descriptor = descriptor_;
         descriptor_ = -1;
@@ -95,6 +107,7 @@ private:
 
     int descriptor_;
     std::string path_;
+    std::optional<ReplacingFile> replacing_;
     std::unique_ptr<BackgroundSync> background_;
 };
 
@@ -131,10 +144,19 @@ public:
 }  // namespace
 
 Result<std::unique_ptr<AppendFile>> create_append_file(const std::string& path, IfExists if_exists) {
-    const int existing = if_exists == IfExists::refuse ? O_EXCL : O_TRUNC;
+    std::error_code unknown;
+    if (if_exists == IfExists::replace && std::filesystem::is_regular_file(path, unknown)) {
+        auto replacing = ReplacingFile::create(path);
+        if (!replacing.ok()) { return in_context("create '" + path + "'", std::move(replacing).error()); }
+        const int descriptor = ::fcntl(replacing->descriptor(), F_DUPFD_CLOEXEC, 0);
+        if (descriptor < 0) { return errno_error("create '" + path + "'"); }
+        return std::unique_ptr<AppendFile>(
+            std::make_unique<PosixAppendFile>(descriptor, path, std::move(replacing).value()));
+    }
+    const int existing = if_exists == IfExists::refuse ? O_EXCL : 0;
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | existing, 0666);
     if (descriptor < 0) { return errno_error("create '" + path + "'"); }
-    auto file = std::make_unique<PosixAppendFile>(descriptor, path);
+    auto file = std::make_unique<PosixAppendFile>(descriptor, path, std::nullopt);
     GYROLOG_CHECK(sync_directory_of(path));
     return std::unique_ptr<AppendFile>(std::move(file));
 }

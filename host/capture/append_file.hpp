@@ -22,10 +22,12 @@ public:
     virtual Status sync() = 0;
     // The same soon, without waiting for it. A failure is told by the next call of this or of sync().
     virtual Status begin_sync() { return sync(); }
+    // A file that is to replace another stands beside it until then, and is gone if it is closed before.
+    virtual Status take_place() { return {}; }
     virtual Status close() = 0;
 };
 
-enum class IfExists { refuse, overwrite };
+enum class IfExists { refuse, replace };
 
 // The new file's name survives a loss of power, too. Errors: invalid_argument when it exists, not_found,
 // permission_denied, disk_full, storage_failed.

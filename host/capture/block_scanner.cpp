@@ -79,6 +79,8 @@ Result<std::optional<CaptureBlock>> BlockScanner::next() {
         GYROLOG_TRY(const std::optional<std::uint64_t> intact, find_intact(from));
         if (!intact) {
             accounts_.bytes_in_tail = accounts_.bytes_total - offset_;
+            GYROLOG_TRY(const bool torn, is_torn(offset_));
+            if (!torn) { ++accounts_.damaged_ranges; }
             offset_ = accounts_.bytes_total;
             break;
         }
@@ -283,6 +285,43 @@ Result<std::optional<std::uint64_t>> BlockScanner::find_intact(std::uint64_t fro
         ++at;
     }
     return std::optional<std::uint64_t>();
+}
+
+// Behind the last byte that is not zero.
+Result<std::uint64_t> BlockScanner::end_of_data(std::uint64_t from) {
+    std::uint64_t end = from;
+    for (std::uint64_t at = from; at < accounts_.bytes_total;) {
+        GYROLOG_TRY(const ByteView bytes, view(at, pcapng::block_bytes_max));
+        if (bytes.empty()) { break; }
+        const auto last =
+            std::find_if(bytes.rbegin(), bytes.rend(), [](std::uint8_t byte) { return byte != 0; });
+        if (last != bytes.rend()) { end = at + static_cast<std::uint64_t>(bytes.rend() - last); }
+        at += bytes.size();
+    }
+    return end;
+}
+
+// A writer that dies leaves the beginning of one block; a file system that knew of more leaves zeros behind
+// it. A block whose end is there was written whole: what is wrong with it came later.
+Result<bool> BlockScanner::is_torn(std::uint64_t offset) {
+    constexpr std::size_t length_known = 12;
+    GYROLOG_TRY(const std::uint64_t data_end, end_of_data(offset));
+    const std::uint64_t written = data_end - offset;
+    if (written == 0) { return true; }
+    GYROLOG_TRY(const ByteView begin, view(offset, length_known));
+    if (begin.size() < length_known) { return written < length_known; }
+    if (!(own_section_ || format_ == Format::pcap ? may_begin_block(begin)
+                                                  : plausible_length(get<std::uint32_t>(begin, 4)))) {
+        return false;
+    }
+    const std::uint64_t length = format_ == Format::pcap
+                                     ? pcap_record_header_bytes + get<std::uint32_t>(begin, 8)
+                                     : get<std::uint32_t>(begin, 4);
+    if (written > length) { return false; }
+    GYROLOG_TRY(const ByteView block, view(offset, static_cast<std::size_t>(length)));
+    const bool whole = format_ == Format::pcapng && block.size() == length &&
+                       get<std::uint32_t>(block, block.size() - 4) == length;
+    return !whole;
 }
 
 void BlockScanner::enter(const CaptureBlock& block) {

@@ -46,15 +46,15 @@ struct DamagedRange {
 
 enum class FileEnd {
     clean,      // the last block ends where the file ends
-    torn_tail,  // the file ends inside a block, or in zeros: the writer died there, which is expected
-    damaged,    // intact blocks follow a broken one: the medium or an editor did that
+    torn_tail,  // the file ends inside the block that was being written, in zeros, or both: the writer died
+    damaged,    // anything else that is no intact block: the medium or an editor did that
 };
 
 struct BlockAccounts {
     std::uint64_t bytes_total = 0;
     std::uint64_t bytes_in_blocks = 0;
     std::uint64_t bytes_damaged = 0;  // with intact blocks behind them
-    std::uint64_t bytes_in_tail = 0;  // with nothing intact behind them
+    std::uint64_t bytes_in_tail = 0;  // with nothing intact behind them, torn or damaged
     std::uint64_t blocks = 0;
     std::uint64_t damaged_ranges = 0;
     std::vector<DamagedRange> damage;  // the first of them, up to a thousand
@@ -96,6 +96,8 @@ private:
     std::optional<CaptureBlock> judge_pcap_record(ByteView bytes) const;
     Result<std::optional<std::uint64_t>> find_intact(std::uint64_t from);
     Result<std::uint64_t> end_of_broken(std::uint64_t offset);
+    Result<std::uint64_t> end_of_data(std::uint64_t from);
+    Result<bool> is_torn(std::uint64_t offset);
     bool may_begin_block(ByteView bytes) const;
     void enter(const CaptureBlock& block);
     void enter_damage(std::uint64_t offset, std::uint64_t bytes);

@@ -14,19 +14,6 @@ constexpr std::size_t transfer_bytes_max = pcapng::packet_bytes_max - usbmon_hea
 
 }  // namespace
 
-Result<CaptureWriter> CaptureWriter::create(const std::string& path, const SourceIdentity& identity,
-                                            bool overwrite) {
-    auto file = create_append_file(path, overwrite ? IfExists::overwrite : IfExists::refuse);
-    if (!file.ok()) {
-        Error error = std::move(file).error();
-        if (error.code == ErrorCode::invalid_argument) {
-            error.message += "; choose another name or --force";
-        }
-        return error;
-    }
-    return create(std::move(file).value(), identity, host_now());
-}
-
 Result<CaptureWriter> CaptureWriter::create(std::unique_ptr<AppendFile> file, const SourceIdentity& identity,
                                             HostTime started, const std::optional<CaptureSegment>& segment) {
     CaptureWriter writer(std::move(file), identity, started);

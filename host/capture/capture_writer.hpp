@@ -28,9 +28,7 @@ public:
     static constexpr std::int64_t flush_interval_ms = 250;
     static constexpr std::size_t buffer_bytes = std::size_t{64} << 10U;
 
-    // Errors: those of create_append_file; an existing file is overwritten only if told so.
-    static Result<CaptureWriter> create(const std::string& path, const SourceIdentity& identity,
-                                        bool overwrite);
+    // Errors: those of the file.
     static Result<CaptureWriter> create(std::unique_ptr<AppendFile> file, const SourceIdentity& identity,
                                         HostTime started,
                                         const std::optional<CaptureSegment>& segment = std::nullopt);
@@ -51,6 +49,8 @@ public:
     Status sync();
     // The same soon, without waiting for the disk; a failure is told by the next call.
     Status sync_soon();
+    // See AppendFile.
+    Status take_place() { return file_->take_place(); }
     // Syncs. A writer that is destroyed without close() leaves what a kill would leave.
     Status close();
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <random>
 #include <utility>
 
@@ -51,7 +52,7 @@ Result<std::unique_ptr<AppendFile>> SegmentWriter::create_file() {
         ++name_number_;
         const bool first = number_ == 0;
         const std::string path = segment_path(plan_.path, name_number_);
-        auto file = disk_->create(path, first && plan_.overwrite ? IfExists::overwrite : IfExists::refuse);
+        auto file = disk_->create(path, first && plan_.overwrite ? IfExists::replace : IfExists::refuse);
         if (file.ok()) {
             paths_.push_back(path);
             return file;
@@ -65,6 +66,8 @@ Result<std::unique_ptr<AppendFile>> SegmentWriter::create_file() {
 }
 
 Status SegmentWriter::open_next() {
+    std::error_code unknown;
+    if (number_ == 0) { replaces_ = std::filesystem::is_regular_file(plan_.path, unknown); }
     GYROLOG_TRY(std::unique_ptr<AppendFile> file, create_file());
     ++number_;
     GYROLOG_TRY(CaptureWriter writer, CaptureWriter::create(std::move(file), identity_, host_now(),
@@ -109,6 +112,12 @@ Status SegmentWriter::checkpoint(const CaptureCounters& counters) {
     return check_room();
 }
 
+Status SegmentWriter::take_place() {
+    if (placed_ || !file_) { return {}; }
+    placed_ = true;
+    return file_->take_place();
+}
+
 Status SegmentWriter::sync() { return file_ ? file_->sync() : Status(); }
 
 Status SegmentWriter::sync_soon() { return file_ ? file_->sync_soon() : Status(); }
@@ -132,7 +141,7 @@ void SegmentWriter::drop() {
     if (!file_) { return; }
     static_cast<void>(file_->close());
     file_.reset();
-    static_cast<void>(std::remove(paths_.back().c_str()));
+    if (!keeps_old()) { static_cast<void>(std::remove(paths_.back().c_str())); }
     paths_.pop_back();
     --number_;
     --name_number_;

@@ -39,6 +39,11 @@ public:
     // The same soon, without waiting for the disk.
     Status sync_soon();
 
+    // A file that replaces another does so now, if it has not yet; closed before, it is gone.
+    Status take_place();
+    // Whether the file that was to be replaced is still there.
+    bool keeps_old() const { return replaces_ && !placed_; }
+
     // Closes the present file, without another one yet. Harmless when there is none.
     Status close();
     // The board is back: the next file, after close().
@@ -67,6 +72,8 @@ private:
     Disk* disk_;
     std::string capture_;  // CaptureSegment::capture
     std::uint64_t number_ = 0;
+    bool replaces_ = false;
+    bool placed_ = false;
     std::uint64_t name_number_ = 0;
     std::uint64_t connection_ = 1;
     std::optional<CaptureWriter> file_;

@@ -1,14 +1,25 @@
 // What a capture file promises: the good prefix of a torn one, one block's worth of a damaged one, and
 // nothing invented.
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "host/capture/recover.hpp"
 #include "tests/host/capture/made_capture.hpp"
+#include "tests/support/file_size_limit.hpp"
+#include "tests/support/program.hpp"
 
 namespace gyrolog {
 namespace {
+
+ByteWriter into(Bytes& bytes) {
+    return [&bytes](ByteView piece) {
+        bytes.insert(bytes.end(), piece.begin(), piece.end());
+        return Status();
+    };
+}
 
 // Every transfer read is one that was written, in order. Returns how many were left out.
 std::size_t expect_subsequence(const std::vector<KeptTransfer>& read,
@@ -191,10 +202,9 @@ TEST(CaptureFile, GivesBackMarksWithTheirTimesAndPlaces) {
     ASSERT_TRUE(read->checkpoint.has_value());
     EXPECT_TRUE(read->checkpoint->last) << "a mark is no checkpoint";
 
-    FakeDisk copy;
-    const std::unique_ptr<AppendFile> file = copy.open();
-    ASSERT_TRUE(recover_capture(input_from_memory(disk.contents), *file).ok());
-    EXPECT_EQ(copy.contents, disk.contents);
+    Bytes copy;
+    ASSERT_TRUE(recover_capture(input_from_memory(disk.contents), into(copy)).ok());
+    EXPECT_EQ(copy, disk.contents);
 }
 
 // One whose schema nobody knows yet costs nothing: that is how marks came after checkpoints.
@@ -224,30 +234,40 @@ TEST(Recovery, KeepsEveryIntactBlockAndNothingElse) {
     MadeCapture made = make_capture(20, 300);
     made.bytes[made.ends[10] + 40] ^= 1U;
     made.bytes.resize(made.bytes.size() - 5);
-    FakeDisk disk;
-    const std::unique_ptr<AppendFile> file = disk.open();
-    const auto report = recover_capture(input_from_memory(made.bytes), *file);
+    Bytes recovered;
+    const auto report = recover_capture(input_from_memory(made.bytes), into(recovered));
     ASSERT_TRUE(report.ok());
-    EXPECT_EQ(report->bytes_kept, disk.contents.size());
+    EXPECT_EQ(report->bytes_kept, recovered.size());
     EXPECT_EQ(report->bytes_kept, report->source.bytes_in_blocks);
     EXPECT_FALSE(report->header_rewritten);
-    EXPECT_TRUE(disk.closed);
-    EXPECT_EQ(disk.synced_bytes, disk.contents.size());
-    const auto read = read_capture(disk.contents);
+    const auto read = read_capture(recovered);
     ASSERT_TRUE(read.ok());
     EXPECT_EQ(expect_subsequence(read->transfers, made.transfers), 1U);
     EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
 }
 
+TEST(Recovery, LeavesNoFileOnAFullDisk) {
+    const TemporaryFolder folder;
+    MadeCapture made = make_capture(200, 300);
+    made.bytes.resize(made.bytes.size() - 5);
+    std::ofstream(folder.path("torn.pcapng"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(made.bytes.data()),
+               static_cast<std::streamsize>(made.bytes.size()));
+    const FileSizeLimit limit(4096);
+    const auto report = recover_capture(folder.path("torn.pcapng"), folder.path("recovered.pcapng"));
+    ASSERT_FALSE(report.ok());
+    EXPECT_NE(report.error().message.find("recovered.pcapng"), std::string::npos) << report.error().message;
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path("")), {}), 1);
+}
+
 TEST(Recovery, WritesANewHeaderWhenTheOldOneIsLost) {
     MadeCapture made = make_capture(5, 60);
     made.bytes.erase(made.bytes.begin(), made.bytes.begin() + static_cast<std::ptrdiff_t>(made.head_end - 3));
-    FakeDisk disk;
-    const std::unique_ptr<AppendFile> file = disk.open();
-    const auto report = recover_capture(input_from_memory(made.bytes), *file);
+    Bytes recovered;
+    const auto report = recover_capture(input_from_memory(made.bytes), into(recovered));
     ASSERT_TRUE(report.ok()) << report.error().message;
     EXPECT_TRUE(report->header_rewritten);
-    const auto read = read_capture(disk.contents);
+    const auto read = read_capture(recovered);
     ASSERT_TRUE(read.ok());
     ASSERT_EQ(read->transfers.size(), made.transfers.size());
     EXPECT_TRUE(read->transfers.back().same_content(made.transfers.back()));

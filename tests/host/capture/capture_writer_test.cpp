@@ -161,12 +161,17 @@ protected:
 TEST_F(CaptureOnDisk, IsNotOverwrittenUnlessTold) {
     const std::string path = folder_ / "a.pcapng";
     { std::ofstream(path) << "precious"; }
-    const auto refused = CaptureWriter::create(path, made_identity(), false);
+    const auto refused = create_append_file(path, IfExists::refuse);
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
     EXPECT_EQ(std::filesystem::file_size(path), 8U);
-    auto writer = CaptureWriter::create(path, made_identity(), true);
+    auto file_beside = create_append_file(path, IfExists::replace);
+    ASSERT_TRUE(file_beside.ok());
+    auto writer = CaptureWriter::create(std::move(*file_beside), made_identity(), HostTime{});
     ASSERT_TRUE(writer.ok());
+    ASSERT_TRUE(writer->sync().ok());
+    EXPECT_EQ(std::filesystem::file_size(path), 8U);
+    ASSERT_TRUE(writer->take_place().ok());
     ASSERT_TRUE(writer->close().ok());
     const auto file = open_input_file(path);
     ASSERT_TRUE(file.ok());
@@ -174,7 +179,7 @@ TEST_F(CaptureOnDisk, IsNotOverwrittenUnlessTold) {
 }
 
 TEST_F(CaptureOnDisk, NamesTheFolderThatIsNotThere) {
-    const auto refused = CaptureWriter::create(folder_ / "none" / "a.pcapng", made_identity(), false);
+    const auto refused = create_append_file(folder_ / "none" / "a.pcapng", IfExists::refuse);
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().code, ErrorCode::not_found);
     const auto unread = CaptureReader::open((folder_ / "none.pcapng").string());

@@ -42,7 +42,9 @@ Bytes read_file(const fs::path& path) {
 }
 
 void write_capture(const fs::path& path, const SourceIdentity& identity, const CollectingSink& sink) {
-    auto writer = CaptureWriter::create(path.string(), identity, false);
+    auto file = create_append_file(path.string(), IfExists::refuse);
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    auto writer = CaptureWriter::create(std::move(file).value(), identity, host_now());
     ASSERT_TRUE(writer.ok()) << writer.error().message;
     for (const CollectingSink::Told& one : sink.told()) {
         Transfer transfer = one.transfer;
