@@ -135,6 +135,7 @@ Result<Boards> open_all(const CaptureOptions& options, const std::vector<std::st
 void watch(Console& console, const Boards& boards) {
     LiveView view(console);
     std::vector<StallNotice> stalls(boards.size(), StallNotice(console));
+    std::vector<SilenceNotice> silences(boards.size(), SilenceNotice(console, &view));
     std::vector<ParkingNotice> parkings(boards.size(), ParkingNotice(console, &view));
     const auto finished = [](const auto& board) { return board->finished(); };
     while (!std::ranges::all_of(boards, finished)) {
@@ -145,6 +146,7 @@ void watch(Console& console, const Boards& boards) {
         for (std::size_t i = 0; i < boards.size(); ++i) {
             const CaptureProgress progress = boards[i]->progress();
             stalls[i].tell(progress);
+            silences[i].tell(progress);
             parkings[i].tell(progress);
         }
         view.show(sum_of(boards));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
@@ -31,6 +32,51 @@ public:
 private:
     Console& console_;
     bool told_ = false;
+};
+
+// Says once when samples stay away or are all alike, and once when that is over.
+class SilenceNotice {
+public:
+    explicit SilenceNotice(Console& console, LiveView* view = nullptr) : console_(console), view_(view) {}
+
+    void tell(const CaptureProgress& progress) {
+        if (progress.parked) { return; }
+        if (progress.silent_s > told_from_s) {
+            say(silent_,
+                "no sample for 2 s: the board streams, but its sensor is silent (its supply, its "
+                "interrupt line); waiting for it");
+            samples_ = progress.samples;
+        } else if (silent_ && progress.samples > samples_) {
+            silent_ = false;
+            say_again("samples come again");
+        }
+        if (progress.frozen_s > 0.0) {
+            say(frozen_,
+                "one reading comes again and again for 2 s: the sensor hangs (unplug the board to "
+                "reset it)");
+        } else if (frozen_) {
+            frozen_ = false;
+            say_again("the readings change again");
+        }
+    }
+
+private:
+    static constexpr double told_from_s = 2.0;
+
+    void say(bool& told, const char* what) {
+        if (!told) { say_again(what); }
+        told = true;
+    }
+    void say_again(const char* what) {
+        if (view_ != nullptr) { view_->finish(); }
+        console_.err << "  " << what << '\n';
+    }
+
+    Console& console_;
+    LiveView* view_;
+    bool silent_ = false;
+    std::uint64_t samples_ = 0;  // when it was last silent
+    bool frozen_ = false;
 };
 
 // Says once when the board is lost and waited for, and once when it is back.

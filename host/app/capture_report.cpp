@@ -128,17 +128,37 @@ std::string end_text(const std::string& path, const LoadedCapture& capture) {
                 format_count(file.bytes_in_tail));
         case FileEnd::damaged:
             return fmt::format(
-                "damaged: {} bytes in {} places, with intact blocks behind them. Run `gyrolog recover "
-                "{} -o NEW` to keep the intact part",
-                format_count(file.bytes_damaged + file.bytes_in_tail), file.damaged_ranges, path);
+                "damaged: {} bytes in {} {} are no intact blocks. Run `gyrolog recover {} -o NEW` to keep "
+                "the "
+                "intact part",
+                format_count(file.bytes_damaged + file.bytes_in_tail), file.damaged_ranges,
+                file.damaged_ranges == 1 ? "place" : "places", path);
     }
     return "";
+}
+
+// The last line, which people read first.
+std::string verdict(const LoadedCapture& capture) {
+    const FileEnd end = capture.file.blocks.end;
+    if (end == FileEnd::damaged || capture.stream_bytes_gone > 0) {
+        return "damaged: something that was captured is gone";
+    }
+    if (!nothing_missing(capture)) { return "something is missing"; }
+    if (end == FileEnd::torn_tail) {
+        return "nothing is missing before the torn tail; what came after it, when the writer died, is not "
+               "here";
+    }
+    if (!closed_by_writer(capture)) {
+        return "nothing is missing before the end; the writer was stopped there, and did not close the file";
+    }
+    return "nothing is missing";
 }
 
 }  // namespace
 
 bool nothing_missing(const LoadedCapture& capture) {
-    return capture.decoder->report().complete() && capture.file.truncated_transfers == 0;
+    return capture.decoder->report().complete() && capture.file.truncated_transfers == 0 &&
+           capture.file.blocks.end != FileEnd::damaged && capture.stream_bytes_gone == 0;
 }
 
 Json check_json(const std::string& path, const LoadedCapture& capture) {
@@ -148,36 +168,39 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
     for (const Dropout& dropout : capture.decoder->timed_dropouts(link)) {
         dropouts.push_back({{"at_s", dropout.at_s}, {"samples", dropout.samples}, {"cause", dropout.cause}});
     }
-    return {{"schema", "gyrolog-check/1"},
-            {"file", path},
-            {"end", name_of(file.end)},
-            {"closed", closed_by_writer(capture)},
-            {"files", capture.files},
-            {"bytes",
-             {{"total", link.bytes.total},
-              {"in_frames", link.bytes.in_frames},
-              {"skipped", link.bytes.skipped},
-              {"buffered", link.bytes.buffered}}},
-            {"frames",
-             {{"good", link.frames.good},
-              {"missing", link.frames.missing},
-              {"duplicated", link.frames.duplicated},
-              {"corrupted", link.frames.corrupted}}},
-            {"samples", {{"good", link.samples.good}, {"missing", link.samples.missing}}},
-            {"dropouts", dropouts},
-            {"dropouts_unlisted", link.dropouts_unlisted},
-            {"corrupted_by_reason", reasons_json(link)},
-            {"lost_on_device",
-             {{"samples", link.samples.lost_on_device}, {"frames", link.frames.lost_on_device}}},
-            {"frames_before_start", link.frames_before_start},
-            {"boots", link.boots},
-            {"runs", link.runs},
-            {"file_bytes",
-             {{"total", file.bytes_total},
-              {"in_blocks", file.bytes_in_blocks},
-              {"damaged", file.bytes_damaged},
-              {"in_tail", file.bytes_in_tail}}},
-            {"transfers", {{"total", capture.file.transfers}, {"failed", capture.file.failed_transfers}}}};
+    return {
+        {"schema", "gyrolog-check/1"},
+        {"file", path},
+        {"end", name_of(file.end)},
+        {"closed", closed_by_writer(capture)},
+        {"files", capture.files},
+        {"bytes",
+         {{"total", link.bytes.total},
+          {"in_frames", link.bytes.in_frames},
+          {"skipped", link.bytes.skipped},
+          {"buffered", link.bytes.buffered},
+          {"gone", capture.stream_bytes_gone}}},
+        {"frames",
+         {{"good", link.frames.good},
+          {"missing", link.frames.missing},
+          {"duplicated", link.frames.duplicated},
+          {"corrupted", link.frames.corrupted}}},
+        {"samples",
+         {{"good", link.samples.good}, {"missing", link.samples.missing}, {"frozen", link.samples_frozen}}},
+        {"dropouts", dropouts},
+        {"dropouts_unlisted", link.dropouts_unlisted},
+        {"corrupted_by_reason", reasons_json(link)},
+        {"lost_on_device",
+         {{"samples", link.samples.lost_on_device}, {"frames", link.frames.lost_on_device}}},
+        {"frames_before_start", link.frames_before_start},
+        {"boots", link.boots},
+        {"runs", link.runs},
+        {"file_bytes",
+         {{"total", file.bytes_total},
+          {"in_blocks", file.bytes_in_blocks},
+          {"damaged", file.bytes_damaged},
+          {"in_tail", file.bytes_in_tail}}},
+        {"transfers", {{"total", capture.file.transfers}, {"failed", capture.file.failed_transfers}}}};
 }
 
 std::string check_text(const std::string& path, const LoadedCapture& capture) {
@@ -188,6 +211,9 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
     }
     text += fmt::format("  end of file: {}\n", end_text(path, capture));
     text += row("bytes of the stream", link.bytes.total);
+    if (capture.stream_bytes_gone > 0) {
+        text += row("  gone", capture.stream_bytes_gone, "its writer counted so many more");
+    }
     text += row("  in frames", link.bytes.in_frames);
     text += row("  skipped", link.bytes.skipped,
                 link.bytes_skipped_at_head > 0 ? fmt::format("{} of them before the first frame",
@@ -203,6 +229,9 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
     text += row("  corrupted", link.frames.corrupted);
     text += row("samples good", link.samples.good);
     text += row("  missing", link.samples.missing);
+    if (link.samples_frozen > 0) {
+        text += row("  frozen", link.samples_frozen, "one reading again and again: the sensor hung");
+    }
     constexpr std::size_t shown = 20;
     const std::vector<Dropout> dropouts = capture.decoder->timed_dropouts(link);
     for (std::size_t i = 0; i < std::min(shown, dropouts.size()); ++i) {
@@ -212,7 +241,7 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
     if (const std::uint64_t more = dropouts.size() + link.dropouts_unlisted; more > shown) {
         text += fmt::format("  and {} more dropouts (--json lists them)\n", more - shown);
     }
-    text += nothing_missing(capture) ? "  nothing is missing\n" : "  something is missing\n";
+    text += fmt::format("  {}\n", verdict(capture));
     return text;
 }
 

@@ -40,6 +40,10 @@ void sum_up(Console& console, const CaptureOutcome& outcome, const LinkReport& l
             format_count(link.samples.missing), link.dropouts.size() + link.dropouts_unlisted,
             link.frames.missing, path);
     }
+    if (link.samples_frozen > 0) {
+        console.err << fmt::format("  {} samples are one reading again and again: the sensor hung\n",
+                                   format_count(link.samples_frozen));
+    }
     if (link.frames.corrupted > 0) {
         console.err << fmt::format("  {} damaged frames were refused\n", link.frames.corrupted);
     }
@@ -117,8 +121,10 @@ Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, Captu
     if (!console.progress) {
         ParkingNotice parking(console);
         StallNotice stall(console);
+        SilenceNotice silence(console);
         return run_capture(source, request, [&](const CaptureProgress& progress) {
             stall.tell(progress);
+            silence.tell(progress);
             parking.tell(progress);
             tell_denoising(console, denoise, nullptr);
             return !console.stop_wanted();
@@ -134,9 +140,11 @@ Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, Captu
     if (denoise != nullptr) { view.add(*denoise); }
     ParkingNotice parking(console, &view);
     StallNotice stall(console);
+    SilenceNotice silence(console, &view);
     auto outcome = run_capture(source, request, [&](const CaptureProgress& progress) {
         keys.take(terminal.read());
         stall.tell(progress);
+        silence.tell(progress);
         parking.tell(progress);
         tell_denoising(console, denoise, &view);
         if (!progress.parked) { view.show(progress); }
@@ -216,9 +224,11 @@ CaptureResult tell_outcome(Console& console, const char* command, const Result<C
         result.code = exit_code_of_opening(outcome.error());
         return result;
     }
-    result.file_written = true;
+    result.file_written = !outcome->kept_old;
     result.link = outcome->link;
-    if (outcome->end == CaptureEnd::storage_failed) { keep_what_is_stored(path, *outcome, result.link); }
+    if (result.file_written && outcome->end == CaptureEnd::storage_failed) {
+        keep_what_is_stored(path, *outcome, result.link);
+    }
     result.code = exit_code_of(*outcome);
     if (outcome->error) {
         console.err << program_and(command) << ": " << outcome->error->message
@@ -226,7 +236,11 @@ CaptureResult tell_outcome(Console& console, const char* command, const Result<C
                             ? "; the board is lost, what came before is saved\n"
                             : "; what was written before is saved\n");
     }
-    sum_up(console, *outcome, result.link, path);
+    if (outcome->kept_old) {
+        console.err << program_and(command) << ": not one sample came; '" << path << "' is as it was\n";
+    } else {
+        sum_up(console, *outcome, result.link, path);
+    }
     return result;
 }
 

@@ -2,8 +2,7 @@
 
 #include <array>
 #include <cerrno>
-#include <filesystem>
-#include <system_error>
+#include <utility>
 
 #include <archive.h>
 #include <archive_entry.h>
@@ -85,12 +84,9 @@ void TextWriter::Close::operator()(void* archive) const { archive_write_free(han
 
 Result<TextWriter> TextWriter::create(const std::string& path, TextGrowth growth) {
     TextWriter writer;
-    if (growth == TextGrowth::whole) {
-        GYROLOG_TRY(ReplacingFile replacing, ReplacingFile::create(path));
-        writer.file_.emplace(std::move(replacing));
-    } else if (std::error_code none; std::filesystem::is_directory(path, none)) {
-        return Error{ErrorCode::failed, "it is a folder"};
-    }
+    writer.growth_ = growth;
+    GYROLOG_TRY(ReplacingFile replacing, ReplacingFile::create(path));
+    writer.file_.emplace(std::move(replacing));
     archive* file = archive_write_new();
     writer.archive_.reset(file);
     archive_write_set_format_raw(file);
@@ -106,9 +102,7 @@ Result<TextWriter> TextWriter::create(const std::string& path, TextGrowth growth
     // Without this the file would be filled up to a multiple of a tape's block.
     archive_write_set_bytes_in_last_block(file, 1);
     if (growth == TextGrowth::growing) { archive_write_set_bytes_per_block(file, 0); }
-    const int opened = writer.file_ ? archive_write_open_fd(file, writer.file_->descriptor())
-                                    : archive_write_open_filename(file, path.c_str());
-    if (opened != ARCHIVE_OK) { return error_of(file); }
+    if (archive_write_open_fd(file, writer.file_->descriptor()) != ARCHIVE_OK) { return error_of(file); }
     archive_entry* entry = archive_entry_new();
     archive_entry_set_pathname(entry, "text");
     archive_entry_set_filetype(entry, AE_IFREG);
@@ -119,19 +113,21 @@ Result<TextWriter> TextWriter::create(const std::string& path, TextGrowth growth
 }
 
 Status TextWriter::write(std::string_view text) {
+    if (text.empty()) { return {}; }
     while (!text.empty()) {
         const la_ssize_t bytes = archive_write_data(handle(archive_.get()), text.data(), text.size());
         if (bytes < 0) { return error_of(handle(archive_.get())); }
         text.remove_prefix(static_cast<std::size_t>(bytes));
     }
-    return {};
+    const bool first = !std::exchange(any_text_, true);
+    return first && growth_ == TextGrowth::growing ? file_->take_place() : Status();
 }
 
 Status TextWriter::close() {
     if (archive_write_close(handle(archive_.get())) != ARCHIVE_OK) {
         return error_of(handle(archive_.get()));
     }
-    return file_ ? file_->commit() : Status();
+    return any_text_ || growth_ == TextGrowth::whole ? file_->commit() : Status();
 }
 
 }  // namespace gyrolog

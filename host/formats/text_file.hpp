@@ -32,8 +32,8 @@ private:
 enum class TextGrowth {
     // A ReplacingFile, put in its place by close().
     whole,
-    // Under its own name from the first byte, and handed to the system by every write(): whoever reads it
-    // sees it grow, and a failure leaves what came before.
+    // Under its own name from the first text on, and handed to the system by every write(): whoever reads it
+    // sees it grow, and a failure leaves what came before. Without any text, what was there stays.
     growing,
 };
 
@@ -55,7 +55,9 @@ private:
     };
     TextWriter() = default;
 
-    std::optional<ReplacingFile> file_;  // none for one that grows
+    std::optional<ReplacingFile> file_;
+    TextGrowth growth_ = TextGrowth::whole;
+    bool any_text_ = false;
     std::unique_ptr<void, Close> archive_;
 };
 

@@ -185,6 +185,7 @@ public:
         outcome_.progress.file_bytes = writer_.bytes_written();
         outcome_.progress.connections = connections_;
         outcome_.paths = writer_.paths();
+        outcome_.kept_old = writer_.keeps_old();
         outcome_.transfers_dropped = sink_.transfers_dropped();
         outcome_.bytes_dropped = sink_.bytes_dropped();
         outcome_.queue_high_water_bytes = queue_.high_water_bytes();
@@ -215,6 +216,8 @@ private:
         progress.elapsed_s = seconds_since(start_);
         progress.connections = connections_;
         progress.streaming = control_.streaming();
+        // A link on which nothing comes at all has no times of arrival.
+        progress.silent_s = progress.streaming ? std::max(progress.silent_s, silent_s_) : 0.0;
         return progress;
     }
 
@@ -254,7 +257,8 @@ private:
                 outcome_.error = std::move(obeyed).error();
                 return end(CaptureEnd::device_lost);
             }
-            if (silence_.seconds(sink_.data_transfers()) > request_.idle_timeout_s) {
+            silent_s_ = source_.can_wait() ? 0.0 : silence_.seconds(sink_.data_transfers());
+            if (silent_s_ > request_.idle_timeout_s) {
                 outcome_.error = Error{
                     ErrorCode::device_lost,
                     fmt::format("{}: silent for {:g} s", source_.identity().uri, request_.idle_timeout_s)};
@@ -363,6 +367,7 @@ private:
     unsigned connections_ = 1;
     double tolerated_stall_s_ = 0.0;
     Silence silence_;
+    double silent_s_ = 0.0;
     CaptureOutcome outcome_;
 };
 

@@ -42,6 +42,7 @@ struct CaptureRequest {
     glp_configure configure{};             // zeros: the board keeps its configuration
     double hello_timeout_s = 3.0;
     double idle_timeout_s = 10.0;  // silence that counts as a lost device
+    double silence_s = 2.0;        // without a sample, until the duration is measured by the clock
     std::size_t queue_bytes = std::size_t{16} << 20U;
     CaptureControl* control = nullptr;   // may be null; so may the observer
     SampleObserver* observer = nullptr;  // both must outlive the capture
@@ -73,6 +74,8 @@ struct CaptureProgress {
     std::uint64_t file_bytes = 0;
     std::uint64_t marks = 0;
     bool streaming = true;  // false while the user has stopped the board
+    double silent_s = 0.0;  // since the last sample, while the board streams and the link is alive or not
+    double frozen_s = 0.0;  // how long one reading has come again and again; 0 while that may be chance
     std::optional<glp_hello> hello;
     std::optional<glp_config> config;
 };
@@ -90,12 +93,13 @@ struct CaptureOutcome {
     CaptureProgress progress;
     LinkReport link;
     std::vector<std::string> paths;  // of the files, in order
+    bool kept_old = false;           // no sample came: the file that was to be replaced is as it was
     // Transfers that found the queue full, and their bytes: lost on the host.
     std::uint64_t transfers_dropped = 0;
     std::uint64_t bytes_dropped = 0;
     std::size_t queue_high_water_bytes = 0;
 
-    bool data_lost() const { return !link.complete() || transfers_dropped > 0; }
+    bool data_lost() const { return !link.complete() || transfers_dropped > 0 || link.samples.good == 0; }
 };
 
 // Called some ten times a second on the caller's thread; false ends the capture.
@@ -103,6 +107,7 @@ using CaptureObserver = std::function<bool(const CaptureProgress&)>;
 
 // Errors are those before the stream began: the file could not be made, the source not started, no HELLO
 // came, the board refused the configuration. The file is then removed, unless bytes of the stream are in it.
+// A file that is to be replaced is, when the first samples are there.
 // Once the stream has begun, whatever ends it, the file is closed and readable and the outcome says what
 // happened.
 //

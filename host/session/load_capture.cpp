@@ -46,15 +46,25 @@ public:
 
     Status read(const std::string& path) {
         GYROLOG_TRY(CaptureReader reader, CaptureReader::open(path));
+        std::uint64_t stream_bytes = 0;
+        std::uint64_t gone = 0;
+        const auto hold_against = [&](const std::optional<CaptureCheckpoint>& checkpoint) {
+            if (checkpoint && checkpoint->stream_bytes > stream_bytes) {
+                gone = std::max(gone, checkpoint->stream_bytes - stream_bytes);
+            }
+        };
         while (!enough()) {
             on_stage_("read");
             GYROLOG_TRY(const std::optional<CapturedTransfer> captured, reader.next());
+            hold_against(reader.checkpoint());
             if (!captured) { break; }
+            if (captured->transfer.carries_stream()) { stream_bytes += captured->transfer.data.size(); }
             on_stage_("decode");
             meet_connection(reader.segment());
             take(captured->transfer);
         }
         add(loaded_.file, reader.accounts());
+        loaded_.stream_bytes_gone += gone;
         if (!loaded_.metadata) { loaded_.metadata = reader.metadata(); }
         loaded_.last_checkpoint = reader.checkpoint();
         loaded_.marks.insert(loaded_.marks.end(), reader.marks().begin(), reader.marks().end());

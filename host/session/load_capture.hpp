@@ -21,7 +21,9 @@ struct LoadedCapture {
     std::optional<CaptureMetadata> metadata;  // absent in a foreign capture
     std::optional<CaptureCheckpoint> last_checkpoint;  // of the last file
     std::vector<CaptureMark> marks;                    // in the order of the files
-    HostTime first_data;                               // arrival of the first stream bytes
+    // By the writer's own checkpoints: bytes of the stream that it put into the files and that are not there.
+    std::uint64_t stream_bytes_gone = 0;
+    HostTime first_data;  // arrival of the first stream bytes
     std::unique_ptr<StreamDecoder> decoder;
 };
 

@@ -22,6 +22,7 @@ void WriterThread::resume() {
     config_came_ = false;
     next_index_.reset();
     last_frame_ns_.reset();
+    awaited_from_ns_.reset();
     publish();
     thread_ = std::thread([this] { run(); });
 }
@@ -78,6 +79,9 @@ void WriterThread::take(const Transfer& transfer) {
         last_frame_ns_ = transfer.time.monotonic_ns;
     }
     if (transfer.carries_stream() && !transfer.data.empty()) { last_data_ns_ = transfer.time.monotonic_ns; }
+    if (samples_came_ && !state_.storage_error) {
+        if (Status placed = writer_.take_place(); !placed.ok()) { fail(std::move(placed).error()); }
+    }
     if (begins_anew) {
         started_ = true;
         hello_came_ = false;
@@ -131,6 +135,8 @@ void WriterThread::publish() {
     progress_.path = writer_.paths().back();
     progress_.marks = marks_;
     progress_.rate_hz = plausible_rate_hz();
+    progress_.silent_s = silent_s();
+    progress_.frozen_s = decoder_.liveness().frozen_now_s();
     progress_.hello = decoder_.hello();
     progress_.config = decoder_.config();
     if (latest_ && progress_.config) {
@@ -143,10 +149,35 @@ void WriterThread::publish() {
     state_.has_hello = hello_came_;
     state_.has_config = config_came_;
     state_.frameless_s = last_frame_ns_ ? static_cast<double>(last_data_ns_ - *last_frame_ns_) * 1e-9 : 0.0;
-    state_.enough = (request_.samples && instants >= *request_.samples) ||
-                    (request_.duration_s && progress_.rate_hz &&
-                     static_cast<double>(instants) >= *request_.duration_s * *progress_.rate_hz);
+    state_.enough = enough(instants, progress_.rate_hz);
     changed_.notify_all();
+}
+
+double WriterThread::silent_s() const {
+    return awaited_from_ns_ ? static_cast<double>(last_data_ns_ - *awaited_from_ns_) * 1e-9 : 0.0;
+}
+
+// A duration is of sampling instants as long as there are any, and of the clock when they stay away.
+bool WriterThread::enough(std::uint64_t instants, const std::optional<double>& rate_hz) const {
+    if (request_.samples && instants >= *request_.samples) { return true; }
+    if (!request_.duration_s) { return false; }
+    if (rate_hz && static_cast<double>(instants) >= *request_.duration_s * *rate_hz) { return true; }
+    return first_awaited_ns_ && silent_s() > request_.silence_s &&
+           static_cast<double>(last_data_ns_ - *first_awaited_ns_) * 1e-9 >= *request_.duration_s;
+}
+
+void WriterThread::await_samples(std::int64_t from_ns) {
+    awaited_from_ns_ = from_ns;
+    if (!first_awaited_ns_) { first_awaited_ns_ = from_ns; }
+}
+
+void WriterThread::on_event(const ReceivedFrame& received, const glp_event& event) {
+    if (event.code == glp_event_started) { await_samples(received.arrival.monotonic_ns); }
+    if (event.code == glp_event_stopped) { awaited_from_ns_.reset(); }
+}
+
+void WriterThread::on_status(const ReceivedFrame& received, const glp_device_status& status) {
+    if (status.streaming != 0 && !awaited_from_ns_) { await_samples(received.arrival.monotonic_ns); }
 }
 
 std::optional<double> WriterThread::plausible_rate_hz() const {
@@ -159,6 +190,7 @@ std::optional<double> WriterThread::plausible_rate_hz() const {
 void WriterThread::on_samples(const ReceivedFrame& received, const glp_samples& samples) {
     latest_ = samples;
     latest_->samples = nullptr;
+    samples_came_ = true;
     const bool first = (received.frame.flags & glp_flag_first_after_start) != 0;
     const bool goes_on = next_index_ && !first && samples.first_index >= *next_index_;
     const std::uint64_t gap = goes_on ? samples.first_index - *next_index_ : 0;
@@ -170,6 +202,7 @@ void WriterThread::on_samples(const ReceivedFrame& received, const glp_samples& 
         request_.observer->on_samples(received.frame, samples, *decoder_.config());
     }
     last_samples_ns_ = received.arrival.monotonic_ns;
+    await_samples(last_samples_ns_);
 }
 
 void WriterThread::on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) {

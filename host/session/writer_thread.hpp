@@ -85,6 +85,12 @@ private:
     std::optional<double> plausible_rate_hz() const;
 
     void on_samples(const ReceivedFrame& received, const glp_samples& samples) override;
+    void on_event(const ReceivedFrame& received, const glp_event& event) override;
+    void on_status(const ReceivedFrame& received, const glp_device_status& status) override;
+    void await_samples(std::int64_t from_ns);
+    // By the times of arrival.
+    double silent_s() const;
+    bool enough(std::uint64_t instants, const std::optional<double>& rate_hz) const;
     void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override;
 
     TransferQueue& queue_;
@@ -101,6 +107,7 @@ private:
     bool any_start_ = false;
     bool hello_came_ = false;
     bool config_came_ = false;
+    bool samples_came_ = false;  // in any connection
     std::optional<glp_samples> latest_;
     // Sampling instants that this capture covers, gaps within a run included. A sample's index alone would
     // not do: it counts from the board's start, and a board may have been streaming for hours before the
@@ -110,6 +117,8 @@ private:
     std::int64_t last_samples_ns_ = 0;
     std::optional<std::int64_t> last_frame_ns_;
     std::int64_t last_data_ns_ = 0;
+    std::optional<std::int64_t> awaited_from_ns_;  // the last samples, or the start; none while it is stopped
+    std::optional<std::int64_t> first_awaited_ns_;
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;

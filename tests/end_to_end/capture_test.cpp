@@ -5,12 +5,15 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <tuple>
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "host/capture/block_scanner.hpp"
+#include "host/capture/input_file.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -261,6 +264,120 @@ TEST_F(Capture, ZerosBehindTheEndAreNoFrames) {
     EXPECT_EQ(after["end"], "torn_tail");
     EXPECT_EQ(after["frames"], before["frames"]);
     EXPECT_EQ(after["bytes"], before["bytes"]);
+}
+
+// A board that streams on without samples, or with one and the same: its accounts of the link are in order.
+TEST_F(Capture, ASensorThatFallsSilentIsToldCountedAndNoSuccess) {
+    struct Case {
+        const char* fault;
+        double missing_s_at_least;
+        double missing_s_at_most;
+    };
+    for (const Case& each : {Case{"int_lost@10", 49.9, 50.1}, Case{"int_lost@10..20", 9.9, 10.2},
+                             Case{"sensor_reset@10", 0.1, 1.0}}) {
+        const ProgramResult result = capture(std::string("sim:rate=1000,fault=") + each.fault, "a.pcapng",
+                                             {"--duration", "60s", "--force"});
+        EXPECT_EQ(result.exit_code, 5) << each.fault << result.err;
+        const json answer = check("a.pcapng", 5);
+        const double missing_s = answer["samples"]["missing"].get<double>() / 1000.0;
+        EXPECT_GE(missing_s, each.missing_s_at_least) << each.fault;
+        EXPECT_LE(missing_s, each.missing_s_at_most) << each.fault;
+        EXPECT_EQ(answer["dropouts"][0]["cause"], "data_ready_silent") << each.fault;
+        EXPECT_NEAR(answer["dropouts"][0]["at_s"].get<double>(), 10.0, 0.3) << each.fault;
+    }
+}
+
+TEST_F(Capture, OneReadingAgainAndAgainIsToldCountedAndNoSuccess) {
+    const ProgramResult result =
+        capture("sim:rate=1000,fault=sensor_frozen@10..20", "a.pcapng", {"--duration", "60s"});
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    const json answer = check("a.pcapng", 5);
+    EXPECT_NEAR(answer["samples"]["frozen"].get<double>(), 10'000.0, 300.0);
+    EXPECT_EQ(answer["samples"]["missing"], 0);
+}
+
+// In real time, because it is the user's time that counts.
+TEST_F(Capture, ASilentSensorIsToldWhileItIsSilent) {
+    const ProgramResult silent =
+        capture("sim:rate=1000,realtime=1,fault=int_lost@0.5..3.5", "a.pcapng", {"--duration", "5s"});
+    EXPECT_NE(silent.err.find("no sample for 2 s"), std::string::npos) << silent.err;
+    EXPECT_NE(silent.err.find("samples come again"), std::string::npos) << silent.err;
+    const ProgramResult ends =
+        capture("sim:rate=1000,realtime=1,fault=int_lost@0.5", "b.pcapng", {"--duration", "4s"});
+    EXPECT_NE(ends.err.find("no sample for 2 s"), std::string::npos) << ends.err;
+    EXPECT_EQ(ends.err.find("samples come again"), std::string::npos) << ends.err;
+    const ProgramResult frozen =
+        capture("sim:rate=1000,realtime=1,fault=sensor_frozen@0.5..3.5", "c.pcapng", {"--duration", "5s"});
+    EXPECT_NE(frozen.err.find("one reading comes again and again"), std::string::npos) << frozen.err;
+    EXPECT_NE(frozen.err.find("the readings change again"), std::string::npos) << frozen.err;
+}
+
+TEST_F(Capture, TheSecondHalfOverwrittenIsDamageAndNotATornTail) {
+    ASSERT_EQ(capture("sim:", "a.pcapng", {"--duration", "10m"}).exit_code, 0);
+    const json before = check("a.pcapng");
+    std::string bytes = read_whole_file(folder.path("a.pcapng"));
+    std::mt19937 random(1);
+    for (std::size_t i = bytes.size() / 2; i < bytes.size(); ++i) { bytes[i] = static_cast<char>(random()); }
+    std::ofstream(folder.path("a.pcapng"), std::ios::binary) << bytes;
+    const json after = check("a.pcapng", 5);
+    EXPECT_EQ(after["end"], "damaged");
+    EXPECT_LT(after["samples"]["good"], before["samples"]["good"]);
+    const ProgramResult told = run_gyrolog({"check", folder.path("a.pcapng")});
+    EXPECT_NE(told.out.find("something that was captured is gone"), std::string::npos) << told.out;
+}
+
+// As an editor or a careless copy does: what is left is whole, and the writer's sums say that more was there.
+TEST_F(Capture, BlocksTakenOutAreMissedByTheWritersSums) {
+    ASSERT_EQ(capture("sim:", "a.pcapng", {"--duration", "10m"}).exit_code, 0);
+    const std::uint64_t total = check("a.pcapng")["bytes"]["total"];
+    const std::string path = folder.path("a.pcapng");
+    auto scanned = open_input_file(path);
+    ASSERT_TRUE(scanned.ok());
+    BlockScanner scanner(*std::move(scanned));
+    std::string kept;
+    for (int i = 0;; ++i) {
+        const auto block = scanner.next();
+        ASSERT_TRUE(block.ok());
+        if (!*block) { break; }
+        if (i >= 40 && i < 50) { continue; }
+        kept.append((*block)->bytes.begin(), (*block)->bytes.end());
+    }
+    std::ofstream(path, std::ios::binary) << kept;
+    const json after = check("a.pcapng", 5);
+    EXPECT_EQ(after["end"], "clean");
+    EXPECT_GT(after["bytes"]["gone"], 0);
+    EXPECT_EQ(after["bytes"]["gone"].get<std::uint64_t>() + after["bytes"]["total"].get<std::uint64_t>(),
+              total);
+}
+
+TEST_F(Capture, AFileThatWasNotClosedIsNeverGoodWithoutAWord) {
+    ASSERT_EQ(capture("sim:", "a.pcapng", {"--duration", "1m"}).exit_code, 0);
+    const std::string whole = read_whole_file(folder.path("a.pcapng"));
+    std::ofstream(folder.path("a.pcapng"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+    const ProgramResult torn = run_gyrolog({"check", folder.path("a.pcapng")});
+    EXPECT_EQ(torn.exit_code, 0);
+    EXPECT_NE(torn.out.find("before the torn tail"), std::string::npos) << torn.out;
+    ASSERT_EQ(
+        run_gyrolog({"recover", folder.path("a.pcapng"), "-o", folder.path("recovered.pcapng")}).exit_code,
+        0);
+    const ProgramResult unclosed = run_gyrolog({"check", folder.path("recovered.pcapng")});
+    EXPECT_EQ(unclosed.exit_code, 0);
+    EXPECT_NE(unclosed.out.find("did not close the file"), std::string::npos) << unclosed.out;
+}
+
+TEST_F(Capture, RecoveryLeavesNoFileWhereItHasNothingToWrite) {
+    std::ofstream(folder.path("noise.pcapng")) << std::string(5000, 'x');
+    const auto recover = [&](const char* from, const std::string& to) {
+        return run_gyrolog({"recover", folder.path(from), "-o", to});
+    };
+    const ProgramResult nothing = recover("noise.pcapng", folder.path("r.pcapng"));
+    EXPECT_EQ(nothing.exit_code, 1) << nothing.err;
+    EXPECT_NE(nothing.err.find("noise.pcapng"), std::string::npos) << nothing.err;
+    EXPECT_FALSE(fs::exists(folder.path("r.pcapng")));
+    ASSERT_EQ(capture("sim:", "a.pcapng", {"--duration", "1m"}).exit_code, 0);
+    std::ofstream(folder.path("precious.pcapng")) << "precious";
+    EXPECT_EQ(recover("a.pcapng", folder.path("precious.pcapng")).exit_code, 2);
+    EXPECT_EQ(read_whole_file(folder.path("precious.pcapng")), "precious");
 }
 
 TEST_F(Capture, TheBareProgramCapturesUntilInterruptedAndThenAnalyses) {

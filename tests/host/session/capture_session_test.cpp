@@ -1,7 +1,6 @@
 #include "host/session/capture_session.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -9,13 +8,13 @@
 #include <gtest/gtest.h>
 #include <gyrolog_protocol/cobs.h>
 #include <gyrolog_protocol/crc.h>
-#include <sys/resource.h>
 
 #include "host/capture/capture_reader.hpp"
 #include "host/session/load_capture.hpp"
 #include "host/transport/replay_source.hpp"
 #include "host/virtual_board/breached_source.hpp"
 #include "tests/host/session/board_source.hpp"
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -37,27 +36,6 @@ Bytes frame_of_major_version(std::uint8_t major) {
     wire.resize(encoded.size + 2);
     return wire;
 }
-
-// The size that a file may have, for as long as this object lives: a disk that fills up.
-class FileSizeLimit {
-public:
-    explicit FileSizeLimit(rlim_t size_bytes) {
-        previous_handler_ = std::signal(SIGXFSZ, SIG_IGN);
-        EXPECT_EQ(getrlimit(RLIMIT_FSIZE, &previous_), 0);
-        const rlimit limited{size_bytes, previous_.rlim_max};
-        EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &limited), 0);
-    }
-    FileSizeLimit(const FileSizeLimit&) = delete;
-    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-    ~FileSizeLimit() {
-        setrlimit(RLIMIT_FSIZE, &previous_);
-        std::signal(SIGXFSZ, previous_handler_);
-    }
-
-private:
-    rlimit previous_{};
-    void (*previous_handler_)(int) = SIG_DFL;
-};
 
 class CaptureSession : public testing::Test {
 protected:
@@ -436,6 +414,84 @@ TEST_F(CaptureSession, AnAnswerIsFoundAmongAFloodOfOthers) {
     EXPECT_EQ(outcome->end, CaptureEnd::complete);
     EXPECT_EQ(outcome->progress.config->rate_mHz, 500'000U);
     EXPECT_EQ(outcome->link.samples.missing, 0U);
+}
+
+// Of firmware that does not count what its sensor fails to give.
+void never_samples(BreachedLine& line, RawFrame& frame) {
+    if (frame.type == glp_frame_samples) { return; }
+    if (frame.type == glp_frame_status) {
+        const glp_frame seen{frame.type, frame.flags, 0, frame.payload.data(), frame.payload.size()};
+        glp_device_status status{};
+        ASSERT_EQ(glp_device_status_read(&seen, &status), glp_status_ok);
+        status.next_index = 0;
+        ASSERT_EQ(glp_device_status_write(&status, frame.payload.data(), frame.payload.size()),
+                  frame.payload.size());
+    }
+    line.send(frame);
+}
+void samples_for_a_second(BreachedLine& line, RawFrame& frame) {
+    if (frame.type != glp_frame_samples || ++line.noted <= 25) { line.send(frame); }
+}
+
+TEST_F(CaptureSession, BoardThatNeverSamplesEndsByTheClockAndIsNoSuccess) {
+    const Breach breach = frames_by(never_samples);
+    const auto source = tampered({}, breach);
+    request_.silence_s = 0.2;
+    request_.duration_s = 0.6;
+    double silent_s = 0.0;
+    const auto outcome = capture(*source, [&](const CaptureProgress& progress) {
+        silent_s = std::max(silent_s, progress.silent_s);
+        return true;
+    });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_GT(silent_s, 0.2);
+    EXPECT_EQ(outcome->link.samples.good, 0U);
+    EXPECT_GT(outcome->link.samples.missing, 0U);
+    EXPECT_TRUE(outcome->data_lost());
+    EXPECT_FALSE(loaded().decoder->report().complete());
+}
+
+TEST_F(CaptureSession, SamplesThatStopEndByTheClockAndAreNoSuccess) {
+    const Breach breach = frames_by(samples_for_a_second);
+    const auto source = tampered({}, breach);
+    request_.silence_s = 0.2;
+    request_.duration_s = 5.0;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::complete);
+    EXPECT_GT(outcome->link.samples.good, 500U);
+    EXPECT_LT(outcome->link.samples.good, 2000U);
+    EXPECT_GT(outcome->link.samples.missing, 10'000U) << "board time runs twenty times as fast";
+    EXPECT_TRUE(outcome->data_lost());
+}
+
+TEST_F(CaptureSession, OldFileStaysUntilTheNewOneHasSamples) {
+    std::ofstream(request_.path) << "last night's";
+    request_.overwrite = true;
+    {
+        const auto source = BoardSource::create({.speaks_instead = Bytes{}});
+        request_.hello_timeout_s = 0.3;
+        EXPECT_FALSE(capture(*source).ok());
+        EXPECT_EQ(read_whole_file(request_.path), "last night's") << "no board answered";
+    }
+    request_.hello_timeout_s = 5.0;
+    {
+        const Breach breach = frames_by(never_samples);
+        const auto source = tampered({}, breach);
+        request_.silence_s = 0.1;
+        request_.duration_s = 0.2;
+        const auto outcome = capture(*source);
+        ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+        EXPECT_TRUE(outcome->kept_old);
+        EXPECT_EQ(read_whole_file(request_.path), "last night's") << "no sample came";
+    }
+    const auto source = BoardSource::create({});
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_FALSE(outcome->kept_old);
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path("")), {}), 1) << "and no other";
 }
 
 void turns_to_noise(BreachedLine& line, RawFrame& frame) {
