@@ -24,7 +24,12 @@ namespace {
 class BoardCapture {
 public:
     BoardCapture(OpenedSource opened, CaptureRequest request)
-        : opened_(std::move(opened)), request_(std::move(request)) {}
+        : opened_(std::move(opened)), request_(std::move(request)), limited_(request_.has_limit()) {
+        if (opened_.keeps_limit) {
+            request_.duration_s.reset();
+            request_.samples.reset();
+        }
+    }
     ~BoardCapture() {
         stop();
         join();
@@ -58,11 +63,13 @@ public:
         const std::lock_guard lock(mutex_);
         return outcome_.has_value();
     }
+    bool limited() const { return limited_; }
     const Result<CaptureOutcome>& outcome() const { return *outcome_; }  // after join()
 
 private:
     OpenedSource opened_;
     CaptureRequest request_;
+    bool limited_;
     std::atomic<bool> stop_wanted_{false};
     mutable std::mutex mutex_;
     CaptureProgress progress_;
@@ -94,7 +101,13 @@ ExitCode graver(ExitCode a, ExitCode b) {
     constexpr std::array order{ExitCode::ok,       ExitCode::data_lost, ExitCode::device_lost,
                                ExitCode::failed,   ExitCode::no_device, ExitCode::usage,
                                ExitCode::disk_full};
-    return std::ranges::find(order, a) > std::ranges::find(order, b) ? a : b;
+    // A signal that came before the end is no news beside any of these.
+    const auto rank = [&](ExitCode code) {
+        const auto place = std::ranges::find(order, code);
+        if (place == order.end()) { return 1.0; }
+        return code == ExitCode::ok ? 0.0 : 1.0 + static_cast<double>(place - order.begin());
+    };
+    return rank(a) > rank(b) ? a : b;
 }
 
 Result<Boards> open_all(const CaptureOptions& options, const std::vector<std::string>& devices,
@@ -123,10 +136,6 @@ Result<Boards> open_all(const CaptureOptions& options, const std::vector<std::st
         own.path = path_of_board(path, serials[i], alone ? 0U : static_cast<unsigned>(i) + 1U);
         const NamedPath written[] = {{"--output", own.path}};
         GYROLOG_CHECK(check_output_paths(read, written));
-        if (opened[i].keeps_limit) {
-            own.duration_s.reset();
-            own.samples.reset();
-        }
         boards.push_back(std::make_unique<BoardCapture>(std::move(opened[i]), std::move(own)));
     }
     return boards;
@@ -173,7 +182,8 @@ ExitCode capture_boards(Console& console, const char* command, const CaptureOpti
     ExitCode code = ExitCode::ok;
     for (const auto& board : boards) {
         board->join();
-        code = graver(code, tell_outcome(console, command, board->outcome(), board->path()).code);
+        code = graver(code,
+                      tell_outcome(console, command, board->outcome(), board->path(), board->limited()).code);
     }
     return code;
 }

@@ -202,6 +202,7 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
 
 CaptureResult capture_source_to_file(Console& console, const char* command, OpenedSource opened,
                                      CaptureRequest request, bool real_time, LiveDenoise* denoise) {
+    const bool limited = request.has_limit();
     if (opened.keeps_limit) {
         request.duration_s.reset();
         request.samples.reset();
@@ -211,13 +212,13 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
                 << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n" : "\n");
     if (denoise != nullptr) { console.err << "  " << denoise->announcement() << '\n'; }
     const auto outcome = watch_capture(console, source, request, denoise);
-    CaptureResult result = tell_outcome(console, command, outcome, request.path);
+    CaptureResult result = tell_outcome(console, command, outcome, request.path, limited);
     if (denoise != nullptr && result.file_written) { sum_up_denoising(console, command, *denoise, result); }
     return result;
 }
 
 CaptureResult tell_outcome(Console& console, const char* command, const Result<CaptureOutcome>& outcome,
-                           const std::string& path) {
+                           const std::string& path, bool limited) {
     CaptureResult result;
     if (!outcome.ok()) {
         report_error(console, command, outcome.error());
@@ -240,6 +241,11 @@ CaptureResult tell_outcome(Console& console, const char* command, const Result<C
         console.err << program_and(command) << ": not one sample came; '" << path << "' is as it was\n";
     } else {
         sum_up(console, *outcome, result.link, path);
+    }
+    if (limited && outcome->end == CaptureEnd::interrupted && console.stop_wanted()) {
+        console.err << fmt::format("  ended by a signal ({}) before all that was asked for was there\n",
+                                   console.signal->load());
+        if (result.code == ExitCode::ok) { result.code = ended_by_signal(console.signal->load()); }
     }
     return result;
 }

@@ -25,8 +25,9 @@ CaptureResult capture_to_file(Console& console, const char* command, const Captu
 CaptureResult capture_source_to_file(Console& console, const char* command, OpenedSource opened,
                                      CaptureRequest request, bool real_time, LiveDenoise* denoise = nullptr);
 
-// What came of a capture to this path, said on `err`.
+// What came of a capture to this path, said on `err`. `limited`: a duration or a number of samples was asked
+// for, so that a signal is no end like any other.
 CaptureResult tell_outcome(Console& console, const char* command, const Result<CaptureOutcome>& outcome,
-                           const std::string& path);
+                           const std::string& path, bool limited);
 
 }  // namespace gyrolog

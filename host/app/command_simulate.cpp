@@ -246,8 +246,8 @@ ExitCode make_text(Console& console, const SimulateOptions& options, Story& stor
     tell(console, options, story, *outcome);
     ResultOutput results(console);
     results.json(options.json, [&] { return answer(options, story, *outcome); });
-    const Status written = results.finish();
-    return written.ok() ? ExitCode::ok : fail(written.error());
+    if (const Status written = results.finish(); !written.ok()) { return fail(written.error()); }
+    return outcome->interrupted ? ended_by_signal(console.signal->load()) : ExitCode::ok;
 }
 
 ExitCode make_capture(Console& console, const SimulateOptions& options, const Story& story) {
@@ -256,8 +256,8 @@ ExitCode make_capture(Console& console, const SimulateOptions& options, const St
     board.rate_hz = options.rate_hz;
     board.model_path = options.model;
     board.text = fmt::format("model={},seed={}", options.model, options.seed);
-    auto source = SimSource::create(board, story.file.model,
-                                    {std::nullopt, story.duration_s.value_or(duration_without_wish_s)});
+    const double duration_s = story.duration_s.value_or(duration_without_wish_s);
+    auto source = SimSource::create(board, story.file.model, {std::nullopt, duration_s});
     if (!source.ok()) { return report_error(console, "simulate", source.error()); }
     if (const Status written = write_unit(console, options, story.file.model); !written.ok()) {
         return report_error(console, "simulate", written.error());
@@ -265,6 +265,7 @@ ExitCode make_capture(Console& console, const SimulateOptions& options, const St
     CaptureRequest request;
     request.path = options.output;
     request.overwrite = options.force;
+    request.duration_s = duration_s;
     const CaptureResult result =
         capture_source_to_file(console, "simulate", {std::move(source).value(), true}, request, false);
     if (!result.file_written) { return result.code; }

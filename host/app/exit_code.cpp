@@ -2,6 +2,11 @@
 
 namespace gyrolog {
 
+ExitCode ended_by_signal(int number) {
+    constexpr int of_a_shell = 128;
+    return static_cast<ExitCode>(of_a_shell + number);
+}
+
 ExitCode exit_code_of(const Error& error) {
     switch (error.code) {
         case ErrorCode::invalid_argument:

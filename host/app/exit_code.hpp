@@ -14,7 +14,10 @@ enum class ExitCode : int {
     data_lost = 5,       // done, but samples or bytes are missing; the report counts them
     disk_full = 6,       // the file is closed and readable up to that point
     not_conforming = 7,  // the device breaks a rule of the protocol
+    // 128 + n: signal n ended it before it was done, as a shell tells of it; what is written is whole
 };
+
+ExitCode ended_by_signal(int number);
 
 ExitCode exit_code_of(const Error& error);
 // The same while a device is being opened: one that cannot be had, for whatever reason, is "no device" to a

@@ -53,6 +53,8 @@ struct CaptureRequest {
     std::optional<double> rotate_s;
     std::uint64_t min_free_bytes = 0;
     Disk* disk = nullptr;  // null: the computer's
+
+    bool has_limit() const { return duration_s.has_value() || samples.has_value(); }
 };
 
 struct CaptureProgress {

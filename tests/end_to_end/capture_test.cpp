@@ -266,6 +266,24 @@ TEST_F(Capture, ZerosBehindTheEndAreNoFrames) {
     EXPECT_EQ(after["bytes"], before["bytes"]);
 }
 
+// Told how long, a signal is no end like any other; without, it is the end that was meant.
+TEST_F(Capture, AnEndBeforeTheTimeIsToldByTheExitStatusAndTheFileIsWhole) {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        for (const bool limited : {true, false}) {
+            std::vector<std::string> command{
+                "capture", "--device", "sim:rate=100,realtime=1", "-o", folder.path("a.pcapng"), "--force"};
+            if (limited) { command.insert(command.end(), {"--duration", "1h"}); }
+            const ProgramResult result =
+                run_gyrolog_and_signal(command, std::chrono::milliseconds(700), number);
+            EXPECT_EQ(result.exit_code, limited ? 128 + number : 0) << result.err;
+            EXPECT_EQ(result.err.find("before all that was asked for") != std::string::npos, limited)
+                << result.err;
+            EXPECT_EQ(check("a.pcapng")["end"], "clean");
+            EXPECT_GT(check("a.pcapng")["samples"]["good"], 20);
+        }
+    }
+}
+
 // A board that streams on without samples, or with one and the same: its accounts of the link are in order.
 TEST_F(Capture, ASensorThatFallsSilentIsToldCountedAndNoSuccess) {
     struct Case {

@@ -4,7 +4,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -68,6 +70,14 @@ public:
         EXPECT_EQ(tcgetattr(line_, &mode), 0);
         return (mode.c_lflag & static_cast<tcflag_t>(ECHO)) != 0;
     }
+    void set_echo(bool echo) {
+        termios mode{};
+        EXPECT_EQ(tcgetattr(line_, &mode), 0);
+        const auto line = static_cast<tcflag_t>(ECHO | ICANON);
+        mode.c_lflag = echo ? mode.c_lflag | line : mode.c_lflag & ~line;
+        EXPECT_EQ(tcsetattr(line_, TCSANOW, &mode), 0);
+    }
+    void send(int signal) const { EXPECT_EQ(kill(child_, signal), 0); }
     int wait() {
         while (read_more()) {}
         int status = 0;
@@ -149,6 +159,40 @@ TEST_F(LiveTerminal, EndsByItsKeyAndLeavesTheTerminalAsItWas) {
     EXPECT_TRUE(terminal.shows("live.pcapng: ")) << terminal.screen();
     EXPECT_TRUE(terminal.echoes());
     EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
+}
+
+// A shell takes the terminal meanwhile, with a mode of its own.
+TEST_F(LiveTerminal, StoppedAndContinuedItTakesItsKeysAgainAndLosesNothing) {
+    Terminal terminal(command());
+    ASSERT_TRUE(terminal.shows("keys:")) << terminal.screen();
+    terminal.send(SIGSTOP);
+    terminal.set_echo(true);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    EXPECT_TRUE(terminal.echoes());
+    terminal.send(SIGCONT);
+    ASSERT_TRUE(terminal.shows("keys:")) << terminal.screen();
+    ASSERT_TRUE(terminal.shows("keys:")) << terminal.screen();
+    EXPECT_FALSE(terminal.echoes());
+    terminal.type("q");
+    EXPECT_TRUE(terminal.shows("live.pcapng: ")) << terminal.screen();
+    EXPECT_TRUE(terminal.echoes());
+    EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
+    const auto capture = load_capture(path, false);
+    ASSERT_TRUE(capture.ok());
+    EXPECT_TRUE(capture->decoder->report().complete());
+}
+
+TEST_F(LiveTerminal, QuitAndAbortGiveTheTerminalBack) {
+    for (const int number : {SIGQUIT, SIGABRT, SIGTERM, SIGHUP}) {
+        Terminal terminal(command());
+        ASSERT_TRUE(terminal.shows("keys:")) << terminal.screen();
+        EXPECT_FALSE(terminal.echoes());
+        terminal.send(number);
+        const bool tidy = number == SIGTERM || number == SIGHUP;
+        EXPECT_EQ(terminal.wait(), tidy ? 0 : 128 + number) << terminal.screen();
+        EXPECT_TRUE(terminal.echoes()) << number;
+        std::filesystem::remove(path);
+    }
 }
 
 TEST_F(LiveTerminal, NothingOfItIsDrawnOffATerminal) {
