@@ -1,7 +1,6 @@
 #include "analysis/diagnose/axis_subsets.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace gyrolog {
 
@@ -16,13 +15,6 @@ std::vector<std::vector<std::size_t>> axis_subsets(std::span<const std::size_t> 
     }
     std::ranges::stable_sort(subsets, {}, [](const auto& subset) { return subset.size(); });
     return subsets;
-}
-
-double log_sum_exp(std::span<const double> terms) {
-    const double most = *std::ranges::max_element(terms);
-    double sum = 0.0;
-    for (const double term : terms) { sum += std::exp(term - most); }
-    return most + std::log(sum);
 }
 
 }  // namespace gyrolog

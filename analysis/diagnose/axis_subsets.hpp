@@ -10,7 +10,4 @@ namespace gyrolog {
 // Every choice of one or more of them, single axes first.
 std::vector<std::vector<std::size_t>> axis_subsets(std::span<const std::size_t> axes);
 
-// ln sum exp(terms)
-double log_sum_exp(std::span<const double> terms);
-
 }  // namespace gyrolog

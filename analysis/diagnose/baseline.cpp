@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/quiet_reference.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/recording_simulator.hpp"

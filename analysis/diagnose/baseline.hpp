@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/response_memory.hpp"
 #include "analysis/diagnose/spectral_bins.hpp"
 #include "analysis/diagnose/uncertain_mean.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/effect_signature.hpp"
 #include "analysis/simulate/recorded_world.hpp"
 #include "analysis/simulate/sensor_model.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 
 namespace gyrolog {
 

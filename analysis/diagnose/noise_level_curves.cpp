@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/diagnose/rarity.hpp"
-#include "analysis/diagnose/repetition.hpp"
+#include "analysis/numerics/repetition.hpp"
+#include "analysis/numerics/tail_probability.hpp"
 
 namespace gyrolog {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/lag_course.hpp"
 #include "analysis/diagnose/white_share.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/counter_random.hpp"
 #include "analysis/simulate/effect_axes.hpp"

@@ -11,6 +11,7 @@
 #include "analysis/diagnose/white_share.hpp"
 #include "analysis/diagnose/whitened_blocks.hpp"
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
 
 namespace gyrolog {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/spectral_bins.hpp"
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 
 namespace gyrolog {
 

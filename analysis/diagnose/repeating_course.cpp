@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "analysis/diagnose/cosine_transform.hpp"
-#include "analysis/diagnose/repetition.hpp"
 #include "analysis/diagnose/rival_noise.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
+#include "analysis/numerics/repetition.hpp"
 
 namespace gyrolog {
 

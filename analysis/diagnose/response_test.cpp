@@ -8,8 +8,8 @@
 #include "analysis/diagnose/axis_fits.hpp"
 #include "analysis/diagnose/effect_response.hpp"
 #include "analysis/diagnose/mean_regression.hpp"
-#include "analysis/diagnose/simplex_search.hpp"
 #include "analysis/diagnose/trial_grid.hpp"
+#include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog {
 

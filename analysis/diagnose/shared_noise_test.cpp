@@ -8,8 +8,8 @@
 
 #include "analysis/diagnose/axis_fits.hpp"
 #include "analysis/diagnose/axis_subsets.hpp"
-#include "analysis/diagnose/simplex_search.hpp"
 #include "analysis/diagnose/white_share.hpp"
+#include "analysis/numerics/simplex_search.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {

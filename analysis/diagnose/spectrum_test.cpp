@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "analysis/diagnose/axis_fits.hpp"
-#include "analysis/diagnose/simplex_search.hpp"
 #include "analysis/diagnose/trial_grid.hpp"
+#include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog {
 

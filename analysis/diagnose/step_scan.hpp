@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 
 namespace gyrolog {
 

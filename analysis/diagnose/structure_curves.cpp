@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/diagnose/rarity.hpp"
 #include "analysis/diagnose/repeat_patterns.hpp"
+#include "analysis/numerics/tail_probability.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {

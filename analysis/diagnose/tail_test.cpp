@@ -10,6 +10,7 @@
 #include "analysis/diagnose/white_distribution.hpp"
 #include "analysis/diagnose/white_share.hpp"
 #include "analysis/diagnose/whitened_blocks.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
 
 namespace gyrolog {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analysis/diagnose/axis_fits.hpp"
-#include "analysis/diagnose/simplex_search.hpp"
 #include "analysis/diagnose/telegraph_filter.hpp"
+#include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog {
 

@@ -7,10 +7,11 @@
 #include <numeric>
 
 #include "analysis/diagnose/axis_subsets.hpp"
-#include "analysis/diagnose/simplex_search.hpp"
 #include "analysis/diagnose/variance_fit.hpp"
 #include "analysis/diagnose/white_distribution.hpp"
 #include "analysis/diagnose/white_share.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
+#include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "analysis/diagnose/baseline.hpp"
-#include "analysis/diagnose/normal_mixture.hpp"
 #include "analysis/diagnose/whitened_blocks.hpp"
+#include "analysis/numerics/normal_mixture.hpp"
 
 namespace gyrolog {
 

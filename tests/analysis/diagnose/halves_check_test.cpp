@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/catalogue.hpp"
-#include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/steady_line.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/counter_random.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/cosine_transform.hpp"
 #include "analysis/diagnose/spectrum_test.hpp"
 #include "analysis/diagnose/step_scan.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/counter_random.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 

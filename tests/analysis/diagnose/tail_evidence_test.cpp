@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/normal_mixture.hpp"
 #include "analysis/diagnose/outlier_test.hpp"
 #include "analysis/diagnose/tail_test.hpp"
 #include "analysis/diagnose/variance_course_test.hpp"
 #include "analysis/diagnose/white_share.hpp"
+#include "analysis/numerics/normal_mixture.hpp"
 #include "tests/analysis/diagnose/white_noise_case.hpp"
 
 namespace gyrolog {

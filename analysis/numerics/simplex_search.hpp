@@ -1,5 +1,5 @@
-// Maximum of a function of a few variables without derivatives: the simplex method of J. A. Nelder and
-// R. Mead, Computer Journal 7 (1965) 308-313.
+// The simplex method finds the maximum of a function of a few variables without derivatives (J. A. Nelder, R.
+// Mead, Computer Journal 7 (1965) 308-313).
 #pragma once
 
 #include <functional>
@@ -12,9 +12,9 @@ struct SimplexMaximum {
     double value = 0.0;
 };
 
-// `step`: first size of the simplex in each variable. Ends when the values at the corners differ by less than
-// `tolerance`, or after `most` evaluations. The function may return -infinity where it is not defined, but
-// not at `start`.
+// `step` is the first size of the simplex in each variable. The search ends when the values at the corners
+// differ by less than `tolerance`, or after `most` evaluations. The function may return -infinity where it is
+// not defined, but not at `start`.
 SimplexMaximum simplex_maximum(const std::function<double(const std::vector<double>&)>& function,
                                const std::vector<double>& start, double step, double tolerance,
                                int most = 400);

@@ -1,4 +1,4 @@
-#include "analysis/diagnose/simplex_search.hpp"
+#include "analysis/numerics/simplex_search.hpp"
 
 #include <algorithm>
 

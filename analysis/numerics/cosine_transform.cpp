@@ -1,11 +1,10 @@
-#include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <unsupported/Eigen/FFT>
 #include <vector>
-
-#include "analysis/noise/noise_model.hpp"
 
 namespace gyrolog {
 
@@ -27,7 +26,8 @@ struct CosineTransform::Plan {
     explicit Plan(std::size_t length) : reordered(length), spectrum(length / 2 + 1), turn(length / 2 + 1) {
         fft.SetFlag(Eigen::FFT<Real>::HalfSpectrum);
         for (std::size_t k = 0; k < turn.size(); ++k) {
-            const double angle = -pi * static_cast<double>(k) / (2.0 * static_cast<double>(length));
+            const double angle =
+                -std::numbers::pi * static_cast<double>(k) / (2.0 * static_cast<double>(length));
             turn[k] = {static_cast<Real>(std::cos(angle)), static_cast<Real>(std::sin(angle))};
         }
     }

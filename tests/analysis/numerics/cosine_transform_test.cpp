@@ -1,4 +1,4 @@
-#include "analysis/diagnose/cosine_transform.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
 
 #include <cmath>
 #include <span>

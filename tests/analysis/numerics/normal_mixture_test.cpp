@@ -1,4 +1,4 @@
-#include "analysis/diagnose/normal_mixture.hpp"
+#include "analysis/numerics/normal_mixture.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "analysis/diagnose/repetition.hpp"
+#include "analysis/numerics/repetition.hpp"
 
 #include <algorithm>
 #include <cmath>

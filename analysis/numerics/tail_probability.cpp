@@ -1,4 +1,4 @@
-#include "analysis/diagnose/rarity.hpp"
+#include "analysis/numerics/tail_probability.hpp"
 
 #include <algorithm>
 #include <cmath>

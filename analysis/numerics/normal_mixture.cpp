@@ -1,11 +1,10 @@
-#include "analysis/diagnose/normal_mixture.hpp"
+#include "analysis/numerics/normal_mixture.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "analysis/noise/noise_model.hpp"
+#include <numbers>
 
 namespace gyrolog {
 
@@ -81,7 +80,7 @@ double NormalMixture::log_density(double x) const {
             most = term;
         }
     }
-    return most + std::log(sum) - 0.5 * std::log(2.0 * pi);
+    return most + std::log(sum) - 0.5 * std::log(2.0 * std::numbers::pi);
 }
 
 double NormalMixture::probability_below(double x) const {
