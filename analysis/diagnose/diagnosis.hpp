@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnose/calibration/halves_result.hpp"
 #include "analysis/diagnose/finding.hpp"
-#include "analysis/diagnose/halves_result.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "analysis/diagnose/baseline.hpp"
-#include "analysis/diagnose/long_diagnosis.hpp"
+#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "host/app/quantity.hpp"
 
 namespace gyrolog {

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "analysis/diagnose/diagnosis.hpp"
-#include "analysis/diagnose/long_diagnosis.hpp"
-#include "analysis/diagnose/means_model.hpp"
+#include "analysis/diagnose/multiscale/long_diagnosis.hpp"
+#include "analysis/diagnose/multiscale/means_model.hpp"
 #include "host/app/command.hpp"
 #include "host/app/diagnosis_input.hpp"
 #include "host/app/diagnosis_output.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/diagnose/gap_measure.hpp"
+#include "analysis/diagnose/calibration/gap_measure.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "host/formats/effect_words.hpp"

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/diagnose/effect_test.hpp"
+#include "analysis/diagnose/estimators/effect_test.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 #include "tests/analysis/simulate/simulated.hpp"

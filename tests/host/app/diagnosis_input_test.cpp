@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/baseline.hpp"
-#include "analysis/diagnose/long_diagnosis.hpp"
+#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {

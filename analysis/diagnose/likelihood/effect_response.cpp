@@ -1,0 +1,59 @@
+#include "analysis/diagnose/likelihood/effect_response.hpp"
+
+#include <algorithm>
+
+#include "analysis/numerics/cosine_transform.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+std::vector<float> cosines_of(std::vector<double>& work, std::size_t kept, CosineTransform& transform) {
+    transform.forward(work);
+    work[0] = 0.0;
+    return {work.begin(), work.begin() + static_cast<std::ptrdiff_t>(kept)};
+}
+
+std::array<std::vector<float>, 3> simulated_response(const Baseline& baseline, const EffectModel& effect,
+                                                     bool slow) {
+    // A slow response is a drift of the bias: any sensor at rest shows it.
+    SensorModel without = slow ? SensorModel{} : baseline.model();
+    if (slow) {
+        without.rate_hz = baseline.model().rate_hz;
+        without.full_scale_rad_s = without.saturation_rad_s = 1e6;
+    }
+    SensorModel with = without;
+    with.effects.push_back(effect);
+    const std::shared_ptr<const RecordedWorld> world =
+        slow ? baseline.shared_world() : baseline.quiet_world();
+    const auto changed = noise_free_response(baseline, world, with);
+    const auto unchanged =
+        slow ? noise_free_response(baseline, without) : std::array<std::vector<float>, 3>{};
+    const std::size_t kept = slow ? std::min(slow_coefficients, baseline.length()) : baseline.length();
+    const TransformPool::Lease transform = baseline.transform();
+    std::vector<double> work(baseline.length());
+    std::array<std::vector<float>, 3> cosines;
+    for (const std::size_t axis : baseline.axes()) {
+        if (slow && axis != baseline.axes().front()) {
+            cosines[axis] = cosines[baseline.axes().front()];
+            continue;
+        }
+        const std::vector<float>& before = slow ? unchanged[axis] : baseline.quiet_response_rad_s(axis);
+        for (std::size_t slot = 0; slot < work.size(); ++slot) {
+            work[slot] = static_cast<double>(changed[axis][slot]) - static_cast<double>(before[slot]);
+        }
+        cosines[axis] = cosines_of(work, kept, *transform);
+    }
+    return cosines;
+}
+
+}  // namespace
+
+std::array<std::vector<float>, 3> effect_response(const Baseline& baseline, const EffectModel& effect,
+                                                  bool slow) {
+    if (!slow) { return simulated_response(baseline, effect, slow); }
+    return baseline.memory().recall({effect.effect, effect.params},
+                                    [&] { return simulated_response(baseline, effect, slow); });
+}
+
+}  // namespace gyrolog

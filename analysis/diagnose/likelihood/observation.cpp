@@ -1,0 +1,335 @@
+#include "analysis/diagnose/likelihood/observation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/diagnose/likelihood/lag_course.hpp"
+#include "analysis/diagnose/likelihood/white_share.hpp"
+#include "analysis/numerics/cosine_transform.hpp"
+#include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/counter_random.hpp"
+#include "analysis/simulate/effect_axes.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr std::uint32_t stand_in_stream = 0x03000000;
+constexpr std::uint32_t reference_stream = 0x05000000;
+
+// In motion, of the recording.
+constexpr double unknown_start_s = 0.1;
+
+// Calls take(slot, row) for every row on the grid.
+template <typename Take>
+void for_each_slot(const std::vector<Segment>& segments, std::int64_t origin, std::size_t length, Take take) {
+    for (const Segment& segment : segments) {
+        for (std::size_t i = 0; i < segment.count; ++i) {
+            const auto slot = static_cast<std::size_t>(segment.first_index - origin) + i;
+            if (slot >= length) { return; }
+            take(slot, segment.first + i);
+        }
+    }
+}
+
+std::vector<bool> judged_rows(const Recording& recording, const SensorModel& model) {
+    std::vector<bool> judged(recording.rows(), true);
+    for (const EffectModel& entry : model.effects) {
+        const EffectSignature* signature = find_effect(entry.effect)->signature;
+        if (signature == nullptr || signature->unjudged == nullptr) { continue; }
+        signature->unjudged(recording, entry, judged);
+    }
+    return judged;
+}
+
+// Where the rows belong on the grid: where their stamps have them, or where the motion has them if the model
+// knows of losses that the stamps hide.
+std::vector<Segment> placed_rows(const Baseline& baseline, const Recording& recording) {
+    const bool hidden = std::ranges::any_of(baseline.model().effects, [](const EffectModel& entry) {
+        const EffectSignature* signature = find_effect(entry.effect)->signature;
+        return signature != nullptr && signature->hides_losses != nullptr &&
+               signature->hides_losses(EffectValues(entry));
+    });
+    if (!hidden || !baseline.moves()) { return recording.segments; }
+    const std::int64_t origin = baseline.world().recording().segments.front().first_index;
+    std::vector<Segment> placed;
+    std::int64_t late = 0;
+    const std::vector<LagStep> steps = LagCourse(baseline, recording).steps();
+    auto step = steps.begin();
+    for (Segment segment : recording.segments) {
+        for (; step != steps.end(); ++step) {
+            const std::int64_t before = origin + static_cast<std::int64_t>(step->slot) - segment.first_index;
+            if (before >= static_cast<std::int64_t>(segment.count)) { break; }
+            const std::size_t count = before > 0 ? static_cast<std::size_t>(before) : 0;
+            if (count > 0) { placed.push_back({segment.first, count, segment.first_index + late}); }
+            segment = {segment.first + count, segment.count - count,
+                       segment.first_index + static_cast<std::int64_t>(count)};
+            late += step->samples;
+        }
+        placed.push_back({segment.first, segment.count, segment.first_index + late});
+    }
+    return placed;
+}
+
+// How many samples on either side say what the level in a hole is: so many that what they have in common with
+// the stand-ins is slower than the white noise reaches.
+constexpr std::size_t level_samples = 256;
+
+double mean_of_present(const std::vector<float>& values, const std::vector<bool>& present, std::size_t from,
+                       bool backwards) {
+    double sum = 0.0;
+    double count = 0.0;
+    const std::size_t reach = 2 * level_samples;
+    for (std::size_t i = 0; i < reach && count < static_cast<double>(level_samples); ++i) {
+        if (backwards ? i > from : from + i >= values.size()) { break; }
+        const std::size_t slot = backwards ? from - i : from + i;
+        if (!present[slot]) { continue; }
+        sum += static_cast<double>(values[slot]);
+        count += 1.0;
+    }
+    return count > 0.0 ? sum / count : std::nan("");
+}
+
+// Between the levels on either side of every hole a straight line, with white noise on it.
+void fill_holes(std::vector<float>& values, const std::vector<bool>& present, double sd,
+                const RandomStream& noise) {
+    const std::size_t length = values.size();
+    for (std::size_t begin = 0; begin < length;) {
+        if (present[begin]) {
+            ++begin;
+            continue;
+        }
+        std::size_t end = begin;
+        while (end < length && !present[end]) { ++end; }
+        double before = begin > 0 ? mean_of_present(values, present, begin - 1, true) : std::nan("");
+        double after = end < length ? mean_of_present(values, present, end, false) : std::nan("");
+        if (std::isnan(before)) { before = std::isnan(after) ? 0.0 : after; }
+        if (std::isnan(after)) { after = before; }
+        // Next to a short hole both levels are those of one place.
+        const bool is_short = end - begin <= level_samples;
+        for (std::size_t slot = begin; slot < end; ++slot) {
+            const double share =
+                is_short ? 0.5 : static_cast<double>(slot - begin + 1) / static_cast<double>(end - begin + 1);
+            values[slot] = static_cast<float>(before + share * (after - before) + sd * noise.normal(slot));
+        }
+        begin = end;
+    }
+}
+
+// Returns the mean.
+double take_mean_off(std::vector<float>& values, const std::vector<bool>& present) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t slot = 0; slot < values.size(); ++slot) {
+        if (!present[slot]) { continue; }
+        sum += static_cast<double>(values[slot]);
+        ++count;
+    }
+    const auto mean = static_cast<float>(count > 0 ? sum / static_cast<double>(count) : 0.0);
+    for (std::size_t slot = 0; slot < values.size(); ++slot) {
+        if (present[slot]) { values[slot] -= mean; }
+    }
+    return static_cast<double>(mean);
+}
+
+// Moves the parameters of the model's uncertain responses to their most likely values under the density; what
+// is left has other products and another power.
+void give_way(const Baseline& baseline, std::size_t axis, AxisObservation& seen) {
+    const UncertainMean& uncertain = baseline.uncertain(axis);
+    const BinSums weights = bin_weights(seen.density, baseline.rate_hz());
+    const std::vector<double> step = uncertain.step(weights, seen.uncertain_products, seen.uncertain_fit);
+    BinSums change(weights.size(), 0.0);
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        seen.uncertain_fit[u] += step[u];
+        add_multiple(change, -2.0 * step[u], seen.uncertain_products[u]);
+        for (std::size_t v = 0; v < uncertain.size(); ++v) {
+            add_multiple(change, step[u] * step[v], uncertain.products(u, v));
+        }
+    }
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        for (std::size_t v = 0; v < uncertain.size(); ++v) {
+            add_multiple(seen.uncertain_products[u], -step[v], uncertain.products(u, v));
+        }
+    }
+    for (std::size_t i = 0; i < seen.power.size(); ++i) {
+        const double by = change[i] / (baseline.bins()[i].count() * baseline.rate_hz());
+        seen.power[i] = std::max(0.0, seen.power[i] + by);
+    }
+}
+
+void take_off(const UncertainMean& uncertain, const std::vector<double>& fit, std::vector<float>& cosines) {
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        const std::vector<float>& response = uncertain[u].cosines;
+        const auto by = static_cast<float>(fit[u]);
+        for (std::size_t k = 1; k < response.size(); ++k) { cosines[k] -= by * response[k]; }
+    }
+}
+
+// By slot.
+std::vector<float> in_time(const UncertainMean& uncertain, const std::vector<double>& parameters,
+                           CosineTransform& transform, std::size_t length) {
+    std::vector<float> cosines(length, 0.0F);
+    take_off(uncertain, parameters, cosines);
+    std::vector<double> work(cosines.begin(), cosines.end());
+    transform.inverse(work);
+    std::vector<float> rates(length);
+    std::ranges::transform(work, rates.begin(), [](double rate) { return static_cast<float>(-rate); });
+    return rates;
+}
+
+// White noise whose level the model has go with time has the same variance throughout afterwards.
+void even_out(const Baseline& baseline, std::size_t axis, std::vector<float>& whitened) {
+    const std::vector<float>& course = baseline.white_course(axis);
+    if (course.empty()) { return; }
+    const double share = white_share(baseline, axis).variance;
+    for (std::size_t slot = 0; slot < whitened.size(); ++slot) {
+        const double variance = 1.0 + share * (static_cast<double>(course[slot]) - 1.0);
+        whitened[slot] = static_cast<float>(static_cast<double>(whitened[slot]) / std::sqrt(variance));
+    }
+}
+
+void measure_power(const SpectralBins& bins, double rate_hz, const std::vector<float>& cosines,
+                   std::vector<double>& power) {
+    power.resize(bins.size());
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        double sum = 0.0;
+        for (std::size_t k = bins[i].first; k < bins[i].end; ++k) {
+            const auto coefficient = static_cast<double>(cosines[k]);
+            if (bins[i].has(k)) { sum += coefficient * coefficient; }
+        }
+        power[i] = sum / (bins[i].count() * rate_hz);
+    }
+}
+
+}  // namespace
+
+Observation::Observation(std::shared_ptr<const Baseline> baseline, std::shared_ptr<const Recording> recording,
+                         std::uint64_t seed, ReferenceNoise reference_noise)
+    : baseline_(std::move(baseline)),
+      recording_(std::move(recording)),
+      reference_noise_(reference_noise),
+      segments_(placed_rows(*baseline_, *recording_)) {
+    const std::size_t length = baseline_->length();
+    const std::int64_t origin = baseline_->world().recording().segments.front().first_index;
+    present_.assign(length, false);
+    const std::vector<bool> judged = judged_rows(*recording_, baseline_->model());
+    for_each_slot(segments_, origin, length,
+                  [&](std::size_t slot, std::size_t row) { present_[slot] = judged[row]; });
+    const TransformPool::Lease transform = baseline_->transform();
+    for (const std::size_t axis : baseline_->axes()) { observe(axis, seed, *transform); }
+    // What moved before the recording began is not known, and a sensor that lags shows it.
+    const double unknown_s = baseline_->moves() ? unknown_start_s : 0.0;
+    for (std::size_t slot = 0; slot < length; ++slot) {
+        const bool known = static_cast<double>(slot) >= unknown_s * baseline_->rate_hz();
+        present_[slot] = present_[slot] && known && has_slot(baseline_->half(), slot, length);
+    }
+}
+
+void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
+                                    std::vector<float>& residual_rad_s) const {
+    const bool drawn = reference_noise_ == ReferenceNoise::drawn;
+    const std::vector<float>& expected =
+        drawn ? baseline_->quiet_response_rad_s(axis) : baseline_->response_rad_s(axis);
+    const double drawn_sd_rad_s = drawn ? baseline_->reference_noise_rad_s(axis) : 0.0;
+    const RandomStream noise(seed, reference_stream + static_cast<std::uint32_t>(axis));
+    const Column& column = *recording_->find(gyro_columns[axis]);
+    const std::int64_t origin = baseline_->world().recording().segments.front().first_index;
+    for_each_slot(segments_, origin, residual_rad_s.size(), [&](std::size_t slot, std::size_t row) {
+        double residual = column.value(row) - static_cast<double>(expected[slot]);
+        if (drawn_sd_rad_s > 0.0) { residual -= drawn_sd_rad_s * noise.normal(slot); }
+        residual_rad_s[slot] = static_cast<float>(residual);
+    });
+}
+
+// The noise, and how far the uncertain responses give way.
+void Observation::fit_model(std::size_t axis, CosineTransform& transform) {
+    const Baseline& baseline = *baseline_;
+    AxisObservation& seen = axes_[axis];
+    std::vector<double> work(seen.residual_rad_s.begin(), seen.residual_rad_s.end());
+    transform.forward(work);
+    work[0] = 0.0;
+    seen.cosines.assign(work.begin(), work.end());
+    measure_power(baseline.bins(), baseline.rate_hz(), seen.cosines, seen.power);
+    const std::array<double, 3> sd_rel = noise_uncertainty(baseline.model(), axis);
+    seen.density.resize(baseline.bins().size());
+    const auto fit_noise = [&] {
+        seen.noise = fit_nuisance(baseline.bins(), baseline.parts(axis), seen.power, sd_rel, seen.noise);
+        expected_density(baseline.parts(axis), sd_rel, seen.noise.z, seen.density);
+    };
+    fit_noise();
+    const UncertainMean& uncertain = baseline.uncertain(axis);
+    if (uncertain.empty()) { return; }
+    seen.uncertain_products = uncertain.products_with(baseline.bins(), seen.cosines);
+    seen.uncertain_fit.assign(uncertain.size(), 0.0);
+    // What they explain was noise to the first fit.
+    for (int round = 0; round < 3; ++round) {
+        give_way(baseline, axis, seen);
+        fit_noise();
+    }
+}
+
+void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform) {
+    const Baseline& baseline = *baseline_;
+    const std::size_t length = baseline.length();
+    const double rate_hz = baseline.rate_hz();
+    AxisObservation& seen = axes_[axis];
+    std::vector<float>& residual = seen.residual_rad_s;
+    residual.assign(length, 0.0F);
+    take_expected_off(axis, seed, residual);
+    seen.mean_rad_s = take_mean_off(residual, present_);
+    const double white = baseline.parts(axis).back().sum();
+    const auto fill = [&] {
+        fill_holes(residual, present_, std::sqrt(white * rate_hz),
+                   RandomStream(seed, stand_in_stream + static_cast<std::uint32_t>(axis)));
+    };
+    fill();
+    fit_model(axis, transform);
+    const UncertainMean& uncertain = baseline.uncertain(axis);
+    if (!uncertain.empty()) {
+        // What stands in for a sample follows the motion as the samples do.
+        const bool whole = std::ranges::find(present_, false) == present_.end();
+        for (int round = 0; round < 2 && !whole; ++round) {
+            const std::vector<float> given_way = in_time(uncertain, seen.uncertain_fit, transform, length);
+            for (std::size_t slot = 0; slot < length; ++slot) { residual[slot] -= given_way[slot]; }
+            fill();
+            for (std::size_t slot = 0; slot < length; ++slot) { residual[slot] += given_way[slot]; }
+            fit_model(axis, transform);
+        }
+        take_off(uncertain, seen.uncertain_fit, seen.cosines);
+        std::vector<double> work(seen.cosines.begin(), seen.cosines.end());
+        transform.inverse(work);
+        residual.assign(work.begin(), work.end());
+    }
+    seen.whitened.resize(length);
+    seen.whitened[0] = 0.0F;
+    const SpectralBins& bins = baseline.bins();
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        const auto scale = static_cast<float>(1.0 / std::sqrt(seen.density[i] * rate_hz));
+        // Coefficients of which the half has no bin go with the next one's.
+        const std::size_t first = i == 0 ? 1 : bins[i - 1].end;
+        const std::size_t end = i + 1 == bins.size() ? length : bins[i].end;
+        for (std::size_t k = first; k < end; ++k) { seen.whitened[k] = seen.cosines[k] * scale; }
+    }
+    transform.inverse(std::span<float>(seen.whitened));
+    even_out(baseline, axis, seen.whitened);
+}
+
+double log_likelihood_nats(const Observation& observation) {
+    double nats = 0.0;
+    for (const std::size_t axis : observation.baseline().axes()) {
+        nats += observation.axis(axis).noise.log_likelihood_nats - uncertain_charge_nats(observation, axis);
+    }
+    return nats;
+}
+
+double uncertain_charge_nats(const Observation& observation, std::size_t axis) {
+    const UncertainMean& uncertain = observation.baseline().uncertain(axis);
+    double charge = 0.0;
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        const double z = observation.axis(axis).uncertain_fit[u] / uncertain[u].sd;
+        charge += 0.5 * z * z;
+    }
+    return charge;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,69 @@
+// One recording, real or simulated, against a baseline: what is left of it when the model's noise-free answer
+// is taken off, in the form that likelihoods need.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/likelihood/noise_nuisance.hpp"
+#include "analysis/recording/recording.hpp"
+
+namespace gyrolog {
+
+class CosineTransform;
+
+struct AxisObservation {
+    // By slot, about its mean. Slots without a sample hold a straight line between their neighbours plus
+    // white noise of the model's level, so that the power there is what it is elsewhere.
+    std::vector<float> residual_rad_s;
+    std::vector<float> cosines;               // DCT-II of the residual, Y_0 = 0; rad/s
+    double mean_rad_s = 0.0;                  // that was taken off
+    std::vector<double> uncertain_fit;        // values of Baseline::uncertain() that were taken off
+    std::vector<BinSums> uncertain_products;  // of the coefficients with its responses
+    std::vector<double> power;    // by bin: mean square of the coefficients, over the rate: a density
+    NoiseNuisance noise;          // the model's coefficients, fitted within their uncertainty
+    std::vector<double> density;  // by bin: expected under `noise`
+    // By slot: the inverse transform of Y_k / sqrt(density rate); standard normal and independent where the
+    // model is right.
+    std::vector<float> whitened;
+};
+
+class Observation {
+public:
+    // Where the reference's noise comes from that is in every sample's expectation: from the recording, or,
+    // for what was simulated in the quiet world, from `seed`.
+    enum class ReferenceNoise { recorded, drawn };
+
+    // `recording` covers the baseline's grid (it, or a simulation like it). `seed` for what stands in holes.
+    Observation(std::shared_ptr<const Baseline> baseline, std::shared_ptr<const Recording> recording,
+                std::uint64_t seed, ReferenceNoise reference_noise = ReferenceNoise::recorded);
+
+    const Baseline& baseline() const { return *baseline_; }
+    const Recording& recording() const { return *recording_; }
+    // Of an axis that the baseline has.
+    const AxisObservation& axis(std::size_t axis) const { return axes_[axis]; }
+    // By slot: a sample was there, is to be judged and belongs to the baseline's half.
+    const std::vector<bool>& present() const { return present_; }
+
+private:
+    void observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform);
+    void fit_model(std::size_t axis, CosineTransform& transform);
+    void take_expected_off(std::size_t axis, std::uint64_t seed, std::vector<float>& residual_rad_s) const;
+
+    std::shared_ptr<const Baseline> baseline_;
+    std::shared_ptr<const Recording> recording_;
+    ReferenceNoise reference_noise_;
+    std::vector<Segment> segments_;  // where its rows belong on the grid
+    std::vector<bool> present_;
+    std::array<AxisObservation, 3> axes_;
+};
+
+// Of the spectra, with the priors of all that was fitted.
+double log_likelihood_nats(const Observation& observation);
+// What the priors of the model's uncertain responses charge for the values they were fitted at.
+double uncertain_charge_nats(const Observation& observation, std::size_t axis);
+
+}  // namespace gyrolog

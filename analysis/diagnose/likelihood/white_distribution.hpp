@@ -1,0 +1,27 @@
+// How the white noise of an axis is distributed by the baseline's model.
+#pragma once
+
+#include <cstddef>
+
+#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/likelihood/whitened_blocks.hpp"
+#include "analysis/numerics/normal_mixture.hpp"
+
+namespace gyrolog {
+
+// Degrees of freedom of Student's t; infinity: normal. Of several entries the last one rules, as it does in
+// the simulator.
+double white_degrees_of_freedom(const Baseline& baseline, std::size_t axis);
+
+// Of a whitened sample whose white noise has `nu` degrees of freedom.
+NormalMixture whitened_mixture(const Baseline& baseline, std::size_t axis, double nu);
+
+struct ScaledFit {
+    double log_likelihood_nats = 0.0;
+    double scale = 1.0;
+};
+
+// The scale at which the samples fit the distribution best. `start`: where to begin.
+ScaledFit fit_scale(const WhitenedHistogram& histogram, const LogDensityTable& log_density, double start);
+
+}  // namespace gyrolog
