@@ -9,18 +9,18 @@
 #include <span>
 #include <thread>
 
-#include "analysis/diagnose/calibration/drawn_recordings.hpp"
 #include "analysis/diagnose/calibration/evidence_tail.hpp"
 #include "analysis/diagnose/calibration/gap_domains.hpp"
-#include "analysis/diagnose/calibration/gap_measure.hpp"
-#include "analysis/diagnose/calibration/gap_report.hpp"
-#include "analysis/diagnose/calibration/halves_check.hpp"
+#include "analysis/diagnose/calibration/gap_reference.hpp"
+#include "analysis/diagnose/calibration/gap_summary.hpp"
 #include "analysis/diagnose/calibration/null_simulations.hpp"
-#include "analysis/diagnose/calibration/parameter_spread.hpp"
-#include "analysis/diagnose/likelihood/seen_line.hpp"
-#include "analysis/diagnose/likelihood/swallowed_noise.hpp"
-#include "analysis/diagnose/selection/effect_search.hpp"
-#include "analysis/diagnose/selection/unspecific_rivals.hpp"
+#include "analysis/diagnose/calibration/parametric_bootstrap.hpp"
+#include "analysis/diagnose/calibration/replicates.hpp"
+#include "analysis/diagnose/calibration/split_half_validation.hpp"
+#include "analysis/diagnose/likelihood/noise_refit.hpp"
+#include "analysis/diagnose/likelihood/observed_line.hpp"
+#include "analysis/diagnose/selection/forward_selection.hpp"
+#include "analysis/diagnose/selection/nonparametric_alternatives.hpp"
 #include "analysis/numerics/distributions.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -71,7 +71,7 @@ unsigned affordable_threads(std::size_t samples, double bytes_most) {
 bool judged_by_stamps(const Finding& finding) {
     const EvidenceMethod method = find_effect(finding.effect)->signature->method;
     return method == EvidenceMethod::stamp_gaps || method == EvidenceMethod::stamp_rate ||
-           method == EvidenceMethod::stamp_spread;
+           method == EvidenceMethod::stamp_jitter;
 }
 
 bool are_alike(const GapCurve& a, const GapCurve& b) {
@@ -85,16 +85,16 @@ public:
         : recording_(std::move(recording)), options_(options), answer_() {
         const auto world = std::make_shared<const RecordedWorld>(recording_);
         answer_.warnings = world->warnings();
-        baseline_ = with_own_start(std::make_shared<const Baseline>(world, model), recording_);
+        prediction_ = with_own_start(std::make_shared<const Prediction>(world, model), recording_);
         if (options_.threads == 0) {
-            options_.threads = affordable_threads(baseline_->length(), options_.simulations_bytes_most);
+            options_.threads = affordable_threads(prediction_->length(), options_.simulations_bytes_most);
         }
     }
 
     std::optional<Diagnosis> run(const std::string& model_name) {
         describe(model_name);
         if (!told("looking for effects", 0.0)) { return std::nullopt; }
-        first_ = examine(baseline_, recording_, options_.seed, options_.threads);
+        first_ = examine(prediction_, recording_, options_.seed, options_.threads);
         warn_of_motion();
         for (const CatalogueEntry& entry : first_.catalogue) {
             if (!entry.untestable.empty()) {
@@ -116,28 +116,28 @@ private:
 
     // A turn-on bias is free; where the output clips, and where it lies between two codes, it matters. So is
     // the phase that a line had at the first sample.
-    std::shared_ptr<const Baseline> with_own_start(const std::shared_ptr<const Baseline>& baseline,
-                                                   const std::shared_ptr<const Recording>& recording) {
-        SensorModel model = baseline->model();
+    std::shared_ptr<const Prediction> with_own_start(const std::shared_ptr<const Prediction>& prediction,
+                                                     const std::shared_ptr<const Recording>& recording) {
+        SensorModel model = prediction->model();
         for (EffectModel& entry : model.effects) {
             if (find_effect(entry.effect)->signature->method != EvidenceMethod::line) { continue; }
-            const SeenLine seen = see_line(*baseline, recording, entry, options_.seed);
+            const ObservedLine seen = observe_line(*prediction, recording, entry, options_.seed);
             entry.params["phase_rad"] = seen.phase_rad;
             if (recording == recording_ && seen.share < faint_line_share) { warn_of_faint(entry, seen); }
         }
-        const Observation observation(baseline->with(model), recording, options_.seed);
-        return baseline->with(with_mean_of(observation, std::move(model)));
+        const Observation observation(prediction->with(model), recording, options_.seed);
+        return prediction->with(with_mean_of(observation, std::move(model)));
     }
 
     // The bias that leaves nothing of the observation's mean.
     static SensorModel with_mean_of(const Observation& observation, SensorModel model) {
-        for (const std::size_t axis : observation.baseline().axes()) {
+        for (const std::size_t axis : observation.prediction().axes()) {
             model.axes[axis].bias_rad_s += observation.axis(axis).mean_rad_s;
         }
         return model;
     }
 
-    void warn_of_faint(const EffectModel& line, const SeenLine& seen) {
+    void warn_of_faint(const EffectModel& line, const ObservedLine& seen) {
         const EffectValues values(line);
         std::array<char, 160> text{};
         (void)std::snprintf(text.data(), text.size(),
@@ -150,7 +150,7 @@ private:
     // Allan variance at a second: no drift is so fast, no vibration so slow.
     double second_to_second_variance(std::size_t axis) const {
         const std::vector<float>& residual = first_.observation->axis(axis).residual_rad_s;
-        const auto second = static_cast<std::size_t>(std::max(1.0, std::round(baseline_->rate_hz())));
+        const auto second = static_cast<std::size_t>(std::max(1.0, std::round(prediction_->rate_hz())));
         double before = 0.0;
         double squares = 0.0;
         std::size_t seconds = 0;
@@ -166,9 +166,9 @@ private:
 
     // Without a reference, what turned is all noise.
     void warn_of_motion() {
-        if (baseline_->moves()) { return; }
-        for (const std::size_t axis : baseline_->axes()) {
-            const double white = baseline_->parts(axis).back().sum();
+        if (prediction_->moves()) { return; }
+        for (const std::size_t axis : prediction_->axes()) {
+            const double white = prediction_->parts(axis).back().sum();
             if (!(second_to_second_variance(axis) > square_of_motion * white)) { continue; }
             answer_.warnings.emplace_back(
                 "the rates stray far more than noise does: the sensor seems to have been turned, and without "
@@ -186,14 +186,14 @@ private:
         answer_.samples = recording_->rows();
         answer_.simulations = options_.simulations;
         answer_.seed = options_.seed;
-        answer_.axes = baseline_->axes();
+        answer_.axes = prediction_->axes();
         answer_.held_out = "";
     }
 
     bool simulate_before() {
         NullSimulationOptions options{options_.simulations, options_.seed, options_.threads, {}};
         options.on_progress = [&](double share) { return told("simulating the model", 0.1 + 0.5 * share); };
-        std::optional<NullSimulations> null = simulate_null(baseline_, &first_.catalogue, options);
+        std::optional<NullSimulations> null = simulate_null(prediction_, &first_.catalogue, options);
         if (!null) { return false; }
         before_ = gap_reference(null->curves);
         evidence_tail_.emplace(best_evidence_nats(*null));
@@ -204,7 +204,7 @@ private:
         return true;
     }
 
-    // Of the best effect, the worst curve and the stamps: three looks, each with its own chance.
+    // Of the best effect, the worst curve and the stamps: three scans, each with its own chance.
     double probability_of_none(const std::vector<GapCurve>& curves) const {
         double evidence = -50.0;
         double stamps = 0.0;
@@ -222,21 +222,21 @@ private:
     }
 
     bool search() {
-        SearchOptions options;
+        SelectionOptions options;
         // A single effect, in one recording of two hundred by chance.
         options.evidence_min_nats = std::max(evidence_tail_->threshold_nats(0.005), 3.0);
         options.seed = options_.seed;
         options.threads = options_.threads;
         options.on_progress = [&](double share) { return told("looking for causes", 0.6 + 0.2 * share); };
         if (answer_.p_none >= options_.false_alarms_most) {
-            answer_.corrected = baseline_->model();
+            answer_.corrected = prediction_->model();
             return true;
         }
-        std::optional<EffectSearchResult> result = search_effects(first_, recording_, options);
+        std::optional<CauseSelection> result = select_causes(first_, recording_, options);
         if (!result) { return false; }
         // Causes have means, too.
         answer_.corrected = with_mean_of(*result->last.observation, std::move(result->corrected));
-        answer_.swallowed = result->swallowed;
+        answer_.noise_refits = result->noise_refits;
         found_ = std::move(*result);
         return true;
     }
@@ -248,7 +248,7 @@ private:
             std::min(options_.simulations, simulations_after_most), options_.seed + 1, options_.threads, {}};
         if (!judge_what_is_left(options)) { return false; }
         if (answer_.p_left >= unexplained_below_p() || answer_.p_left < tolerated_above_p) { return true; }
-        const bool moves = baseline_->moves();
+        const bool moves = prediction_->moves();
         options.simulations *= moves ? times_more_in_motion : times_more_in_doubt;
         options.seed = options_.seed + 4;
         options.measure_anew = moves && can_be_measured_anew(*recording_);
@@ -262,7 +262,7 @@ private:
             return told("simulating the corrected model", 0.8 + 0.2 * share);
         };
         std::optional<NullSimulations> null =
-            simulate_null(found_->last.baseline->with(answer_.corrected), nullptr, options);
+            simulate_null(found_->last.prediction->with(answer_.corrected), nullptr, options);
         if (!null) { return false; }
         // An axis at rest may seem to move where it is measured anew, and has other curves then.
         std::erase_if(null->curves, [&](const std::vector<GapCurve>& curves) {
@@ -283,7 +283,7 @@ private:
                 std::ranges::any_of(left_out, [&](const FoundCause& one) { return &one == &cause; });
             if (!is_left_out) { model = with_cause(std::move(model), cause.finding); }
         }
-        return {baseline_->with(model), recording_, options_.seed};
+        return {prediction_->with(model), recording_, options_.seed};
     }
 
     struct Worth {
@@ -298,7 +298,7 @@ private:
         for (const FoundCause& cause : causes) {
             worth.gain_nats += cause.finding.gain_nats;
             worth.evidence_nats += cause.finding.evidence_nats;
-            worth.evidence_nats += found_->apparent.of(cause.finding);
+            worth.evidence_nats += found_->null_bias.of(cause.finding);
         }
         const double cost_nats = worth.gain_nats - worth.evidence_nats;
         if (causes.size() > 1 && together_nats > worth.gain_nats) {
@@ -317,7 +317,7 @@ private:
         std::vector<std::optional<BetterShape>> better(places.size());
         parallel_for(places.size(), options_.threads, [&](std::size_t i) {
             const Observation left = without(places[i]);
-            const std::optional<UnspecificFinding> shape = best_unspecific(left, with);
+            const std::optional<NonparametricFit> shape = best_nonparametric(left, with);
             if (!shape) { return; }
             const double together_nats = log_likelihood_nats(with) - log_likelihood_nats(left);
             const Worth causes = worth_of(places[i], together_nats);
@@ -369,7 +369,7 @@ private:
             }
         }
         if (explained) {
-            check_halves();
+            validate_halves();
             close_by_causes();
         } else {
             const double shrink = excess_before > 0.0 ? 1.0 - excess_after / excess_before : 0.0;
@@ -403,7 +403,7 @@ private:
                 telling_apart(cause.finding.effect) + rival.effect + ": " + cause.decided_by;
             // What noise tells grows with the time that it is listened to.
             const EvidenceMethod method = find_effect(cause.finding.effect)->signature->method;
-            if (method == EvidenceMethod::spectrum || method == EvidenceMethod::two_levels ||
+            if (method == EvidenceMethod::spectrum || method == EvidenceMethod::random_telegraph ||
                 method == EvidenceMethod::tails) {
                 const double times = std::ceil(decided_nats / std::max(rival.evidence_below_best_nats, 0.5));
                 proposal += ", some " + std::to_string(std::max(2, static_cast<int>(times))) +
@@ -420,24 +420,24 @@ private:
         }
     }
 
-    void check_halves() {
+    void validate_halves() {
         std::vector<Finding> causes;
         for (const FoundCause& found : found_->causes) { causes.push_back(found.finding); }
-        answer_.halves = check_by_halves(baseline_->with(found_->without_causes), recording_, causes,
-                                         options_.seed, options_.threads);
+        answer_.split_half = validate_by_halves(prediction_->with(found_->without_causes), recording_, causes,
+                                                options_.seed, options_.threads);
     }
 
     // Of a gap that is not explained the causes are no more than a guess.
     bool widen_uncertainties() {
         if (answer_.verdict != Verdict::known) { return true; }
-        SpreadOptions options{.seed = options_.seed + 3, .threads = options_.threads};
+        BootstrapOptions options{.seed = options_.seed + 3, .threads = options_.threads};
         options.on_progress = [&](double share) {
             return told("looking how well the parameters are known", share);
         };
         std::vector<Finding> causes;
         for (const Cause& cause : answer_.causes) { causes.push_back(cause.finding); }
-        std::optional<std::vector<Finding>> known = with_spread(
-            baseline_->with(found_->without_causes), answer_.corrected, std::move(causes), options);
+        std::optional<std::vector<Finding>> known = with_bootstrap_sd(
+            prediction_->with(found_->without_causes), answer_.corrected, std::move(causes), options);
         if (!known) { return false; }
         for (std::size_t i = 0; i < known->size(); ++i) {
             answer_.causes[i].finding = std::move((*known)[i]);
@@ -458,7 +458,7 @@ private:
             parameters += own;
         }
         const auto left = [&](double square) {
-            const double excess = 2.0 * answer_.halves.excess_nats;
+            const double excess = 2.0 * answer_.split_half.excess_nats;
             return std::clamp(1.0 - (square + excess) / (2.0 * gain_nats), 0.0, 1.0);
         };
         answer_.shrink = left(parameters);
@@ -482,20 +482,20 @@ private:
     // The gap of a recording that had no part in the fit.
     std::optional<GapSummary> gap_on_holdout(const std::shared_ptr<const RecordedWorld>& world,
                                              const SensorModel& model) {
-        const auto baseline =
-            with_own_start(std::make_shared<const Baseline>(world, model), options_.holdout);
+        const auto prediction =
+            with_own_start(std::make_shared<const Prediction>(world, model), options_.holdout);
         NullSimulationOptions options{
             std::min(options_.simulations, simulations_after_most), options_.seed + 2, options_.threads, {}};
         options.on_progress = [&](double share) { return told("judging the second recording", share); };
-        const std::optional<NullSimulations> null = simulate_null(baseline, nullptr, options);
+        const std::optional<NullSimulations> null = simulate_null(prediction, nullptr, options);
         if (!null) { return std::nullopt; }
-        const Observation observation(baseline, options_.holdout, options_.seed);
+        const Observation observation(prediction, options_.holdout, options_.seed);
         return summarise(gap_curves(observation), gap_reference(null->curves));
     }
 
     bool measure_on_holdout() {
         const auto world = std::make_shared<const RecordedWorld>(options_.holdout);
-        const std::optional<GapSummary> before = gap_on_holdout(world, baseline_->model());
+        const std::optional<GapSummary> before = gap_on_holdout(world, prediction_->model());
         const std::optional<GapSummary> after =
             answer_.causes.empty() ? before : gap_on_holdout(world, answer_.corrected);
         if (!before || !after) { return false; }
@@ -536,14 +536,14 @@ private:
 
     std::shared_ptr<const Recording> recording_;
     DiagnosisOptions options_;
-    std::shared_ptr<const Baseline> baseline_;
+    std::shared_ptr<const Prediction> prediction_;
     Diagnosis answer_;
     Hypotheses first_;
     GapReference before_;
     std::vector<GapCurve> before_curves_;
     std::optional<EvidenceTail> evidence_tail_;
     std::optional<EvidenceTail> surprise_tail_;
-    std::optional<EffectSearchResult> found_;
+    std::optional<CauseSelection> found_;
     std::optional<GapReference> after_;
     std::vector<GapCurve> after_curves_;
     double surprise_left_nats_ = 0.0;
@@ -554,7 +554,7 @@ private:
 std::string telling_apart(const std::string& effect) { return "to tell " + effect + " from "; }
 
 SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const SensorModel& centred) {
-    model = with_noise(std::move(model), diagnosis.swallowed);
+    model = with_noise(std::move(model), diagnosis.noise_refits);
     for (const Cause& cause : diagnosis.causes) { model = with_cause(std::move(model), cause.finding); }
     for (const std::size_t axis : diagnosis.axes) {
         model.axes[axis].bias_rad_s = centred.axes[axis].bias_rad_s;

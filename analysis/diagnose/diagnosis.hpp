@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnose/calibration/halves_result.hpp"
+#include "analysis/diagnose/calibration/split_half_result.hpp"
 #include "analysis/diagnose/finding.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
@@ -68,15 +68,16 @@ struct GapDomain {
     std::string axis_text() const { return of_all_axes ? "all" : axis_names.at(axis); }
 };
 
-// One that no effect of the catalogue has (unspecific_rivals.hpp) and that tells the recording better.
+// One that no effect of the catalogue has (nonparametric_alternatives.hpp) and that tells the recording
+// better.
 struct BetterShape {
     std::string words;
     std::vector<std::string> than;  // effects among the causes; empty: than the model alone
     double evidence_nats = 0.0;     // by how much its log Bayes factor is more
 };
 
-// One of two ways to see a long recording (long_diagnosis.hpp).
-struct Look {
+// One of two passes over a long recording (long_diagnosis.hpp).
+struct Pass {
     double duration_s = 0.0;
     std::size_t rows = 0;
     std::size_t samples_per_row = 1;
@@ -94,7 +95,7 @@ struct Diagnosis {
     double band_probability = 0.95;
     std::uint64_t seed = 1;
     std::vector<std::size_t> axes;
-    std::vector<Look> looks;  // empty: it was seen as a whole, at once
+    std::vector<Pass> passes;  // empty: it was seen as a whole, at once
 
     Verdict verdict = Verdict::none;
     double p_none = 1.0;
@@ -102,24 +103,24 @@ struct Diagnosis {
     std::vector<Cause> causes;
     std::optional<BetterShape> better_shape;  // then the causes do not explain the gap
     // Noise of the model that held part of the causes, and what it is with them in the model.
-    std::vector<SwallowedNoise> swallowed;
+    std::vector<NoiseRefit> noise_refits;
     Place where;  // the gap; of a known one, its first cause
     Place left;   // with Verdict::unexplained and causes: what they leave
     Gap gap_before, gap_after;
     double shrink = 0.0, shrink_lo = 0.0, shrink_hi = 0.0;
-    HalvesResult halves;   // with Verdict::known
+    SplitHalfResult split_half;  // with Verdict::known
     std::string held_out;  // the name of the second recording that the gap was measured on; empty without one
     std::vector<GapDomain> domains;
     std::vector<Untestable> untestable;
     std::vector<std::string> next_recordings;  // what would settle what is open, in sentences
     std::vector<std::string> warnings;
-    SensorModel corrected;  // the model with the causes added and the swallowed noise taken off
+    SensorModel corrected;  // the model with the causes added and its noise refitted
 };
 
 // How a next recording begins that would settle a tie of the effect.
 std::string telling_apart(const std::string& effect);
 
-// `model` with what the diagnosis found: its swallowed noise, its causes, and on its axes the bias of
+// `model` with what the diagnosis found: its noise refits, its causes, and on its axes the bias of
 // `centred`.
 SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const SensorModel& centred);
 

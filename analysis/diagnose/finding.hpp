@@ -50,7 +50,7 @@ SensorModel with_cause(SensorModel model, const Finding& finding);
 
 // A noise coefficient of the model that the recording has otherwise, now that the causes are in the model. In
 // SI units of the two-sided convention.
-struct SwallowedNoise {
+struct NoiseRefit {
     std::size_t axis = 0;
     char coefficient = 'N';  // 'N', 'B', 'K'
     double stated = 0.0;

@@ -262,7 +262,7 @@ Panel allan_panel(const AllanFigure& allan) {
         panel.legend_header.emplace_back();
         for (const Column& column : columns) { panel.legend_header.push_back(column.header); }
     }
-    const std::vector<TraceLook> looks = looks_of(allan.traces);
+    const std::vector<TraceLook> looks = passes_of(allan.traces);
     const std::vector<TraceGroup> groups = groups_of(allan.traces);
     std::vector<Drafting> draftings;
     Extent shown;

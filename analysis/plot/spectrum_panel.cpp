@@ -76,7 +76,7 @@ Panel spectrum_panel(const AllanFigure& allan) {
         // 1 °/√h = 1 °/h √h, and √h = 60 √s.
         panel.right = SecondUnit{"√S(f) (°/√h)", allan.unit.deg_per_h / 60.0};
     }
-    const std::vector<TraceLook> looks = looks_of(allan.traces);
+    const std::vector<TraceLook> looks = passes_of(allan.traces);
     for (std::size_t i = 0; i < looks.size(); ++i) {
         const AllanTrace& trace = allan.traces[i];
         if (trace.spectrum.points.empty()) { continue; }

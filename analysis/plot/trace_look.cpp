@@ -31,7 +31,7 @@ std::vector<TraceGroup> groups_of(const std::vector<AllanTrace>& traces) {
     return groups;
 }
 
-std::vector<TraceLook> looks_of(const std::vector<AllanTrace>& traces) {
+std::vector<TraceLook> passes_of(const std::vector<AllanTrace>& traces) {
     const bool are_many = traces.size() > most_told_apart;
     const std::vector<TraceGroup> groups = groups_of(traces);
     std::vector<TraceLook> looks;

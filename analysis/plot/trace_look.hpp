@@ -27,7 +27,7 @@ struct TraceGroup {
 };
 
 // One for each trace, in their order.
-std::vector<TraceLook> looks_of(const std::vector<AllanTrace>& traces);
+std::vector<TraceLook> passes_of(const std::vector<AllanTrace>& traces);
 
 // By first appearance; every trace alone unless there are many.
 std::vector<TraceGroup> groups_of(const std::vector<AllanTrace>& traces);

@@ -51,22 +51,22 @@ struct TrialValues {
 };
 
 enum class EvidenceMethod {
-    response,         // the mean answer to the world
-    spectrum,         // of the noise
-    line,             // a steady line in the spectrum
-    step,             // a jump at an unknown moment
-    two_levels,       // a hidden Markov chain
-    tails,            // distribution of the whitened samples
-    outliers,         // single samples
-    variance_course,  // their variance over time
-    variance_of,      // their variance against the temperature
-    shared_noise,     // between axes
-    repeats,          // samples that are the ones before again
-    code_grid,        // the converter's step
-    ceiling,          // a largest rate
+    response,               // the mean answer to the world
+    spectrum,               // of the noise
+    line,                   // a steady line in the spectrum
+    step,                   // a jump at an unknown moment
+    random_telegraph,       // a hidden Markov chain
+    tails,                  // distribution of the whitened samples
+    outliers,               // single samples
+    variance_change_point,  // their variance over time
+    variance_with_temperature,
+    shared_noise,       // between axes
+    repeats,            // samples that are the ones before again
+    quantisation_step,  // the converter's
+    saturation,         // a largest rate
     stamp_gaps,
     stamp_rate,
-    stamp_spread,
+    stamp_jitter,
 };
 
 enum class PlaceKind { spectrum, time, instant, temperature, acceleration, rate, amplitude, structure };

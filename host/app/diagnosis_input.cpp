@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/likelihood/prediction.hpp"
 #include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "host/app/quantity.hpp"
 
@@ -84,8 +84,8 @@ std::shared_ptr<const Recording> shared(Recording recording) {
     return std::make_shared<const Recording>(std::move(recording));
 }
 
-// As much as one look takes; `warnings` are told with it.
-Result<DiagnosisInput> read_for_one_look(const RecordingInput& input,
+// As much as one pass takes; `warnings` are told with it.
+Result<DiagnosisInput> read_for_one_pass(const RecordingInput& input,
                                          const std::vector<std::string>& warnings = {}) {
     GYROLOG_TRY(Read read, read_samples(input, diagnosable_samples_max));
     if (read.is_long) {
@@ -122,24 +122,24 @@ Result<Means> read_means(RecordingInput input, std::size_t samples_per_row, cons
 }  // namespace
 
 Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& input) {
-    if (input.samples_per_row > 1) { return read_for_one_look(input); }
+    if (input.samples_per_row > 1) { return read_for_one_pass(input); }
     GYROLOG_TRY(Read beginning, read_samples(input, beginning_max));
     if (!beginning.is_long) { return DiagnosisInput{shared(std::move(beginning.samples)), nullptr}; }
-    if (moves(beginning.samples)) { return read_for_one_look(input); }
+    if (moves(beginning.samples)) { return read_for_one_pass(input); }
     const double samples = std::max(2.0, std::round(beginning.samples.rate_hz * row_of_means_s));
     GYROLOG_TRY(Means means, read_means(input, static_cast<std::size_t>(samples), beginning.samples));
     if (means.rows == nullptr) {
-        return read_for_one_look(
+        return read_for_one_pass(
             input, {fmt::format("'{}' is looked at sample by sample only: {}", input.path, means.why_not)});
     }
     const std::size_t rows = slots(*means.rows);
-    if (rows * means.rows->samples_per_row <= diagnosable_samples_max) { return read_for_one_look(input); }
+    if (rows * means.rows->samples_per_row <= diagnosable_samples_max) { return read_for_one_pass(input); }
     if (rows > means_max) { means.rows = shared(means_of(*means.rows, (rows + means_max - 1) / means_max)); }
     return DiagnosisInput{shared(std::move(beginning.samples)), std::move(means.rows)};
 }
 
 Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& input, const DiagnosisInput& like) {
-    if (like.means == nullptr) { return read_for_one_look(input); }
+    if (like.means == nullptr) { return read_for_one_pass(input); }
     GYROLOG_TRY(Read beginning, read_samples(input, beginning_max));
     GYROLOG_TRY(Means means, read_means(input, like.means->samples_per_row, beginning.samples));
     if (means.rows == nullptr) {

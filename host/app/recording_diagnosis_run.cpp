@@ -102,7 +102,7 @@ std::vector<std::string> facts_of(const Diagnosis& diagnosis) {
     std::vector<std::string> facts{
         fmt::format("{} simulations, seed {}", diagnosis.simulations, diagnosis.seed),
         fmt::format("{:.6g} Hz, {}", diagnosis.rate_hz, format_duration(diagnosis.duration_s))};
-    if (!diagnosis.looks.empty()) { facts.push_back(looks_text(diagnosis)); }
+    if (!diagnosis.passes.empty()) { facts.push_back(passes_text(diagnosis)); }
     for (const Cause& cause : diagnosis.causes) {
         facts.push_back(
             fmt::format("{}: {}", axes_text(cause.finding.where.axes), effect_words(cause.finding)));

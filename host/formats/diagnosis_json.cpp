@@ -127,9 +127,9 @@ Json domain_json(const GapDomain& domain) {
 }
 
 // In the model file's units.
-Json swallowed_json(const std::vector<SwallowedNoise>& swallowed) {
+Json noise_refits_json(const std::vector<NoiseRefit>& noise_refits) {
     Json json = Json::array();
-    for (const SwallowedNoise& one : swallowed) {
+    for (const NoiseRefit& one : noise_refits) {
         json.push_back({{"axis", axis_names.at(one.axis)},
                         {"coefficient", std::string(1, one.coefficient)},
                         {"stated", one.stated * deg_per_rad},
@@ -146,12 +146,12 @@ void put_circumstances(Json& json, const Diagnosis& diagnosis) {
     json["duration_s"] = diagnosis.duration_s;
     json["samples"] = diagnosis.samples;
     json["axes"] = axes_json(diagnosis.axes);
-    for (const Look& look : diagnosis.looks) {
-        json["looks"].push_back({{"duration_s", look.duration_s},
-                                 {"rows", look.rows},
-                                 {"samples_per_row", look.samples_per_row},
-                                 {"verdict", name_of(look.verdict)},
-                                 {"p_none", look.p_none}});
+    for (const Pass& pass : diagnosis.passes) {
+        json["looks"].push_back({{"duration_s", pass.duration_s},
+                                 {"rows", pass.rows},
+                                 {"samples_per_row", pass.samples_per_row},
+                                 {"verdict", name_of(pass.verdict)},
+                                 {"p_none", pass.p_none}});
     }
     json["simulations"] = diagnosis.simulations;
     json["band_probability"] = diagnosis.band_probability;
@@ -182,7 +182,9 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
     json["p_left"] = diagnosis.p_left;
     json["causes"] = Json::array();
     for (const Cause& cause : diagnosis.causes) { json["causes"].push_back(cause_json(cause)); }
-    if (!diagnosis.swallowed.empty()) { json["noise_refitted"] = swallowed_json(diagnosis.swallowed); }
+    if (!diagnosis.noise_refits.empty()) {
+        json["noise_refitted"] = noise_refits_json(diagnosis.noise_refits);
+    }
     if (diagnosis.better_shape) {
         json["better_shape"] = {{"words", diagnosis.better_shape->words},
                                 {"than", diagnosis.better_shape->than},
@@ -198,9 +200,9 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
     json["shrink_hi"] = diagnosis.shrink_hi;
     json["held_out"] = diagnosis.held_out;
     if (diagnosis.verdict == Verdict::known) {
-        json["halves"] = {{"judged", diagnosis.halves.judged},
-                          {"evidence_left_nats", diagnosis.halves.evidence_left_nats},
-                          {"excess_nats", diagnosis.halves.excess_nats}};
+        json["halves"] = {{"judged", diagnosis.split_half.judged},
+                          {"evidence_left_nats", diagnosis.split_half.evidence_left_nats},
+                          {"excess_nats", diagnosis.split_half.excess_nats}};
     }
     put_circumstances(json, diagnosis);
     json["domains"] = Json::array();

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/diagnose/calibration/gap_measure.hpp"
+#include "analysis/diagnose/calibration/gap_reference.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "host/formats/effect_words.hpp"
@@ -93,7 +93,7 @@ std::string gap_before_sentence(const Diagnosis& diagnosis) {
                        times_floor(gap.hi, gap));
 }
 
-std::string halves_clause(const HalvesResult& halves) {
+std::string split_half_clause(const SplitHalfResult& halves) {
     if (halves.judged.empty()) {
         return "the fit's own uncertainty says so, no half of the recording could judge the other's fit "
                "(--holdout takes a second recording)";
@@ -121,7 +121,7 @@ std::string gap_after_sentence(const Diagnosis& diagnosis) {
     if (!diagnosis.held_out.empty()) {
         text += fmt::format(" on data that the fit did not see ({})", diagnosis.held_out);
     } else if (diagnosis.verdict == Verdict::known) {
-        text += "; " + halves_clause(diagnosis.halves);
+        text += "; " + split_half_clause(diagnosis.split_half);
     }
     return text + ".";
 }
@@ -132,10 +132,10 @@ std::string with_full_stop(std::string sentence) {
 }
 
 // Empty where the model's noise stays as it is.
-std::string swallowed_sentence(const Diagnosis& diagnosis) {
-    if (diagnosis.swallowed.empty()) { return {}; }
+std::string noise_refit_sentence(const Diagnosis& diagnosis) {
+    if (diagnosis.noise_refits.empty()) { return {}; }
     std::vector<std::string> changes;
-    for (const SwallowedNoise& one : diagnosis.swallowed) {
+    for (const NoiseRefit& one : diagnosis.noise_refits) {
         changes.push_back(fmt::format("{} of {} {:.3g} ± {:.1g} instead of {:.3g}", one.coefficient,
                                       axis_names.at(one.axis), one.fitted * deg_per_rad,
                                       one.fitted_sd * deg_per_rad, one.stated * deg_per_rad));
@@ -163,8 +163,8 @@ std::string summary_text(const Diagnosis& diagnosis) {
         const bool says_axes = diagnosis.causes.size() > 1 && !axes.empty();
         sentences.push_back(says_axes ? fmt::format("On {}: {}", axes, words) : words);
     }
-    const std::string swallowed = swallowed_sentence(diagnosis);
-    if (!swallowed.empty()) { sentences.push_back(swallowed); }
+    const std::string noise_refits = noise_refit_sentence(diagnosis);
+    if (!noise_refits.empty()) { sentences.push_back(noise_refits); }
     if (!diagnosis.causes.empty()) { sentences.push_back(gap_after_sentence(diagnosis)); }
     if (diagnosis.better_shape) { sentences.push_back(better_shape_sentence(*diagnosis.better_shape)); }
     if (diagnosis.verdict == Verdict::unexplained && !diagnosis.causes.empty() && !diagnosis.better_shape) {
@@ -181,7 +181,7 @@ std::string heading_text(const Diagnosis& diagnosis) {
         fmt::format("{} against {} simulations of {} (seed {}): {} samples at {:.6g} Hz, {}",
                     diagnosis.recording_name, diagnosis.simulations, diagnosis.model_name, diagnosis.seed,
                     diagnosis.samples, diagnosis.rate_hz, duration_text(diagnosis.duration_s));
-    if (!diagnosis.looks.empty()) { text += "; " + looks_text(diagnosis); }
+    if (!diagnosis.passes.empty()) { text += "; " + passes_text(diagnosis); }
     return wrapped_text("", text);
 }
 
@@ -334,14 +334,14 @@ std::string place_text(const Place& place) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string looks_text(const Diagnosis& diagnosis) {
-    std::vector<std::string> looks;
-    for (const Look& look : diagnosis.looks) {
-        looks.push_back(look.samples_per_row == 1
-                            ? fmt::format("at the first {} sample by sample", duration_text(look.duration_s))
-                            : fmt::format("at all of it in means of {} samples", look.samples_per_row));
+std::string passes_text(const Diagnosis& diagnosis) {
+    std::vector<std::string> passes;
+    for (const Pass& pass : diagnosis.passes) {
+        passes.push_back(pass.samples_per_row == 1
+                             ? fmt::format("at the first {} sample by sample", duration_text(pass.duration_s))
+                             : fmt::format("at all of it in means of {} samples", pass.samples_per_row));
     }
-    return "looked " + listed(looks);
+    return "looked " + listed(passes);
 }
 
 std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of) {

@@ -17,8 +17,8 @@ std::string verdict_sentence(const Diagnosis& diagnosis, std::string_view of = "
 // "x axis, averaging times 60 s to 15 min"; "" for a place without anything.
 std::string place_text(const Place& place);
 
-// Of a diagnosis with looks: "looked at the first 20 min sample by sample and at all of it in means of ...".
-std::string looks_text(const Diagnosis& diagnosis);
+// Of a diagnosis with passes: "looked at the first 20 min sample by sample and at all of it in means of ...".
+std::string passes_text(const Diagnosis& diagnosis);
 
 std::string diagnosis_text(const Diagnosis& diagnosis);
 

@@ -200,17 +200,15 @@ void measure(benchmark::State& state, double rate_hz, double hurry, Reader kind,
     }
 }
 
-void at_the_ceiling(benchmark::State& state, Reader kind, std::uint64_t boards) {
+void at_the_limit(benchmark::State& state, Reader kind, std::uint64_t boards) {
     constexpr double rate_hz = 8000.0;
     measure(state, rate_hz, ceiling_bytes_per_s / bytes_per_board_second(rate_hz), kind, boards);
 }
 void at_1_kHz(benchmark::State& state, Reader kind) { measure(state, 1000.0, 1.0, kind); }
 
-BENCHMARK_CAPTURE(at_the_ceiling, capture, Reader::capture, 1)->UseManualTime()->Iterations(1);
-BENCHMARK_CAPTURE(at_the_ceiling, cat, Reader::cat, 1)->UseManualTime()->Iterations(1);
-BENCHMARK_CAPTURE(at_the_ceiling, capture_of_three_boards, Reader::capture, 3)
-    ->UseManualTime()
-    ->Iterations(1);
+BENCHMARK_CAPTURE(at_the_limit, capture, Reader::capture, 1)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_the_limit, cat, Reader::cat, 1)->UseManualTime()->Iterations(1);
+BENCHMARK_CAPTURE(at_the_limit, capture_of_three_boards, Reader::capture, 3)->UseManualTime()->Iterations(1);
 BENCHMARK_CAPTURE(at_1_kHz, capture, Reader::capture)->UseManualTime()->Iterations(1);
 BENCHMARK_CAPTURE(at_1_kHz, cat, Reader::cat)->UseManualTime()->Iterations(1);
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "analysis/diagnose/calibration/gap_measure.hpp"
+#include "analysis/diagnose/calibration/gap_reference.hpp"
 #include "analysis/diagnose/diagnosis.hpp"
 
 namespace gyrolog {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "analysis/diagnose/calibration/drawn_recordings.hpp"
+#include "analysis/diagnose/calibration/replicates.hpp"
 
 namespace gyrolog {
 
@@ -15,20 +15,20 @@ std::vector<double> evidence_of_all(const std::vector<CatalogueEntry>& catalogue
                                     const Observation& observation) {
     std::vector<double> evidence_nats(catalogue.size(), no_evidence_nats);
     for (std::size_t i = 0; i < catalogue.size(); ++i) {
-        if (!catalogue[i].test) { continue; }
-        const std::optional<Finding> finding = catalogue[i].test->find(observation);
+        if (!catalogue[i].estimator) { continue; }
+        const std::optional<Finding> finding = catalogue[i].estimator->find(observation);
         if (finding) { evidence_nats[i] = std::max(finding->evidence_nats, no_evidence_nats); }
     }
     return evidence_nats;
 }
 
-std::vector<GapCurve> curves_measured_anew(const Baseline& baseline, Recording simulated,
+std::vector<GapCurve> curves_measured_anew(const Prediction& prediction, Recording simulated,
                                            std::uint64_t seed) {
-    const SensorModel& model = baseline.model();
+    const SensorModel& model = prediction.model();
     const auto recording =
         std::make_shared<const Recording>(measured_anew(std::move(simulated), model, seed));
     const auto world = std::make_shared<const RecordedWorld>(recording);
-    return gap_curves(Observation(std::make_shared<const Baseline>(world, model), recording, seed));
+    return gap_curves(Observation(std::make_shared<const Prediction>(world, model), recording, seed));
 }
 
 }  // namespace
@@ -42,22 +42,22 @@ std::vector<double> best_evidence_nats(const NullSimulations& null) {
     return best;
 }
 
-std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Baseline>& baseline,
+std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Prediction>& prediction,
                                              const std::vector<CatalogueEntry>* catalogue,
                                              const NullSimulationOptions& options) {
     NullSimulations null;
     null.curves.resize(options.simulations);
     if (catalogue != nullptr) { null.evidence_nats.resize(options.simulations); }
-    const DrawOptions draws{options.simulations, options.seed, seed_stream, options.threads,
-                            options.on_progress};
-    const bool done = for_each_draw(draws, [&](std::size_t i, std::uint64_t seed) {
-        Recording simulated = drawn_recording(*baseline, baseline->model(), seed);
-        if (options.measure_anew && baseline->moves()) {
-            null.curves[i] = curves_measured_anew(*baseline, std::move(simulated), seed);
+    const ReplicateOptions draws{options.simulations, options.seed, seed_stream, options.threads,
+                                 options.on_progress};
+    const bool done = for_each_replicate(draws, [&](std::size_t i, std::uint64_t seed) {
+        Recording simulated = replicate_recording(*prediction, prediction->model(), seed);
+        if (options.measure_anew && prediction->moves()) {
+            null.curves[i] = curves_measured_anew(*prediction, std::move(simulated), seed);
             return;
         }
         const auto recording = std::make_shared<const Recording>(std::move(simulated));
-        const Observation observation(baseline, recording, seed, Observation::ReferenceNoise::drawn);
+        const Observation observation(prediction, recording, seed, Observation::ReferenceNoise::drawn);
         null.curves[i] = gap_curves(observation);
         if (catalogue != nullptr) { null.evidence_nats[i] = evidence_of_all(*catalogue, observation); }
     });

@@ -35,9 +35,9 @@ struct NullSimulationOptions {
     bool measure_anew = false;
 };
 
-// Sensors are drawn within the model's stated uncertainty. `catalogue`: of the same baseline, or null where
+// Sensors are drawn within the model's stated uncertainty. `catalogue`: of the same prediction, or null where
 // only curves are wanted. No value when ended early.
-std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Baseline>& baseline,
+std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Prediction>& prediction,
                                              const std::vector<CatalogueEntry>* catalogue,
                                              const NullSimulationOptions& options);
 

@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <iterator>
 
-#include "analysis/diagnose/estimators/ceiling_test.hpp"
-#include "analysis/diagnose/estimators/code_grid_test.hpp"
-#include "analysis/diagnose/estimators/line_test.hpp"
-#include "analysis/diagnose/estimators/outlier_test.hpp"
-#include "analysis/diagnose/estimators/repeat_test.hpp"
-#include "analysis/diagnose/estimators/response_test.hpp"
-#include "analysis/diagnose/estimators/shared_noise_test.hpp"
-#include "analysis/diagnose/estimators/spectrum_test.hpp"
-#include "analysis/diagnose/estimators/stamp_gap_test.hpp"
-#include "analysis/diagnose/estimators/stamp_rate_test.hpp"
-#include "analysis/diagnose/estimators/stamp_spread_test.hpp"
-#include "analysis/diagnose/estimators/step_test.hpp"
-#include "analysis/diagnose/estimators/tail_test.hpp"
-#include "analysis/diagnose/estimators/two_level_test.hpp"
-#include "analysis/diagnose/estimators/variance_course_test.hpp"
-#include "analysis/diagnose/estimators/variance_of_test.hpp"
+#include "analysis/diagnose/estimators/bias_step.hpp"
+#include "analysis/diagnose/estimators/line.hpp"
+#include "analysis/diagnose/estimators/mean_response.hpp"
+#include "analysis/diagnose/estimators/noise_spectrum.hpp"
+#include "analysis/diagnose/estimators/outliers.hpp"
+#include "analysis/diagnose/estimators/quantisation_step.hpp"
+#include "analysis/diagnose/estimators/random_telegraph.hpp"
+#include "analysis/diagnose/estimators/repeats.hpp"
+#include "analysis/diagnose/estimators/saturation.hpp"
+#include "analysis/diagnose/estimators/shared_noise.hpp"
+#include "analysis/diagnose/estimators/stamp_gaps.hpp"
+#include "analysis/diagnose/estimators/stamp_jitter.hpp"
+#include "analysis/diagnose/estimators/stamp_rate.hpp"
+#include "analysis/diagnose/estimators/tails.hpp"
+#include "analysis/diagnose/estimators/variance_change_point.hpp"
+#include "analysis/diagnose/estimators/variance_with_temperature.hpp"
 #include "analysis/diagnose/multiscale/means_model.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -29,37 +29,37 @@ namespace {
 
 struct MethodMaker {
     EvidenceMethod method;
-    TestMaker make;
+    EstimatorMaker make;
 };
 
 constexpr MethodMaker makers[] = {
-    {EvidenceMethod::response, make_response_test},
-    {EvidenceMethod::spectrum, make_spectrum_test},
-    {EvidenceMethod::line, make_line_test},
-    {EvidenceMethod::step, make_step_test},
-    {EvidenceMethod::two_levels, make_two_level_test},
-    {EvidenceMethod::tails, make_tail_test},
-    {EvidenceMethod::outliers, make_outlier_test},
-    {EvidenceMethod::variance_course, make_variance_course_test},
-    {EvidenceMethod::variance_of, make_variance_of_test},
-    {EvidenceMethod::shared_noise, make_shared_noise_test},
-    {EvidenceMethod::repeats, make_repeat_test},
-    {EvidenceMethod::code_grid, make_code_grid_test},
-    {EvidenceMethod::ceiling, make_ceiling_test},
-    {EvidenceMethod::stamp_gaps, make_stamp_gap_test},
-    {EvidenceMethod::stamp_rate, make_stamp_rate_test},
-    {EvidenceMethod::stamp_spread, make_stamp_spread_test},
+    {EvidenceMethod::response, make_mean_response_estimator},
+    {EvidenceMethod::spectrum, make_noise_spectrum_estimator},
+    {EvidenceMethod::line, make_line_estimator},
+    {EvidenceMethod::step, make_bias_step_estimator},
+    {EvidenceMethod::random_telegraph, make_random_telegraph_estimator},
+    {EvidenceMethod::tails, make_tail_estimator},
+    {EvidenceMethod::outliers, make_outlier_estimator},
+    {EvidenceMethod::variance_change_point, make_variance_change_point_estimator},
+    {EvidenceMethod::variance_with_temperature, make_variance_with_temperature_estimator},
+    {EvidenceMethod::shared_noise, make_shared_noise_estimator},
+    {EvidenceMethod::repeats, make_repeat_estimator},
+    {EvidenceMethod::quantisation_step, make_quantisation_step_estimator},
+    {EvidenceMethod::saturation, make_saturation_estimator},
+    {EvidenceMethod::stamp_gaps, make_stamp_gap_estimator},
+    {EvidenceMethod::stamp_rate, make_stamp_rate_estimator},
+    {EvidenceMethod::stamp_jitter, make_stamp_jitter_estimator},
 };
 
-std::string lacking(const EffectSignature& signature, const Baseline& baseline) {
-    if (signature.needs_temperature && baseline.temperature_C().empty()) {
+std::string lacking(const EffectSignature& signature, const Prediction& prediction) {
+    if (signature.needs_temperature && prediction.temperature_C().empty()) {
         return "the recording has no temperature";
     }
-    if (signature.needs_reference && !baseline.moves()) { return "the recording has no reference rate"; }
-    if (signature.needs_specific_force && !baseline.world().has_specific_force()) {
+    if (signature.needs_reference && !prediction.moves()) { return "the recording has no reference rate"; }
+    if (signature.needs_specific_force && !prediction.world().has_specific_force()) {
         return "the recording has no specific force";
     }
-    if (baseline.world().recording().samples_per_row > 1 && !shows_in_means(signature)) {
+    if (prediction.world().recording().samples_per_row > 1 && !shows_in_means(signature)) {
         return "means of several samples do not show it";
     }
     return {};
@@ -67,28 +67,29 @@ std::string lacking(const EffectSignature& signature, const Baseline& baseline) 
 
 }  // namespace
 
-EvidenceMethod evidence_method(const EffectSignature& signature, const Baseline& baseline) {
-    return signature.changes_mean && baseline.moves() ? EvidenceMethod::response : signature.method;
+EvidenceMethod evidence_method(const EffectSignature& signature, const Prediction& prediction) {
+    return signature.changes_mean && prediction.moves() ? EvidenceMethod::response : signature.method;
 }
 
-MadeTest make_test(const EffectDefinition& effect, const std::shared_ptr<const Baseline>& baseline) {
-    const EvidenceMethod method = evidence_method(*effect.signature, *baseline);
+MadeEstimator make_estimator(const EffectDefinition& effect,
+                             const std::shared_ptr<const Prediction>& prediction) {
+    const EvidenceMethod method = evidence_method(*effect.signature, *prediction);
     const auto* maker = std::ranges::find(makers, method, &MethodMaker::method);
-    return maker == std::end(makers) ? MadeTest{} : maker->make(effect, baseline);
+    return maker == std::end(makers) ? MadeEstimator{} : maker->make(effect, prediction);
 }
 
-std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Baseline>& baseline,
+std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Prediction>& prediction,
                                            unsigned threads) {
     std::vector<CatalogueEntry> catalogue;
     for (const ChainLink& link : signal_chain()) {
         if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
-        catalogue.push_back({link.effect, nullptr, lacking(*link.effect->signature, *baseline)});
+        catalogue.push_back({link.effect, nullptr, lacking(*link.effect->signature, *prediction)});
     }
     parallel_for(catalogue.size(), threads, [&](std::size_t i) {
         CatalogueEntry& entry = catalogue[i];
         if (!entry.untestable.empty()) { return; }
-        MadeTest made = make_test(*entry.effect, baseline);
-        entry.test = std::move(made.test);
+        MadeEstimator made = make_estimator(*entry.effect, prediction);
+        entry.estimator = std::move(made.estimator);
         entry.untestable = std::move(made.untestable);
     });
     return catalogue;

@@ -8,9 +8,9 @@ namespace gyrolog {
 
 namespace {
 
-class StampTest final : public EffectTest {
+class StampEstimator final : public Estimator {
 public:
-    StampTest(std::optional<Finding> in_stamps, std::unique_ptr<EffectTest> in_samples)
+    StampEstimator(std::optional<Finding> in_stamps, std::unique_ptr<Estimator> in_samples)
         : in_stamps_(std::move(in_stamps)), in_samples_(std::move(in_samples)) {}
 
     std::optional<Finding> find(const Observation& observation) const override {
@@ -23,13 +23,13 @@ public:
 
 private:
     std::optional<Finding> in_stamps_;
-    std::unique_ptr<EffectTest> in_samples_;
+    std::unique_ptr<Estimator> in_samples_;
 };
 
 }  // namespace
 
 bool has_own_stamps(const Observation& observation) {
-    return &observation.recording() == &observation.baseline().world().recording();
+    return &observation.recording() == &observation.prediction().world().recording();
 }
 
 double stated_uncertainty(const std::map<std::string, double>& stated, const char* name, double otherwise) {
@@ -48,25 +48,25 @@ double sum_in_stamps(const SensorModel& model, const EffectDefinition& effect,
     return sum;
 }
 
-Finding whole_sensor_finding(const EffectDefinition& effect, const Baseline& baseline,
+Finding whole_sensor_finding(const EffectDefinition& effect, const Prediction& prediction,
                              std::map<std::string, double> params, std::map<std::string, double> sd) {
     Finding finding;
     finding.effect = effect.name;
     finding.parameters = static_cast<int>(sd.size());
     EffectModel entry{
         .effect = std::string(effect.name), .axes = {}, .params = std::move(params), .carried_json = {}};
-    for (const std::size_t axis : baseline.axes()) { entry.axes.emplace_back(axis_names[axis]); }
+    for (const std::size_t axis : prediction.axes()) { entry.axes.emplace_back(axis_names[axis]); }
     finding.entries.push_back(std::move(entry));
     finding.sd.push_back(std::move(sd));
-    finding.where.axes = baseline.axes();
+    finding.where.axes = prediction.axes();
     finding.where.structure = effect.signature->structure;
     return finding;
 }
 
-MadeTest make_stamp_test(std::optional<Finding> in_stamps, std::string stamps_untestable,
-                         std::unique_ptr<EffectTest> in_samples) {
+MadeEstimator make_stamp_estimator(std::optional<Finding> in_stamps, std::string stamps_untestable,
+                                   std::unique_ptr<Estimator> in_samples) {
     if (!stamps_untestable.empty() && !in_samples) { return {nullptr, std::move(stamps_untestable)}; }
-    return {std::make_unique<StampTest>(std::move(in_stamps), std::move(in_samples)), {}};
+    return {std::make_unique<StampEstimator>(std::move(in_stamps), std::move(in_samples)), {}};
 }
 
 }  // namespace gyrolog

@@ -1,5 +1,5 @@
-// What the tests of time stamps share. A simulation like a recording copies its stamps, so what the stamps
-// say is known when the test is made, and chance is judged by the stamps' own distributions.
+// What the estimators of time stamps share. A simulation like a recording copies its stamps, so what the
+// stamps say is known when the estimator is made, and chance is judged by the stamps' own distributions.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/diagnose/estimators/effect_test.hpp"
+#include "analysis/diagnose/estimators/estimator.hpp"
 
 namespace gyrolog {
 
@@ -25,14 +25,14 @@ double stated_uncertainty(const std::map<std::string, double>& stated, const cha
 double sum_in_stamps(const SensorModel& model, const EffectDefinition& effect,
                      double (*term)(const EffectValues&));
 
-// A finding about the sensor as a whole: one entry for all axes of the baseline.
-Finding whole_sensor_finding(const EffectDefinition& effect, const Baseline& baseline,
+// A finding about the sensor as a whole: one entry for all axes of the prediction.
+Finding whole_sensor_finding(const EffectDefinition& effect, const Prediction& prediction,
                              std::map<std::string, double> params, std::map<std::string, double> sd);
 
 // Finds in the recording itself what its stamps say, and in simulations nothing; where neither the stamps nor
-// the samples' timing can be judged, there is no test.
+// the samples' timing can be judged, there is no estimator.
 //   in_samples   asked of every observation: what the samples say about their own timing; may be null
-MadeTest make_stamp_test(std::optional<Finding> in_stamps, std::string stamps_untestable,
-                         std::unique_ptr<EffectTest> in_samples);
+MadeEstimator make_stamp_estimator(std::optional<Finding> in_stamps, std::string stamps_untestable,
+                                   std::unique_ptr<Estimator> in_samples);
 
 }  // namespace gyrolog

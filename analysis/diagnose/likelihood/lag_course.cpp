@@ -39,31 +39,31 @@ std::vector<float> smoothed(const std::vector<float>& values, std::size_t width)
 }
 
 // Of what changes little within a window.
-double drift_variance(const Baseline& baseline, std::size_t axis) {
+double drift_variance(const Prediction& prediction, std::size_t axis) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
-        if (baseline.bins()[i].f_hz > 0.5 / window_s) { break; }
-        sum += baseline.bins()[i].count() * baseline.parts(axis)[i].sum();
+    for (std::size_t i = 0; i < prediction.bins().size(); ++i) {
+        if (prediction.bins()[i].f_hz > 0.5 / window_s) { break; }
+        sum += prediction.bins()[i].count() * prediction.parts(axis)[i].sum();
     }
-    return sum * baseline.rate_hz() / static_cast<double>(baseline.length());
+    return sum * prediction.rate_hz() / static_cast<double>(prediction.length());
 }
 
 }  // namespace
 
-LagCourse::LagCourse(const Baseline& baseline, const Recording& recording)
-    : length_(baseline.length()),
-      window_slots_(std::max<std::size_t>(16, static_cast<std::size_t>(window_s * baseline.rate_hz()))),
+LagCourse::LagCourse(const Prediction& prediction, const Recording& recording)
+    : length_(prediction.length()),
+      window_slots_(std::max<std::size_t>(16, static_cast<std::size_t>(window_s * prediction.rate_hz()))),
       smooth_slots_(
-          std::max<std::size_t>(1, static_cast<std::size_t>(quickest_motion_s * baseline.rate_hz()))),
+          std::max<std::size_t>(1, static_cast<std::size_t>(quickest_motion_s * prediction.rate_hz()))),
       stride_(std::max<std::size_t>(1, smooth_slots_ / 2)) {
-    const std::int64_t origin = baseline.world().recording().segments.front().first_index;
+    const std::int64_t origin = prediction.world().recording().segments.front().first_index;
     present_.assign(length_, false);
-    for (const std::size_t axis : baseline.axes()) {
+    for (const std::size_t axis : prediction.axes()) {
         const Column& column = *recording.find(gyro_columns[axis]);
         Axis measured;
         measured.seen.assign(length_, 0.0F);
-        measured.per_variance = 1.0 / (baseline.parts(axis).back().sum() * baseline.rate_hz());
-        const std::vector<float>* expected = &baseline.quiet_response_rad_s(axis);
+        measured.per_variance = 1.0 / (prediction.parts(axis).back().sum() * prediction.rate_hz());
+        const std::vector<float>* expected = &prediction.denoised_response_rad_s(axis);
         double off = 0.0;
         double count = 0.0;
         for (const Segment& segment : recording.segments) {
@@ -89,7 +89,8 @@ LagCourse::LagCourse(const Baseline& baseline, const Recording& recording)
     follow();
     take_bias_off();
     for (std::size_t a = 0; a < axes_.size(); ++a) {
-        axes_[a].drift_rows = 1.0 / (axes_[a].per_variance * drift_variance(baseline, baseline.axes()[a]));
+        axes_[a].drift_rows =
+            1.0 / (axes_[a].per_variance * drift_variance(prediction, prediction.axes()[a]));
     }
     follow();
 }

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/likelihood/prediction.hpp"
 #include "analysis/recording/recording.hpp"
 
 namespace gyrolog {
@@ -25,8 +25,8 @@ struct LagSlope {
 
 class LagCourse {
 public:
-    // `recording` covers the grid of `baseline`, which moves.
-    LagCourse(const Baseline& baseline, const Recording& recording);
+    // `recording` covers the grid of `prediction`, which moves.
+    LagCourse(const Prediction& prediction, const Recording& recording);
 
     // The steady slope that fits best.
     LagSlope slope() const;

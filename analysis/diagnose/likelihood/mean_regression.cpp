@@ -16,10 +16,10 @@ namespace {
 // Of a response's weight, next to nothing even where all but a millionth of it is taken for an uncertain one.
 constexpr double weightless = 1e-11;
 
-void cut_tail(const Baseline& baseline, std::size_t axis, std::vector<float>& cosines) {
-    const SpectralBins& bins = baseline.bins();
+void cut_tail(const Prediction& prediction, std::size_t axis, std::vector<float>& cosines) {
+    const SpectralBins& bins = prediction.bins();
     BinSums weight = bin_sums(bins, cosines, cosines);
-    for (std::size_t i = 0; i < bins.size(); ++i) { weight[i] /= baseline.parts(axis)[i].sum(); }
+    for (std::size_t i = 0; i < bins.size(); ++i) { weight[i] /= prediction.parts(axis)[i].sum(); }
     const double negligible = weightless * std::accumulate(weight.begin(), weight.end(), 0.0);
     std::size_t kept = bins.size();
     double beyond = 0.0;
@@ -80,34 +80,36 @@ std::vector<double> NormalEquations::moved(std::span<const double> c) const {
     return moved;
 }
 
-MeanResponses::MeanResponses(const Baseline& baseline, std::size_t axis,
+MeanResponses::MeanResponses(const Prediction& prediction, std::size_t axis,
                              std::vector<std::vector<float>> cosines)
     : cosines_(std::move(cosines)) {
-    for (std::vector<float>& response : cosines_) { cut_tail(baseline, axis, response); }
+    for (std::vector<float>& response : cosines_) { cut_tail(prediction, axis, response); }
     for (const std::vector<float>& a : cosines_) {
-        for (const std::vector<float>& b : cosines_) { products_.push_back(bin_sums(baseline.bins(), a, b)); }
+        for (const std::vector<float>& b : cosines_) {
+            products_.push_back(bin_sums(prediction.bins(), a, b));
+        }
     }
-    const UncertainMean& uncertain = baseline.uncertain(axis);
+    const UncertainMean& uncertain = prediction.uncertain(axis);
     for (std::size_t u = 0; u < uncertain.size(); ++u) {
         for (const std::vector<float>& response : cosines_) {
-            uncertain_products_.push_back(bin_sums(baseline.bins(), uncertain[u].cosines, response));
+            uncertain_products_.push_back(bin_sums(prediction.bins(), uncertain[u].cosines, response));
         }
     }
 }
 
 MeanRegression::MeanRegression(const Observation& observation, std::size_t axis,
                                const MeanResponses& responses)
-    : baseline_(observation.baseline()),
+    : prediction_(observation.prediction()),
       seen_(observation.axis(axis)),
-      uncertain_(baseline_.uncertain(axis)),
+      uncertain_(prediction_.uncertain(axis)),
       responses_(responses) {
     for (std::size_t j = 0; j < responses_.size(); ++j) {
-        products_.push_back(bin_sums(baseline_.bins(), seen_.cosines, responses_.cosines(j)));
+        products_.push_back(bin_sums(prediction_.bins(), seen_.cosines, responses_.cosines(j)));
     }
 }
 
 NormalEquations MeanRegression::equations(std::span<const double> density) const {
-    const BinSums weights = bin_weights(density, baseline_.rate_hz());
+    const BinSums weights = bin_weights(density, prediction_.rate_hz());
     const std::size_t count = responses_.size();
     NormalEquations equations{Matrix(count, count), std::vector<double>(count), {}, {}};
     for (std::size_t i = 0; i < count; ++i) {
@@ -121,7 +123,7 @@ NormalEquations MeanRegression::equations(std::span<const double> density) const
 }
 
 MeanRegression::Rest MeanRegression::rest(const NormalEquations& equations, std::span<const double> c) const {
-    const SpectralBins& bins = baseline_.bins();
+    const SpectralBins& bins = prediction_.bins();
     // Sums of squares of what is left, from the products alone.
     BinSums change(bins.size(), 0.0);
     for (std::size_t i = 0; i < responses_.size(); ++i) {
@@ -148,7 +150,7 @@ MeanRegression::Rest MeanRegression::rest(const NormalEquations& equations, std:
     }
     rest.power.resize(bins.size());
     for (std::size_t i = 0; i < bins.size(); ++i) {
-        const double by = change[i] / (bins[i].count() * baseline_.rate_hz());
+        const double by = change[i] / (bins[i].count() * prediction_.rate_hz());
         rest.power[i] = std::max(0.0, seen_.power[i] + by);
     }
     return rest;

@@ -1,5 +1,5 @@
 // Generalised least squares of responses in the cosine coefficients of one axis, with the model's uncertain
-// responses (Baseline::uncertain) projected out within their prior.
+// responses (Prediction::uncertain) projected out within their prior.
 #pragma once
 
 #include <span>
@@ -35,7 +35,7 @@ class MeanResponses {
 public:
     MeanResponses() = default;
     // Cosine coefficients by response. Beyond the last that weighs anything under the model they are cut off.
-    MeanResponses(const Baseline& baseline, std::size_t axis, std::vector<std::vector<float>> cosines);
+    MeanResponses(const Prediction& prediction, std::size_t axis, std::vector<std::vector<float>> cosines);
 
     std::size_t size() const { return cosines_.size(); }
     const std::vector<float>& cosines(std::size_t j) const { return cosines_[j]; }
@@ -67,7 +67,7 @@ public:
     Rest rest(const NormalEquations& equations, std::span<const double> c) const;
 
 private:
-    const Baseline& baseline_;
+    const Prediction& prediction_;
     const AxisObservation& seen_;
     const UncertainMean& uncertain_;
     const MeanResponses& responses_;

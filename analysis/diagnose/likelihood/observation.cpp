@@ -44,17 +44,17 @@ std::vector<bool> judged_rows(const Recording& recording, const SensorModel& mod
 
 // Where the rows belong on the grid: where their stamps have them, or where the motion has them if the model
 // knows of losses that the stamps hide.
-std::vector<Segment> placed_rows(const Baseline& baseline, const Recording& recording) {
-    const bool hidden = std::ranges::any_of(baseline.model().effects, [](const EffectModel& entry) {
+std::vector<Segment> placed_rows(const Prediction& prediction, const Recording& recording) {
+    const bool hidden = std::ranges::any_of(prediction.model().effects, [](const EffectModel& entry) {
         const EffectSignature* signature = find_effect(entry.effect)->signature;
         return signature != nullptr && signature->hides_losses != nullptr &&
                signature->hides_losses(EffectValues(entry));
     });
-    if (!hidden || !baseline.moves()) { return recording.segments; }
-    const std::int64_t origin = baseline.world().recording().segments.front().first_index;
+    if (!hidden || !prediction.moves()) { return recording.segments; }
+    const std::int64_t origin = prediction.world().recording().segments.front().first_index;
     std::vector<Segment> placed;
     std::int64_t late = 0;
-    const std::vector<LagStep> steps = LagCourse(baseline, recording).steps();
+    const std::vector<LagStep> steps = LagCourse(prediction, recording).steps();
     auto step = steps.begin();
     for (Segment segment : recording.segments) {
         for (; step != steps.end(); ++step) {
@@ -134,9 +134,9 @@ double take_mean_off(std::vector<float>& values, const std::vector<bool>& presen
 
 // Moves the parameters of the model's uncertain responses to their most likely values under the density; what
 // is left has other products and another power.
-void give_way(const Baseline& baseline, std::size_t axis, AxisObservation& seen) {
-    const UncertainMean& uncertain = baseline.uncertain(axis);
-    const BinSums weights = bin_weights(seen.density, baseline.rate_hz());
+void give_way(const Prediction& prediction, std::size_t axis, AxisObservation& seen) {
+    const UncertainMean& uncertain = prediction.uncertain(axis);
+    const BinSums weights = bin_weights(seen.density, prediction.rate_hz());
     const std::vector<double> step = uncertain.step(weights, seen.uncertain_products, seen.uncertain_fit);
     BinSums change(weights.size(), 0.0);
     for (std::size_t u = 0; u < uncertain.size(); ++u) {
@@ -152,7 +152,7 @@ void give_way(const Baseline& baseline, std::size_t axis, AxisObservation& seen)
         }
     }
     for (std::size_t i = 0; i < seen.power.size(); ++i) {
-        const double by = change[i] / (baseline.bins()[i].count() * baseline.rate_hz());
+        const double by = change[i] / (prediction.bins()[i].count() * prediction.rate_hz());
         seen.power[i] = std::max(0.0, seen.power[i] + by);
     }
 }
@@ -178,10 +178,10 @@ std::vector<float> in_time(const UncertainMean& uncertain, const std::vector<dou
 }
 
 // White noise whose level the model has go with time has the same variance throughout afterwards.
-void even_out(const Baseline& baseline, std::size_t axis, std::vector<float>& whitened) {
-    const std::vector<float>& course = baseline.white_course(axis);
+void even_out(const Prediction& prediction, std::size_t axis, std::vector<float>& whitened) {
+    const std::vector<float>& course = prediction.white_course(axis);
     if (course.empty()) { return; }
-    const double share = white_share(baseline, axis).variance;
+    const double share = white_share(prediction, axis).variance;
     for (std::size_t slot = 0; slot < whitened.size(); ++slot) {
         const double variance = 1.0 + share * (static_cast<double>(course[slot]) - 1.0);
         whitened[slot] = static_cast<float>(static_cast<double>(whitened[slot]) / std::sqrt(variance));
@@ -203,25 +203,26 @@ void measure_power(const SpectralBins& bins, double rate_hz, const std::vector<f
 
 }  // namespace
 
-Observation::Observation(std::shared_ptr<const Baseline> baseline, std::shared_ptr<const Recording> recording,
-                         std::uint64_t seed, ReferenceNoise reference_noise)
-    : baseline_(std::move(baseline)),
+Observation::Observation(std::shared_ptr<const Prediction> prediction,
+                         std::shared_ptr<const Recording> recording, std::uint64_t seed,
+                         ReferenceNoise reference_noise)
+    : prediction_(std::move(prediction)),
       recording_(std::move(recording)),
       reference_noise_(reference_noise),
-      segments_(placed_rows(*baseline_, *recording_)) {
-    const std::size_t length = baseline_->length();
-    const std::int64_t origin = baseline_->world().recording().segments.front().first_index;
+      segments_(placed_rows(*prediction_, *recording_)) {
+    const std::size_t length = prediction_->length();
+    const std::int64_t origin = prediction_->world().recording().segments.front().first_index;
     present_.assign(length, false);
-    const std::vector<bool> judged = judged_rows(*recording_, baseline_->model());
+    const std::vector<bool> judged = judged_rows(*recording_, prediction_->model());
     for_each_slot(segments_, origin, length,
                   [&](std::size_t slot, std::size_t row) { present_[slot] = judged[row]; });
-    const TransformPool::Lease transform = baseline_->transform();
-    for (const std::size_t axis : baseline_->axes()) { observe(axis, seed, *transform); }
+    const TransformPool::Lease transform = prediction_->transform();
+    for (const std::size_t axis : prediction_->axes()) { observe(axis, seed, *transform); }
     // What moved before the recording began is not known, and a sensor that lags shows it.
-    const double unknown_s = baseline_->moves() ? unknown_start_s : 0.0;
+    const double unknown_s = prediction_->moves() ? unknown_start_s : 0.0;
     for (std::size_t slot = 0; slot < length; ++slot) {
-        const bool known = static_cast<double>(slot) >= unknown_s * baseline_->rate_hz();
-        present_[slot] = present_[slot] && known && has_slot(baseline_->half(), slot, length);
+        const bool known = static_cast<double>(slot) >= unknown_s * prediction_->rate_hz();
+        present_[slot] = present_[slot] && known && has_slot(prediction_->half(), slot, length);
     }
 }
 
@@ -229,11 +230,11 @@ void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
                                     std::vector<float>& residual_rad_s) const {
     const bool drawn = reference_noise_ == ReferenceNoise::drawn;
     const std::vector<float>& expected =
-        drawn ? baseline_->quiet_response_rad_s(axis) : baseline_->response_rad_s(axis);
-    const double drawn_sd_rad_s = drawn ? baseline_->reference_noise_rad_s(axis) : 0.0;
+        drawn ? prediction_->denoised_response_rad_s(axis) : prediction_->response_rad_s(axis);
+    const double drawn_sd_rad_s = drawn ? prediction_->reference_noise_rad_s(axis) : 0.0;
     const RandomStream noise(seed, reference_stream + static_cast<std::uint32_t>(axis));
     const Column& column = *recording_->find(gyro_columns[axis]);
-    const std::int64_t origin = baseline_->world().recording().segments.front().first_index;
+    const std::int64_t origin = prediction_->world().recording().segments.front().first_index;
     for_each_slot(segments_, origin, residual_rad_s.size(), [&](std::size_t slot, std::size_t row) {
         double residual = column.value(row) - static_cast<double>(expected[slot]);
         if (drawn_sd_rad_s > 0.0) { residual -= drawn_sd_rad_s * noise.normal(slot); }
@@ -243,48 +244,48 @@ void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
 
 // The noise, and how far the uncertain responses give way.
 void Observation::fit_model(std::size_t axis, CosineTransform& transform) {
-    const Baseline& baseline = *baseline_;
+    const Prediction& prediction = *prediction_;
     AxisObservation& seen = axes_[axis];
     std::vector<double> work(seen.residual_rad_s.begin(), seen.residual_rad_s.end());
     transform.forward(work);
     work[0] = 0.0;
     seen.cosines.assign(work.begin(), work.end());
-    measure_power(baseline.bins(), baseline.rate_hz(), seen.cosines, seen.power);
-    const std::array<double, 3> sd_rel = noise_uncertainty(baseline.model(), axis);
-    seen.density.resize(baseline.bins().size());
+    measure_power(prediction.bins(), prediction.rate_hz(), seen.cosines, seen.power);
+    const std::array<double, 3> sd_rel = noise_uncertainty(prediction.model(), axis);
+    seen.density.resize(prediction.bins().size());
     const auto fit_noise = [&] {
-        seen.noise = fit_nuisance(baseline.bins(), baseline.parts(axis), seen.power, sd_rel, seen.noise);
-        expected_density(baseline.parts(axis), sd_rel, seen.noise.z, seen.density);
+        seen.noise = fit_nuisance(prediction.bins(), prediction.parts(axis), seen.power, sd_rel, seen.noise);
+        expected_density(prediction.parts(axis), sd_rel, seen.noise.z, seen.density);
     };
     fit_noise();
-    const UncertainMean& uncertain = baseline.uncertain(axis);
+    const UncertainMean& uncertain = prediction.uncertain(axis);
     if (uncertain.empty()) { return; }
-    seen.uncertain_products = uncertain.products_with(baseline.bins(), seen.cosines);
+    seen.uncertain_products = uncertain.products_with(prediction.bins(), seen.cosines);
     seen.uncertain_fit.assign(uncertain.size(), 0.0);
     // What they explain was noise to the first fit.
     for (int round = 0; round < 3; ++round) {
-        give_way(baseline, axis, seen);
+        give_way(prediction, axis, seen);
         fit_noise();
     }
 }
 
 void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform) {
-    const Baseline& baseline = *baseline_;
-    const std::size_t length = baseline.length();
-    const double rate_hz = baseline.rate_hz();
+    const Prediction& prediction = *prediction_;
+    const std::size_t length = prediction.length();
+    const double rate_hz = prediction.rate_hz();
     AxisObservation& seen = axes_[axis];
     std::vector<float>& residual = seen.residual_rad_s;
     residual.assign(length, 0.0F);
     take_expected_off(axis, seed, residual);
     seen.mean_rad_s = take_mean_off(residual, present_);
-    const double white = baseline.parts(axis).back().sum();
+    const double white = prediction.parts(axis).back().sum();
     const auto fill = [&] {
         fill_holes(residual, present_, std::sqrt(white * rate_hz),
                    RandomStream(seed, stand_in_stream + static_cast<std::uint32_t>(axis)));
     };
     fill();
     fit_model(axis, transform);
-    const UncertainMean& uncertain = baseline.uncertain(axis);
+    const UncertainMean& uncertain = prediction.uncertain(axis);
     if (!uncertain.empty()) {
         // What stands in for a sample follows the motion as the samples do.
         const bool whole = std::ranges::find(present_, false) == present_.end();
@@ -302,7 +303,7 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     }
     seen.whitened.resize(length);
     seen.whitened[0] = 0.0F;
-    const SpectralBins& bins = baseline.bins();
+    const SpectralBins& bins = prediction.bins();
     for (std::size_t i = 0; i < bins.size(); ++i) {
         const auto scale = static_cast<float>(1.0 / std::sqrt(seen.density[i] * rate_hz));
         // Coefficients of which the half has no bin go with the next one's.
@@ -311,19 +312,19 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
         for (std::size_t k = first; k < end; ++k) { seen.whitened[k] = seen.cosines[k] * scale; }
     }
     transform.inverse(std::span<float>(seen.whitened));
-    even_out(baseline, axis, seen.whitened);
+    even_out(prediction, axis, seen.whitened);
 }
 
 double log_likelihood_nats(const Observation& observation) {
     double nats = 0.0;
-    for (const std::size_t axis : observation.baseline().axes()) {
+    for (const std::size_t axis : observation.prediction().axes()) {
         nats += observation.axis(axis).noise.log_likelihood_nats - uncertain_charge_nats(observation, axis);
     }
     return nats;
 }
 
 double uncertain_charge_nats(const Observation& observation, std::size_t axis) {
-    const UncertainMean& uncertain = observation.baseline().uncertain(axis);
+    const UncertainMean& uncertain = observation.prediction().uncertain(axis);
     double charge = 0.0;
     for (std::size_t u = 0; u < uncertain.size(); ++u) {
         const double z = observation.axis(axis).uncertain_fit[u] / uncertain[u].sd;

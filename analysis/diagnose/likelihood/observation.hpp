@@ -1,5 +1,5 @@
-// One recording, real or simulated, against a baseline: what is left of it when the model's noise-free answer
-// is taken off, in the form that likelihoods need.
+// One recording, real or simulated, against a prediction: what is left of it when the model's noise-free
+// answer is taken off, in the form that likelihoods need.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/diagnose/likelihood/baseline.hpp"
 #include "analysis/diagnose/likelihood/noise_nuisance.hpp"
+#include "analysis/diagnose/likelihood/prediction.hpp"
 #include "analysis/recording/recording.hpp"
 
 namespace gyrolog {
@@ -21,7 +21,7 @@ struct AxisObservation {
     std::vector<float> residual_rad_s;
     std::vector<float> cosines;               // DCT-II of the residual, Y_0 = 0; rad/s
     double mean_rad_s = 0.0;                  // that was taken off
-    std::vector<double> uncertain_fit;        // values of Baseline::uncertain() that were taken off
+    std::vector<double> uncertain_fit;        // values of Prediction::uncertain() that were taken off
     std::vector<BinSums> uncertain_products;  // of the coefficients with its responses
     std::vector<double> power;    // by bin: mean square of the coefficients, over the rate: a density
     NoiseNuisance noise;          // the model's coefficients, fitted within their uncertainty
@@ -34,18 +34,19 @@ struct AxisObservation {
 class Observation {
 public:
     // Where the reference's noise comes from that is in every sample's expectation: from the recording, or,
-    // for what was simulated in the quiet world, from `seed`.
+    // for what was simulated in the denoised world, from `seed`.
     enum class ReferenceNoise { recorded, drawn };
 
-    // `recording` covers the baseline's grid (it, or a simulation like it). `seed` for what stands in holes.
-    Observation(std::shared_ptr<const Baseline> baseline, std::shared_ptr<const Recording> recording,
+    // `recording` covers the prediction's grid (it, or a simulation like it). `seed` for what stands in
+    // holes.
+    Observation(std::shared_ptr<const Prediction> prediction, std::shared_ptr<const Recording> recording,
                 std::uint64_t seed, ReferenceNoise reference_noise = ReferenceNoise::recorded);
 
-    const Baseline& baseline() const { return *baseline_; }
+    const Prediction& prediction() const { return *prediction_; }
     const Recording& recording() const { return *recording_; }
-    // Of an axis that the baseline has.
+    // Of an axis that the prediction has.
     const AxisObservation& axis(std::size_t axis) const { return axes_[axis]; }
-    // By slot: a sample was there, is to be judged and belongs to the baseline's half.
+    // By slot: a sample was there, is to be judged and belongs to the prediction's half.
     const std::vector<bool>& present() const { return present_; }
 
 private:
@@ -53,7 +54,7 @@ private:
     void fit_model(std::size_t axis, CosineTransform& transform);
     void take_expected_off(std::size_t axis, std::uint64_t seed, std::vector<float>& residual_rad_s) const;
 
-    std::shared_ptr<const Baseline> baseline_;
+    std::shared_ptr<const Prediction> prediction_;
     std::shared_ptr<const Recording> recording_;
     ReferenceNoise reference_noise_;
     std::vector<Segment> segments_;  // where its rows belong on the grid

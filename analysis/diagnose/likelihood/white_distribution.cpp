@@ -26,9 +26,9 @@ double log_likelihood(const WhitenedHistogram& histogram, const LogDensityTable&
 
 }  // namespace
 
-double white_degrees_of_freedom(const Baseline& baseline, std::size_t axis) {
+double white_degrees_of_freedom(const Prediction& prediction, std::size_t axis) {
     double nu = std::numeric_limits<double>::infinity();
-    for (const EffectModel& entry : baseline.model().effects) {
+    for (const EffectModel& entry : prediction.model().effects) {
         const EffectSignature* signature = find_effect(entry.effect)->signature;
         if (signature == nullptr || signature->degrees_of_freedom == nullptr) { continue; }
         if (acts_on(entry, axis)) { nu = signature->degrees_of_freedom(EffectValues(entry)); }
@@ -36,8 +36,8 @@ double white_degrees_of_freedom(const Baseline& baseline, std::size_t axis) {
     return nu;
 }
 
-NormalMixture whitened_mixture(const Baseline& baseline, std::size_t axis, double nu) {
-    const WhiteShare share = white_share(baseline, axis);
+NormalMixture whitened_mixture(const Prediction& prediction, std::size_t axis, double nu) {
+    const WhiteShare share = white_share(prediction, axis);
     return {nu, share.own_variance, share.lattice};
 }
 

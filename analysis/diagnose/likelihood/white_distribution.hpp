@@ -1,9 +1,9 @@
-// How the white noise of an axis is distributed by the baseline's model.
+// How the white noise of an axis is distributed by the prediction's model.
 #pragma once
 
 #include <cstddef>
 
-#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/likelihood/prediction.hpp"
 #include "analysis/diagnose/likelihood/whitened_blocks.hpp"
 #include "analysis/numerics/normal_mixture.hpp"
 
@@ -11,10 +11,10 @@ namespace gyrolog {
 
 // Degrees of freedom of Student's t; infinity: normal. Of several entries the last one rules, as it does in
 // the simulator.
-double white_degrees_of_freedom(const Baseline& baseline, std::size_t axis);
+double white_degrees_of_freedom(const Prediction& prediction, std::size_t axis);
 
 // Of a whitened sample whose white noise has `nu` degrees of freedom.
-NormalMixture whitened_mixture(const Baseline& baseline, std::size_t axis, double nu);
+NormalMixture whitened_mixture(const Prediction& prediction, std::size_t axis, double nu);
 
 struct ScaledFit {
     double log_likelihood_nats = 0.0;

@@ -15,7 +15,7 @@ struct WhiteShare {
     double lattice = 0.0;  // the model's converter step in the unit of whitened samples
 };
 
-WhiteShare white_share(const Baseline& baseline, std::size_t axis);
+WhiteShare white_share(const Prediction& prediction, std::size_t axis);
 
 // By how much one sample off by 1 rad/s raises its whitened one, as the observation's own noise has it:
 // samples that are off raise that as well.

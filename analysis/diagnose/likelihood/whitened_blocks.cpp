@@ -73,7 +73,7 @@ double usual_variance(const WhitenedBlocks& blocks, std::size_t block) {
 
 std::size_t end_of(const WhitenedBlocks& blocks, const Observation& observation, std::size_t block) {
     // What is left over belongs to the last block.
-    return block + 1 == blocks.size() ? observation.baseline().length() : (block + 1) * blocks.length;
+    return block + 1 == blocks.size() ? observation.prediction().length() : (block + 1) * blocks.length;
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ std::size_t WhitenedBlocks::length_for(std::size_t slots) {
 bool WhitenedBlocks::has_noise() const { return level > dead_level && std::isfinite(level); }
 
 WhitenedBlocks whitened_blocks(const Observation& observation, std::size_t axis) {
-    const std::size_t slots = observation.baseline().length();
+    const std::size_t slots = observation.prediction().length();
     WhitenedBlocks blocks;
     blocks.length = WhitenedBlocks::length_for(slots);
     const std::size_t count = slots / blocks.length;
@@ -105,7 +105,7 @@ WhitenedBlocks whitened_blocks(const Observation& observation, std::size_t axis)
     std::vector<std::pair<std::size_t, Moments>> mended;
     for (std::size_t block = 0; block < count; ++block) {
         const double limit = outlier_sigma * std::sqrt(usual_variance(blocks, block));
-        // A first look that any outlier fails.
+        // A first pass that any outlier fails.
         if (furthest[block] + std::fabs(blocks.mean[block]) <= limit || !(limit > 0.0)) { continue; }
         // A single large one moves the mean by its own part of the block.
         const Moments core = moments_of(observation, axis, block * blocks.length,

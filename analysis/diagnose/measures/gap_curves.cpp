@@ -35,7 +35,7 @@ std::vector<std::size_t> band_edges(const SpectralBins& bins) {
 }
 
 GapCurve spectrum_curve(const Observation& observation, std::size_t axis) {
-    const SpectralBins& bins = observation.baseline().bins();
+    const SpectralBins& bins = observation.prediction().bins();
     const AxisObservation& seen = observation.axis(axis);
     const std::vector<std::size_t> edges = band_edges(bins);
     GapCurve curve{GapDomainKind::spectrum, axis, axis, {}, {}};
@@ -61,7 +61,7 @@ void keep_every_second(std::vector<double>& values) {
 }
 
 GapCurve allan_curve(const Observation& observation, std::size_t axis) {
-    const Baseline& baseline = observation.baseline();
+    const Prediction& prediction = observation.prediction();
     const std::vector<float>& residual = observation.axis(axis).residual_rad_s;
     std::vector<double> integral(residual.size() + 1, 0.0);
     for (std::size_t i = 0; i < residual.size(); ++i) {
@@ -82,7 +82,7 @@ GapCurve allan_curve(const Observation& observation, std::size_t axis) {
         const double squares =
             (sums.tail(count) - 2.0 * sums.segment(within, count) + sums.head(count)).square().sum();
         const auto span = static_cast<double>(m);
-        curve.x.push_back(span / baseline.rate_hz());
+        curve.x.push_back(span / prediction.rate_hz());
         curve.value.push_back(0.5 * std::log(squares / (2.0 * static_cast<double>(count) * span * span)));
     }
     return curve;
@@ -104,7 +104,7 @@ void course_and_drift(const Observation& observation, std::size_t axis, std::vec
             squares += square(static_cast<double>(white[slot]));
             count += 1.0;
         }
-        const double at_s = 0.5 * static_cast<double>(first + end) / observation.baseline().rate_hz();
+        const double at_s = 0.5 * static_cast<double>(first + end) / observation.prediction().rate_hz();
         course.x.push_back(at_s);
         drift.x.push_back(at_s);
         course.value.push_back(count > 0.0 ? std::log(std::max(squares / count, 1e-12)) : 0.0);
@@ -155,7 +155,7 @@ Eigen::Map<const Eigen::ArrayXf> cosines(const AxisObservation& seen) {
 }
 
 GapCurve correlation_curve(const Observation& observation, std::size_t axis, std::size_t other) {
-    const SpectralBins& bins = observation.baseline().bins();
+    const SpectralBins& bins = observation.prediction().bins();
     const AxisObservation& a = observation.axis(axis);
     const AxisObservation& b = observation.axis(other);
     const std::vector<std::size_t> edges = band_edges(bins);
@@ -180,15 +180,15 @@ GapCurve correlation_curve(const Observation& observation, std::size_t axis, std
 }  // namespace
 
 std::vector<GapCurve> gap_curves(const Observation& observation) {
-    const Baseline& baseline = observation.baseline();
+    const Prediction& prediction = observation.prediction();
     // Means of codes are equal now and then, those of a simulation never; and how samples are distributed
     // their means do not tell, but a spike among them is far from the others.
-    const bool are_samples = baseline.world().recording().samples_per_row == 1;
+    const bool are_samples = prediction.world().recording().samples_per_row == 1;
     std::vector<GapCurve> curves;
-    for (const std::size_t axis : baseline.axes()) {
+    for (const std::size_t axis : prediction.axes()) {
         curves.push_back(allan_curve(observation, axis));
         curves.push_back(spectrum_curve(observation, axis));
-        curves.push_back(narrow_curve(observation, axis, band_edges(baseline.bins())));
+        curves.push_back(narrow_curve(observation, axis, band_edges(prediction.bins())));
         course_and_drift(observation, axis, curves);
         if (are_samples) {
             curves.push_back(amplitude_curve(observation, axis));
@@ -196,11 +196,11 @@ std::vector<GapCurve> gap_curves(const Observation& observation) {
         }
         curves.push_back(period_curve(observation, axis));
         curves.push_back(codes_curve(observation, axis));
-        if (varies(baseline.temperature_C())) { curves.push_back(temperature_curve(observation, axis)); }
-        for (const std::size_t other : baseline.axes()) {
+        if (varies(prediction.temperature_C())) { curves.push_back(temperature_curve(observation, axis)); }
+        for (const std::size_t other : prediction.axes()) {
             if (other > axis) { curves.push_back(correlation_curve(observation, axis, other)); }
         }
-        if (baseline.moves()) {
+        if (prediction.moves()) {
             std::ranges::move(motion_curves(observation, axis), std::back_inserter(curves));
         }
     }

@@ -41,7 +41,7 @@ struct GapCurve {
     bool of_all_axes = false;
 };
 
-// Of one observation: the same curves, of as many points, for every observation of a baseline.
+// Of one observation: the same curves, of as many points, for every observation of a prediction.
 //   allan        ln of the Allan deviation of the residual over averaging times, over the model's
 //   spectrum     ln of the power over the fitted density, thirds of octaves
 //   course       ln of the whitened samples' variance over time

@@ -101,7 +101,7 @@ GapCurve course_curve(GapDomainKind kind, const Observation& observation, std::s
             product += static_cast<double>(white[slot]) * static_cast<double>(drive[slot]);
             squares += square(static_cast<double>(drive[slot]));
         }
-        curve.x.push_back(0.5 * static_cast<double>(first + end) / observation.baseline().rate_hz());
+        curve.x.push_back(0.5 * static_cast<double>(first + end) / observation.prediction().rate_hz());
         curve.value.push_back(squares > 0.0 ? product / std::sqrt(squares) : 0.0);
     }
     return curve;
@@ -116,16 +116,16 @@ bool varies(const std::vector<float>& values) {
 }
 
 GapCurve temperature_curve(const Observation& observation, std::size_t axis) {
-    const std::vector<float>& temperature_C = observation.baseline().temperature_C();
+    const std::vector<float>& temperature_C = observation.prediction().temperature_C();
     return mean_curve(GapDomainKind::temperature, axis, axis,
                       by_value(observation, axis, temperature_C, equal_ranges(temperature_C)));
 }
 
 std::vector<GapCurve> motion_curves(const Observation& observation, std::size_t axis) {
-    const Baseline& baseline = observation.baseline();
+    const Prediction& prediction = observation.prediction();
     std::vector<GapCurve> curves;
-    for (const std::size_t other : baseline.axes()) {
-        const std::vector<float>& rate = baseline.true_rate_rad_s(other);
+    for (const std::size_t other : prediction.axes()) {
+        const std::vector<float>& rate = prediction.true_rate_rad_s(other);
         if (!varies(rate)) { continue; }
         const ValueBins bins = by_value(observation, axis, rate, equal_ranges(rate));
         curves.push_back(mean_curve(GapDomainKind::rate, axis, other, bins));
@@ -133,7 +133,7 @@ std::vector<GapCurve> motion_curves(const Observation& observation, std::size_t 
         curves.push_back(variance_curve(GapDomainKind::rate_noise, axis, bins));
         curves.push_back(course_curve(GapDomainKind::gain_course, observation, axis, rate));
     }
-    const std::vector<float>& change = baseline.response_change_rad_s2(axis);
+    const std::vector<float>& change = prediction.response_change_rad_s2(axis);
     if (!varies(change)) { return curves; }
     curves.push_back(mean_curve(GapDomainKind::acceleration, axis, axis,
                                 by_value(observation, axis, change, equal_counts(observation, change))));

@@ -54,7 +54,7 @@ Moments moments_of(const std::vector<float>& values) {
 
 void fill_memory(const Observation& observation, std::vector<float> means, double variance, GapCurve& curve) {
     // As many points for every observation, however many of its samples are to be judged.
-    const std::size_t slots = observation.baseline().length();
+    const std::size_t slots = observation.prediction().length();
     for (std::size_t length = 1; slots / length >= memory_blocks_least; length *= 2) {
         const std::size_t pairs = means.size() / 2;
         double sum = 0.0;
@@ -66,7 +66,7 @@ void fill_memory(const Observation& observation, std::vector<float> means, doubl
         }
         means.resize(pairs);
         const double expected = 2.0 * variance / static_cast<double>(length) * static_cast<double>(pairs);
-        curve.x.push_back(static_cast<double>(length) / observation.baseline().rate_hz());
+        curve.x.push_back(static_cast<double>(length) / observation.prediction().rate_hz());
         // Few pairs are far from normal; the cube root is nearer (see the spectrum's).
         curve.value.push_back(expected > 0.0 ? std::cbrt(sum / expected) - 1.0 : 0.0);
     }
@@ -75,9 +75,9 @@ void fill_memory(const Observation& observation, std::vector<float> means, doubl
 // Means of the squares in blocks, as unit white noise; 0 where none of a block's samples is judged.
 std::vector<float> levels(const Observation& observation, const std::vector<float>& squares,
                           const Moments& all, std::size_t length) {
-    std::vector<float> level(observation.baseline().length() / length, 0.0F);
+    std::vector<float> level(observation.prediction().length() / length, 0.0F);
     const std::vector<bool>& present = observation.present();
-    const bool is_whole = squares.size() == observation.baseline().length();
+    const bool is_whole = squares.size() == observation.prediction().length();
     std::size_t next = 0;
     for (std::size_t block = 0; block < level.size(); ++block) {
         const auto first = present.begin() + static_cast<std::ptrdiff_t>(block * length);
@@ -97,7 +97,7 @@ std::vector<float> levels(const Observation& observation, const std::vector<floa
 }
 
 GapCurve of_all_axes(GapDomainKind kind, const Observation& observation) {
-    const std::vector<std::size_t>& axes = observation.baseline().axes();
+    const std::vector<std::size_t>& axes = observation.prediction().axes();
     GapCurve curve{kind, axes.front(), axes.front(), {}, {}};
     curve.of_all_axes = axes.size() > 1;
     return curve;
@@ -118,14 +118,14 @@ GapCurve rhythm_curve(const Observation& observation, const std::vector<std::vec
 }  // namespace
 
 std::vector<GapCurve> noise_level_curves(const Observation& observation) {
-    const Baseline& baseline = observation.baseline();
+    const Prediction& prediction = observation.prediction();
     const auto length =
-        static_cast<std::size_t>(std::max(rhythm_samples_least, rhythm_step_s * baseline.rate_hz()));
-    const bool has_rhythm = baseline.length() / length >= rhythm_steps_least;
+        static_cast<std::size_t>(std::max(rhythm_samples_least, rhythm_step_s * prediction.rate_hz()));
+    const bool has_rhythm = prediction.length() / length >= rhythm_steps_least;
     std::vector<GapCurve> curves;
     std::vector<std::vector<float>> series;
     std::vector<float> sum;
-    for (const std::size_t axis : baseline.axes()) {
+    for (const std::size_t axis : prediction.axes()) {
         std::vector<float> squares = squares_of(observation, axis);
         const Moments all = moments_of(squares);
         sum.resize(squares.size(), 0.0F);
@@ -134,13 +134,14 @@ std::vector<GapCurve> noise_level_curves(const Observation& observation) {
         curves.push_back({GapDomainKind::memory, axis, axis, {}, {}});
         fill_memory(observation, std::move(squares), all.variance, curves.back());
     }
-    if (baseline.axes().size() > 1) {
+    if (prediction.axes().size() > 1) {
         curves.push_back(of_all_axes(GapDomainKind::memory, observation));
         const double variance = moments_of(sum).variance;
         fill_memory(observation, std::move(sum), variance, curves.back());
     }
     if (has_rhythm) {
-        curves.push_back(rhythm_curve(observation, series, static_cast<double>(length) / baseline.rate_hz()));
+        curves.push_back(
+            rhythm_curve(observation, series, static_cast<double>(length) / prediction.rate_hz()));
     }
     return curves;
 }

@@ -71,7 +71,7 @@ GapCurve repeats_curve(const Observation& observation, std::size_t axis) {
     }
     GapCurve curve{GapDomainKind::repeats, axis, axis, {}, {}};
     for (std::size_t lag = 0; lag < repeat_lags; ++lag) {
-        curve.x.push_back(static_cast<double>(lag + 1) / observation.baseline().rate_hz());
+        curve.x.push_back(static_cast<double>(lag + 1) / observation.prediction().rate_hz());
         const double variance = counts[lag] + compared / static_cast<double>(compared_lags) + 1.0;
         curve.value.push_back((counts[lag] - compared) / std::sqrt(variance));
     }
@@ -79,20 +79,20 @@ GapCurve repeats_curve(const Observation& observation, std::size_t axis) {
 }
 
 GapCurve period_curve(const Observation& observation, std::size_t axis) {
-    const Baseline& baseline = observation.baseline();
+    const Prediction& prediction = observation.prediction();
     const AxisObservation& seen = observation.axis(axis);
     // The inverse transform of the whitened power is its autocorrelation, half a sample beside the whole
     // lags: two neighbours together are the one at the lag between them, seen through a slight low-pass.
     std::vector<float> correlation(seen.cosines.size(), 0.0F);
-    for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
-        const double expected = seen.density[i] * baseline.rate_hz();
-        for (std::size_t k = std::max<std::size_t>(baseline.bins()[i].first, 1); k < baseline.bins()[i].end;
-             ++k) {
+    for (std::size_t i = 0; i < prediction.bins().size(); ++i) {
+        const double expected = seen.density[i] * prediction.rate_hz();
+        for (std::size_t k = std::max<std::size_t>(prediction.bins()[i].first, 1);
+             k < prediction.bins()[i].end; ++k) {
             const double power = square(static_cast<double>(seen.cosines[k])) / expected;
             correlation[k] = static_cast<float>(std::min(power, power_most) - 1.0);
         }
     }
-    baseline.transform()->inverse(std::span<float>(correlation));
+    prediction.transform()->inverse(std::span<float>(correlation));
     for (std::size_t lag = correlation.size() - 1; lag > 0; --lag) {
         correlation[lag] += correlation[lag - 1];
     }
@@ -117,7 +117,7 @@ GapCurve period_curve(const Observation& observation, std::size_t axis) {
         }
         // Half the chance of either sign's square.
         const double surprise = surprise_of_largest(square(most / sd), 1.0, 0.5 * static_cast<double>(from));
-        curve.x.push_back(static_cast<double>(from) * std::sqrt(2.0) / baseline.rate_hz());
+        curve.x.push_back(static_cast<double>(from) * std::sqrt(2.0) / prediction.rate_hz());
         curve.value.push_back(deviate_of(surprise));
     }
     return curve;
@@ -153,12 +153,12 @@ Window most_surprising(const std::vector<double>& sums, std::span<const std::siz
 
 std::vector<double> whitened_sums(const Observation& observation, std::size_t axis, std::size_t from_bin,
                                   std::size_t end_bin) {
-    const Baseline& baseline = observation.baseline();
+    const Prediction& prediction = observation.prediction();
     const AxisObservation& seen = observation.axis(axis);
     std::vector<double> sums(1, 0.0);
     for (std::size_t i = from_bin; i < end_bin; ++i) {
-        const double expected = seen.density[i] * baseline.rate_hz();
-        for (std::size_t k = baseline.bins()[i].first; k < baseline.bins()[i].end; ++k) {
+        const double expected = seen.density[i] * prediction.rate_hz();
+        for (std::size_t k = prediction.bins()[i].first; k < prediction.bins()[i].end; ++k) {
             sums.push_back(sums.back() + square(static_cast<double>(seen.cosines[k])) / expected);
         }
     }
@@ -169,26 +169,26 @@ std::vector<double> whitened_sums(const Observation& observation, std::size_t ax
 
 GapCurve narrow_curve(const Observation& observation, std::size_t axis,
                       const std::vector<std::size_t>& edges) {
-    const Baseline& baseline = observation.baseline();
+    const Prediction& prediction = observation.prediction();
     GapCurve curve{GapDomainKind::narrow, axis, axis, {}, {}};
     const auto add = [&](std::size_t first, const Window& window) {
-        curve.x.push_back(0.5 * (static_cast<double>(first) + window.place) / baseline.duration_s());
+        curve.x.push_back(0.5 * (static_cast<double>(first) + window.place) / prediction.duration_s());
         curve.value.push_back(deviate_of(window.surprise_nats));
     };
     std::size_t band = 0;
     const auto coefficients = [&](std::size_t of) {
-        return baseline.bins()[edges[of + 1] - 1].end - baseline.bins()[edges[of]].first;
+        return prediction.bins()[edges[of + 1] - 1].end - prediction.bins()[edges[of]].first;
     };
     while (band + 1 < edges.size() && coefficients(band) < narrow_widths.back()) { ++band; }
     const std::vector<double> slow = whitened_sums(observation, axis, 0, edges[band]);
     if (slow.size() > slow_widths.back()) {
-        add(baseline.bins()[0].first, most_surprising(slow, slow_widths, 1.0));
+        add(prediction.bins()[0].first, most_surprising(slow, slow_widths, 1.0));
     }
     for (; band + 1 < edges.size(); ++band) {
         const std::vector<double> sums = whitened_sums(observation, axis, edges[band], edges[band + 1]);
         // Of a broad excess, what stands out of it.
         const double level = std::max(1.0, sums.back() / static_cast<double>(sums.size() - 1));
-        add(baseline.bins()[edges[band]].first, most_surprising(sums, narrow_widths, level));
+        add(prediction.bins()[edges[band]].first, most_surprising(sums, narrow_widths, level));
     }
     return curve;
 }
@@ -290,10 +290,10 @@ double most_surprising_code(const std::vector<double>& counts) {
 }  // namespace
 
 GapCurve codes_curve(const Observation& observation, std::size_t axis) {
-    const double lsb_rad_s = observation.baseline().model().lsb_rad_s;
+    const double lsb_rad_s = observation.prediction().model().lsb_rad_s;
     GapCurve curve{GapDomainKind::codes, axis, axis, {1.0, 2.0}, {0.0, 0.0}};
     // What moves shows each code for as long as the motion has it.
-    if (!(lsb_rad_s > 0.0) || observation.baseline().moves()) { return curve; }
+    if (!(lsb_rad_s > 0.0) || observation.prediction().moves()) { return curve; }
     const std::vector<double> counts = count_codes(observation.recording(), axis, lsb_rad_s);
     double balance = 0.0;
     double all = 0.0;

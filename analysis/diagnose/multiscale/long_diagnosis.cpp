@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/likelihood/noise_refit.hpp"
 #include "analysis/diagnose/likelihood/observation.hpp"
-#include "analysis/diagnose/likelihood/swallowed_noise.hpp"
-#include "analysis/diagnose/multiscale/joined_looks.hpp"
+#include "analysis/diagnose/likelihood/prediction.hpp"
+#include "analysis/diagnose/multiscale/joined_passes.hpp"
 #include "analysis/diagnose/multiscale/means_model.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"
@@ -86,13 +86,13 @@ bool share_an_axis(const Cause& a, const Cause& b) {
 
 // The middle of what the highest bins have more than the model's other noise: single lines do not move it.
 double seen_white_density(const Observation& observation, std::size_t axis) {
-    const Baseline& baseline = observation.baseline();
+    const Prediction& prediction = observation.prediction();
     const std::vector<double>& power = observation.axis(axis).power;
-    const double from_hz = white_from * baseline.bin_frequencies_hz().back();
+    const double from_hz = white_from * prediction.bin_frequencies_hz().back();
     std::vector<double> white;
     for (std::size_t i = 0; i < power.size(); ++i) {
-        if (baseline.bin_frequencies_hz()[i] < from_hz) { continue; }
-        const SpectralParts& parts = baseline.parts(axis)[i];
+        if (prediction.bin_frequencies_hz()[i] < from_hz) { continue; }
+        const SpectralParts& parts = prediction.parts(axis)[i];
         const double others = std::min(parts.sum() - parts.white, 0.9 * power[i]);
         white.push_back(power[i] - others);
     }
@@ -119,7 +119,7 @@ public:
     std::optional<Diagnosis> run() {
         if (!look_at_beginning(model_) || !look_at_means()) { return std::nullopt; }
         if (beginning_.verdict == Verdict::unexplained && means_.verdict == Verdict::known) {
-            SensorModel with_slow = with_noise(model_, only(means_.swallowed, false));
+            SensorModel with_slow = with_noise(model_, only(means_.noise_refits, false));
             for (const Cause& cause : means_.causes) {
                 with_slow = with_cause(std::move(with_slow), cause.finding);
             }
@@ -127,7 +127,7 @@ public:
             leave_out_images();
         }
         leave_slow_to_means();
-        Diagnosis whole = joined_looks(model_, beginning_, means_, samples_);
+        Diagnosis whole = joined_passes(model_, beginning_, means_, samples_);
         warn_of_images(whole);
         return whole;
     }
@@ -157,10 +157,9 @@ private:
         return true;
     }
 
-    static std::vector<SwallowedNoise> only(std::vector<SwallowedNoise> swallowed, bool white) {
-        std::erase_if(swallowed,
-                      [&](const SwallowedNoise& one) { return (one.coefficient == 'N') != white; });
-        return swallowed;
+    static std::vector<NoiseRefit> only(std::vector<NoiseRefit> noise_refits, bool white) {
+        std::erase_if(noise_refits, [&](const NoiseRefit& one) { return (one.coefficient == 'N') != white; });
+        return noise_refits;
     }
 
     bool is_fast(const Cause& cause) const {
@@ -179,7 +178,7 @@ private:
     // Of one of the beginning's causes beside the others.
     double spectral_gain_nats(const std::shared_ptr<const Recording>& recording, const Cause& cause,
                               std::size_t samples) const {
-        SensorModel others = with_noise(beginning_model_, beginning_.swallowed);
+        SensorModel others = with_noise(beginning_model_, beginning_.noise_refits);
         for (const Cause& other : beginning_.causes) {
             if (&other != &cause) { others = with_cause(std::move(others), other.finding); }
         }
@@ -187,9 +186,9 @@ private:
             return model_of_means(model, samples, rate_hz_);
         };
         const auto world = std::make_shared<const RecordedWorld>(recording);
-        const auto baseline = std::make_shared<const Baseline>(world, of_rows(others));
+        const auto prediction = std::make_shared<const Prediction>(world, of_rows(others));
         const auto likelihood = [&](const SensorModel& model) {
-            return log_likelihood_nats({baseline->with(of_rows(model)), recording, options_.seed});
+            return log_likelihood_nats({prediction->with(of_rows(model)), recording, options_.seed});
         };
         return likelihood(with_cause(others, cause.finding)) - likelihood(others);
     }
@@ -197,7 +196,7 @@ private:
     // Lines turn on in a way that the beginning tells too little of to take them off the rest, and it may
     // have too few single samples that are off: what they leave in means is found, and is_image().
     SensorModel means_model() const {
-        SensorModel model = fast_.empty() ? model_ : with_noise(model_, beginning_.swallowed);
+        SensorModel model = fast_.empty() ? model_ : with_noise(model_, beginning_.noise_refits);
         for (const Cause* cause : fast_) {
             const Finding& finding = cause->finding;
             if (is_line(finding.effect)) { continue; }
@@ -206,9 +205,9 @@ private:
         }
         model = model_of_means(std::move(model), samples_, rate_hz_);
         const auto world = std::make_shared<const RecordedWorld>(recording_.means);
-        const auto baseline = std::make_shared<const Baseline>(world, with_any_single_samples(model));
-        const Observation seen(baseline, recording_.means, options_.seed);
-        for (const std::size_t axis : baseline->axes()) {
+        const auto prediction = std::make_shared<const Prediction>(world, with_any_single_samples(model));
+        const Observation seen(prediction, recording_.means, options_.seed);
+        for (const std::size_t axis : prediction->axes()) {
             model.axes[axis].noise.N_rad_per_sqrt_s = std::sqrt(seen_white_density(seen, axis));
             model.axes[axis].sd_rel["N"] = white_sd_rel;
         }
@@ -264,14 +263,14 @@ private:
         if (images.empty()) { return; }
         remove_causes(means_, images);
         if (!means_.causes.empty()) { return; }
-        means_.swallowed.clear();
+        means_.noise_refits.clear();
         means_.p_none = means_.p_left;
         if (means_.verdict == Verdict::known) { means_.verdict = Verdict::none; }
     }
 
     void leave_slow_to_means() {
         if (means_.causes.empty()) { return; }
-        if (fast_.empty()) { beginning_.swallowed = only(std::move(beginning_.swallowed), true); }
+        if (fast_.empty()) { beginning_.noise_refits = only(std::move(beginning_.noise_refits), true); }
         remove_causes(beginning_, slow_);
     }
 

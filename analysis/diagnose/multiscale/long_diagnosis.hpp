@@ -20,12 +20,12 @@ struct LongRecording {
 inline constexpr std::size_t beginning_max = 1'200'000;
 inline constexpr std::size_t means_max = 900'000;
 
-// A cause belongs to the look that sees more of it: what keeps less than half of its spectral gain when the
+// A cause belongs to the pass that sees more of it: what keeps less than half of its spectral gain when the
 // beginning is seen in means, or does not show in them at all, is fast and stays as the beginning has it.
 // The means are held against a model with the fast causes and with as much white noise as the means
 // themselves have: what spikes, repeated samples or fast noise leave in them is white, and how white the
 // samples are the beginning tells better. What is slow comes from the means. A beginning that is not
-// explained is looked at once more with the slow causes in its model. joined_looks() makes one answer of
+// explained is looked at once more with the slow causes in its model. joined_passes() makes one answer of
 // both; each calls a gap half as often by chance.
 //
 // Of a second recording options.holdout is held against the beginning and `holdout_means`, of as many

@@ -45,11 +45,11 @@ bool shows_in_means(const EffectSignature& signature) {
     switch (signature.method) {
         case EvidenceMethod::tails:
         case EvidenceMethod::repeats:
-        case EvidenceMethod::code_grid:
-        case EvidenceMethod::ceiling:
+        case EvidenceMethod::quantisation_step:
+        case EvidenceMethod::saturation:
         case EvidenceMethod::stamp_gaps:
         case EvidenceMethod::stamp_rate:
-        case EvidenceMethod::stamp_spread:
+        case EvidenceMethod::stamp_jitter:
             return false;
         default:
             return !signature.folds;

@@ -8,7 +8,7 @@
 
 #include "analysis/diagnose/likelihood/effect_response.hpp"
 #include "analysis/diagnose/likelihood/mean_regression.hpp"
-#include "analysis/diagnose/selection/rival_noise.hpp"
+#include "analysis/diagnose/selection/alternative_noise.hpp"
 
 namespace gyrolog {
 
@@ -27,16 +27,17 @@ constexpr std::array<Drive, 3> drives = {{{"rate", [](double rate) { return rate
 // Of the amplitude, beside half the logarithm of what it gains: that the axis has the effect, and how much.
 constexpr double amplitude_cost_nats = 3.0;
 
-std::vector<float> faded(const Baseline& baseline, std::size_t from, const Drive& drive, double fades_in_s) {
-    const std::vector<float>& rate = baseline.true_rate_rad_s(from);
-    const double kept = std::exp(-1.0 / (fades_in_s * baseline.rate_hz()));
-    std::vector<double> values(baseline.length());
+std::vector<float> faded(const Prediction& prediction, std::size_t from, const Drive& drive,
+                         double fades_in_s) {
+    const std::vector<float>& rate = prediction.true_rate_rad_s(from);
+    const double kept = std::exp(-1.0 / (fades_in_s * prediction.rate_hz()));
+    std::vector<double> values(prediction.length());
     double state = 0.0;
     for (std::size_t slot = 0; slot < values.size(); ++slot) {
         state = kept * state + (1.0 - kept) * drive.of(static_cast<double>(rate[slot]));
         values[slot] = state;
     }
-    baseline.transform()->forward(values);
+    prediction.transform()->forward(values);
     values[0] = 0.0;
     const auto end = values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), slow_coefficients));
     return {values.begin(), end};
@@ -44,7 +45,7 @@ std::vector<float> faded(const Baseline& baseline, std::size_t from, const Drive
 
 double gain_nats(const Observation& seen, std::size_t axis, const std::vector<float>& cosines,
                  const std::vector<double>& density) {
-    const MeanResponses response(seen.baseline(), axis, {cosines});
+    const MeanResponses response(seen.prediction(), axis, {cosines});
     const NormalEquations equations = MeanRegression(seen, axis, response).equations(density);
     const double weight = equations.A(0, 0);
     return weight > 0.0 ? 0.5 * equations.b[0] * equations.b[0] / weight : 0.0;
@@ -52,24 +53,25 @@ double gain_nats(const Observation& seen, std::size_t axis, const std::vector<fl
 
 }  // namespace
 
-std::optional<UnspecificFinding> find_motion_memory(const Observation& without, const Observation& with) {
-    const Baseline& baseline = without.baseline();
-    if (!baseline.moves()) { return std::nullopt; }
-    std::array<RivalNoise, 3> noise;
+std::optional<NonparametricFit> find_motion_memory(const Observation& without, const Observation& with) {
+    const Prediction& prediction = without.prediction();
+    if (!prediction.moves()) { return std::nullopt; }
+    std::array<AlternativeNoise, 3> noise;
     double lost_nats = 0.0;
-    for (const std::size_t axis : baseline.axes()) {
-        noise[axis] = rival_noise(without, with, axis);
+    for (const std::size_t axis : prediction.axes()) {
+        noise[axis] = alternative_noise(without, with, axis);
         lost_nats += noise[axis].lost_nats;
     }
-    const auto tries = static_cast<double>(time_constants_s.size() * drives.size() * baseline.axes().size());
+    const auto tries =
+        static_cast<double>(time_constants_s.size() * drives.size() * prediction.axes().size());
     std::array<double, 3> best_nats{};
     double most_nats = 0.0;
     std::array<char, 128> words{};
-    for (const std::size_t from : baseline.axes()) {
+    for (const std::size_t from : prediction.axes()) {
         for (const Drive& drive : drives) {
             for (const double fades_in_s : time_constants_s) {
-                const std::vector<float> cosines = faded(baseline, from, drive, fades_in_s);
-                for (const std::size_t axis : baseline.axes()) {
+                const std::vector<float> cosines = faded(prediction, from, drive, fades_in_s);
+                for (const std::size_t axis : prediction.axes()) {
                     const double gain = gain_nats(without, axis, cosines, noise[axis].density);
                     const double nats =
                         gain - 0.5 * std::log1p(2.0 * gain) - amplitude_cost_nats - std::log(tries);
@@ -84,7 +86,7 @@ std::optional<UnspecificFinding> find_motion_memory(const Observation& without, 
         }
     }
     if (!(most_nats > 0.0)) { return std::nullopt; }
-    return UnspecificFinding{words.data(), best_nats[0] + best_nats[1] + best_nats[2] - lost_nats};
+    return NonparametricFit{words.data(), best_nats[0] + best_nats[1] + best_nats[2] - lost_nats};
 }
 
 }  // namespace gyrolog

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/diagnose/selection/rival_noise.hpp"
+#include "analysis/diagnose/selection/alternative_noise.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/numerics/repetition.hpp"
 
@@ -22,15 +22,15 @@ constexpr std::size_t blocks_most = 1'000'000;
 
 std::vector<float> whitened(const Observation& without, std::size_t axis,
                             const std::vector<double>& density) {
-    const Baseline& baseline = without.baseline();
+    const Prediction& prediction = without.prediction();
     std::vector<float> values(without.axis(axis).cosines);
-    for (std::size_t i = 0; i < baseline.bins().size(); ++i) {
-        const auto scale = static_cast<float>(1.0 / std::sqrt(density[i] * baseline.rate_hz()));
-        for (std::size_t k = baseline.bins()[i].first; k < baseline.bins()[i].end; ++k) {
+    for (std::size_t i = 0; i < prediction.bins().size(); ++i) {
+        const auto scale = static_cast<float>(1.0 / std::sqrt(density[i] * prediction.rate_hz()));
+        for (std::size_t k = prediction.bins()[i].first; k < prediction.bins()[i].end; ++k) {
             values[k] *= scale;
         }
     }
-    baseline.transform()->inverse(std::span<float>(values));
+    prediction.transform()->inverse(std::span<float>(values));
     return values;
 }
 
@@ -48,25 +48,25 @@ std::vector<float> block_sums(const std::vector<float>& samples, std::size_t len
 
 }  // namespace
 
-std::optional<UnspecificFinding> find_repeating_course(const Observation& without, const Observation& with) {
-    const Baseline& baseline = without.baseline();
+std::optional<NonparametricFit> find_repeating_course(const Observation& without, const Observation& with) {
+    const Prediction& prediction = without.prediction();
     const auto length = std::max<std::size_t>(
-        {1, static_cast<std::size_t>(block_s * baseline.rate_hz()), baseline.length() / blocks_most});
-    if (baseline.length() / length < blocks_least) { return std::nullopt; }
+        {1, static_cast<std::size_t>(block_s * prediction.rate_hz()), prediction.length() / blocks_most});
+    if (prediction.length() / length < blocks_least) { return std::nullopt; }
     std::vector<std::vector<float>> series;
     double lost_nats = 0.0;
-    for (const std::size_t axis : baseline.axes()) {
-        const RivalNoise noise = rival_noise(without, with, axis);
+    for (const std::size_t axis : prediction.axes()) {
+        const AlternativeNoise noise = alternative_noise(without, with, axis);
         lost_nats += noise.lost_nats;
         series.push_back(block_sums(whitened(without, axis, noise.density), length));
     }
     const std::vector<Repetition> found =
-        repetitions(series, static_cast<double>(length) / baseline.rate_hz());
+        repetitions(series, static_cast<double>(length) / prediction.rate_hz());
     const Repetition best = *std::ranges::max_element(found, {}, &Repetition::evidence_nats);
     if (!(best.evidence_nats > 0.0)) { return std::nullopt; }
     std::array<char, 96> words{};
     (void)std::snprintf(words.data(), words.size(), "A course that repeats every %.4g s", best.period_s);
-    return UnspecificFinding{words.data(), best.evidence_nats - lost_nats};
+    return NonparametricFit{words.data(), best.evidence_nats - lost_nats};
 }
 
 }  // namespace gyrolog

@@ -1,10 +1,10 @@
-// An unspecific rival: a mean that repeats itself, whatever its shape.
+// An nonparametric alternative: a mean that repeats itself, whatever its shape.
 #pragma once
 
-#include "analysis/diagnose/selection/unspecific_rivals.hpp"
+#include "analysis/diagnose/selection/nonparametric_alternatives.hpp"
 
 namespace gyrolog {
 
-std::optional<UnspecificFinding> find_repeating_course(const Observation& without, const Observation& with);
+std::optional<NonparametricFit> find_repeating_course(const Observation& without, const Observation& with);
 
 }  // namespace gyrolog

@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "analysis/diagnose/estimators/spectrum_test.hpp"
+#include "analysis/diagnose/estimators/noise_spectrum.hpp"
 #include "analysis/simulate/effect.hpp"
 
 namespace gyrolog {
@@ -76,16 +76,17 @@ constinit const EffectDefinition hump = {
 
 }  // namespace
 
-std::optional<UnspecificFinding> find_spectral_hump(const Observation& without, const Observation& /*with*/) {
-    const std::shared_ptr<const Baseline> not_owned(&without.baseline(), [](const Baseline*) {});
-    const std::optional<Finding> finding = make_spectrum_test(hump, not_owned).test->find(without);
+std::optional<NonparametricFit> find_spectral_hump(const Observation& without, const Observation& /*with*/) {
+    const std::shared_ptr<const Prediction> not_owned(&without.prediction(), [](const Prediction*) {});
+    const std::optional<Finding> finding =
+        make_noise_spectrum_estimator(hump, not_owned).estimator->find(without);
     if (!finding) { return std::nullopt; }
     const std::map<std::string, double>& at = finding->entries.front().params;
     std::array<char, 160> words{};
     (void)std::snprintf(words.data(), words.size(),
                         "Noise about %.3g Hz whose density rises as f^%.2g and falls as f^-%.2g",
                         at.at("f_hz"), at.at("rise"), at.at("fall"));
-    return UnspecificFinding{words.data(), finding->evidence_nats};
+    return NonparametricFit{words.data(), finding->evidence_nats};
 }
 
 }  // namespace gyrolog

@@ -1,10 +1,10 @@
-// An unspecific rival: noise whose spectrum rises to a hump and falls again, with any two slopes.
+// An nonparametric alternative: noise whose spectrum rises to a hump and falls again, with any two slopes.
 #pragma once
 
-#include "analysis/diagnose/selection/unspecific_rivals.hpp"
+#include "analysis/diagnose/selection/nonparametric_alternatives.hpp"
 
 namespace gyrolog {
 
-std::optional<UnspecificFinding> find_spectral_hump(const Observation& without, const Observation& with);
+std::optional<NonparametricFit> find_spectral_hump(const Observation& without, const Observation& with);
 
 }  // namespace gyrolog

@@ -39,7 +39,7 @@ constexpr EffectParam clock_jitter_params[] = {
 };
 
 constexpr EffectSignature clock_jitter_signature = {
-    .method = EvidenceMethod::stamp_spread,
+    .method = EvidenceMethod::stamp_jitter,
     .place = PlaceKind::structure,
     .structure = "timestamp_jitter",
     .instant_sd_s =

@@ -31,7 +31,7 @@ void add_rounding(std::span<const double>, double rate_hz, const EffectValues& e
 }
 
 constexpr EffectSignature quantization_signature = {
-    .method = EvidenceMethod::code_grid,
+    .method = EvidenceMethod::quantisation_step,
     .place = PlaceKind::structure,
     .structure = "code_grid",
     .spectrum = add_rounding,

@@ -102,7 +102,7 @@ void rtn_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValu
 }
 
 constexpr EffectSignature rtn_signature = {
-    .method = EvidenceMethod::two_levels,
+    .method = EvidenceMethod::random_telegraph,
     .place = PlaceKind::spectrum,
     .spectrum = rtn_spectrum,
     .words =

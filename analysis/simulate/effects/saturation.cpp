@@ -54,7 +54,7 @@ void leave_out_clipped(const Recording& recording, const EffectModel& entry, std
 }
 
 constexpr EffectSignature saturation_signature = {
-    .method = EvidenceMethod::ceiling,
+    .method = EvidenceMethod::saturation,
     .place = PlaceKind::rate,
     .needs_reference = true,
     .trials = saturation_trials,

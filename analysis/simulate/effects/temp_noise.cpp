@@ -39,7 +39,7 @@ constexpr EffectParam temp_noise_params[] = {
 };
 
 constexpr EffectSignature temp_noise_signature = {
-    .method = EvidenceMethod::variance_of,
+    .method = EvidenceMethod::variance_with_temperature,
     .place = PlaceKind::temperature,
     .needs_temperature = true,
     .white_gain = temp_noise_white_gain,

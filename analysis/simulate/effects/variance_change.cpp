@@ -53,7 +53,7 @@ constexpr EffectParam variance_change_params[] = {
 };
 
 constexpr EffectSignature variance_change_signature = {
-    .method = EvidenceMethod::variance_course,
+    .method = EvidenceMethod::variance_change_point,
     .place = PlaceKind::time,
     .white_gain = variance_change_white_gain,
     .words =

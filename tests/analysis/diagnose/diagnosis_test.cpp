@@ -45,7 +45,7 @@ TEST(Diagnosis, CallsFiveEffectsUnexplained) {
               (std::set<std::string>{"arw_scale", "bias_step", "heavy_tail", "tone", "variance_change"}));
     EXPECT_EQ(five.verdict, Verdict::unexplained);
     EXPECT_EQ(five.shrink_lo, 0.0);
-    EXPECT_TRUE(five.halves.judged.empty());
+    EXPECT_TRUE(five.split_half.judged.empty());
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/diagnose/estimators/effect_test.hpp"
+#include "analysis/diagnose/estimators/estimator.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 #include "tests/analysis/simulate/simulated.hpp"
@@ -36,9 +36,9 @@ inline std::shared_ptr<const Recording> few_samples_with_a_dead_axis(const Senso
     return std::make_shared<const Recording>(std::move(recording));
 }
 
-inline std::shared_ptr<const Baseline> baseline_of(const std::shared_ptr<const Recording>& recording,
-                                                   const SensorModel& model) {
-    return std::make_shared<const Baseline>(std::make_shared<const RecordedWorld>(recording), model);
+inline std::shared_ptr<const Prediction> prediction_of(const std::shared_ptr<const Recording>& recording,
+                                                       const SensorModel& model) {
+    return std::make_shared<const Prediction>(std::make_shared<const RecordedWorld>(recording), model);
 }
 
 // A typical sensor's white noise and, beside it, slow noise; the model knows them as a calibration does.
@@ -55,12 +55,12 @@ inline SensorModel calibrated_sensor(double N_dps_per_sqrt_hz = 0.005) {
 }
 
 // Of the recording under the model.
-inline std::optional<Finding> found(TestMaker make, const char* effect,
+inline std::optional<Finding> found(EstimatorMaker make, const char* effect,
                                     const std::shared_ptr<const Recording>& recording,
                                     const SensorModel& model) {
-    const auto baseline = baseline_of(recording, model);
-    const MadeTest made = make(*find_effect(effect), baseline);
-    return made.test ? made.test->find(Observation(baseline, recording, 1)) : std::nullopt;
+    const auto prediction = prediction_of(recording, model);
+    const MadeEstimator made = make(*find_effect(effect), prediction);
+    return made.estimator ? made.estimator->find(Observation(prediction, recording, 1)) : std::nullopt;
 }
 
 inline double evidence(const std::optional<Finding>& finding) {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/likelihood/baseline.hpp"
+#include "analysis/diagnose/likelihood/prediction.hpp"
 #include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "tests/support/program.hpp"
 
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::size_t rows_of_long = diagnosable_samples_max + 3000;
-constexpr std::size_t rows_of_one_look = beginning_max + 3000;
+constexpr std::size_t rows_of_one_pass = beginning_max + 3000;
 
 class DiagnosisInputTest : public testing::Test {
 protected:
@@ -41,7 +41,7 @@ protected:
 };
 
 TEST_F(DiagnosisInputTest, IsTheWholeOfWhatOneLookTakes) {
-    for (const std::size_t rows : {std::size_t{5000}, rows_of_one_look}) {
+    for (const std::size_t rows : {std::size_t{5000}, rows_of_one_pass}) {
         const DiagnosisInput input = read(written("short.csv", "gx_dps", "", rows));
         EXPECT_EQ(input.samples->rows(), rows);
         EXPECT_EQ(input.means, nullptr);

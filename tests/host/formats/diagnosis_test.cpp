@@ -316,13 +316,13 @@ TEST(DiagnosisText, TellsPlaceSizeAndHowFarTheGapCloses) {
     seen.held_out.clear();
     EXPECT_THAT(joined(diagnosis_text(seen)),
                 HasSubstr("no half of the recording could judge the other's fit"));
-    seen.halves.judged = {"temp_lag"};
+    seen.split_half.judged = {"temp_lag"};
     EXPECT_THAT(
         joined(diagnosis_text(seen)),
         HasSubstr("closed; temp_lag, fitted to one half of the recording, leaves no more in the other than "
                   "chance does."));
-    seen.halves.evidence_left_nats = 7.25;
-    seen.halves.excess_nats = 6.0;
+    seen.split_half.evidence_left_nats = 7.25;
+    seen.split_half.excess_nats = 6.0;
     EXPECT_THAT(joined(diagnosis_text(seen)),
                 HasSubstr("leaves more in the other than chance does (7.25 nats), which is counted."));
     EXPECT_THAT(text, HasSubstr("`temp_linear` (2.1 nats less) fits nearly as well; one up-and-down sweep of "
@@ -386,7 +386,7 @@ TEST(DiagnosisText, SaysWhatTheModelsNoiseIsWithoutTheCauses) {
     Diagnosis diagnosis = known();
     EXPECT_THAT(diagnosis_text(diagnosis), Not(HasSubstr("held part")));
     EXPECT_FALSE(json::parse(diagnosis_json(diagnosis)).contains("noise_refitted"));
-    diagnosis.swallowed.push_back(
+    diagnosis.noise_refits.push_back(
         {1, 'B', 0.0084 * rad_per_deg, 0.00152 * rad_per_deg, 0.0002 * rad_per_deg});
     EXPECT_THAT(joined(diagnosis_text(diagnosis)), HasSubstr("B of y 0.00152 ± 0.0002 instead of 0.0084"));
     const json entry = json::parse(diagnosis_json(diagnosis)).at("noise_refitted").at(0);
@@ -401,8 +401,8 @@ TEST(DiagnosisText, SaysHowALongRecordingWasLookedAt) {
     EXPECT_THAT(diagnosis_text(known()), Not(HasSubstr("looked")));
     EXPECT_FALSE(json::parse(diagnosis_json(known())).contains("looks"));
     Diagnosis diagnosis = known();
-    diagnosis.looks = {{1200.0, 1'200'000, 1, Verdict::none, 0.4},
-                       {86400.0, 864'000, 100, Verdict::known, 1e-9}};
+    diagnosis.passes = {{1200.0, 1'200'000, 1, Verdict::none, 0.4},
+                        {86400.0, 864'000, 100, Verdict::known, 1e-9}};
     EXPECT_THAT(joined(diagnosis_text(diagnosis)),
                 HasSubstr("; looked at the first 20 min sample by sample and at all of it in means of 100 "
                           "samples"));

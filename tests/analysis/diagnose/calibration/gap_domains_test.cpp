@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/calibration/gap_report.hpp"
+#include "analysis/diagnose/calibration/gap_summary.hpp"
 
 namespace gyrolog {
 namespace {
@@ -77,7 +77,7 @@ TEST(GapDomains, OfAllAxesSayThatTheyAre) {
 }
 
 // Its multiples and parts stand out with it; and it is seen on all axes together.
-TEST(GapReport, SaysTheBestPeriodOfARhythmAndAllAxes) {
+TEST(GapSummary, SaysTheBestPeriodOfARhythmAndAllAxes) {
     GapCurve rhythm{GapDomainKind::rhythm, 0, 0, {20.0, 40.0, 80.0}, {0.4, 0.9, 0.3}};
     rhythm.of_all_axes = true;
     const std::vector<GapCurve> curves = {{GapDomainKind::drift, 0, 0, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.1}},

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
-#include "analysis/diagnose/selection/effect_search.hpp"
+#include "analysis/diagnose/selection/forward_selection.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
@@ -19,7 +19,7 @@ namespace gyrolog {
 namespace {
 
 Hypotheses examined(const std::shared_ptr<const Recording>& recording, const SensorModel& model) {
-    return examine(baseline_of(recording, model), recording, 1, 1);
+    return examine(prediction_of(recording, model), recording, 1, 1);
 }
 
 const Finding& of(const Hypotheses& hypotheses, const std::string& effect) {
@@ -42,17 +42,17 @@ TEST(EffectEvidence, OfARampIsItsEnergyOverTheNoise) {
     // With N, B and K as they are: 1/2 sum of G^2 over the expected density. The cosine transform of a ramp:
     // odd coefficients of -2 slope sqrt(2 / n) / (2 sin(pi k / 2 n))^2 / rate.
     double energy_nats = 0.0;
-    const Baseline& baseline = *seen.baseline;
-    const auto n = static_cast<double>(baseline.length());
-    for (const SpectralBin& bin : baseline.bins()) {
+    const Prediction& prediction = *seen.prediction;
+    const auto n = static_cast<double>(prediction.length());
+    for (const SpectralBin& bin : prediction.bins()) {
         for (std::size_t k = bin.first; k < bin.end; k += 1) {
             if (k % 2 == 0 || k > 8191) { continue; }
             const double sine = std::sin(pi * static_cast<double>(k) / (2.0 * n));
-            const double step_rad_s = ramp_dps_per_s * rad_per_deg / baseline.rate_hz();
+            const double step_rad_s = ramp_dps_per_s * rad_per_deg / prediction.rate_hz();
             const double coefficient = std::sqrt(2.0 / n) * step_rad_s / (2.0 * sine * sine);
-            const std::size_t i = static_cast<std::size_t>(&bin - baseline.bins().data());
+            const std::size_t i = static_cast<std::size_t>(&bin - prediction.bins().data());
             energy_nats +=
-                0.5 * coefficient * coefficient / (baseline.parts(0)[i].sum() * baseline.rate_hz());
+                0.5 * coefficient * coefficient / (prediction.parts(0)[i].sum() * prediction.rate_hz());
         }
     }
     const Finding& found = of(seen, "rate_ramp");
@@ -104,19 +104,19 @@ TEST(EffectEvidence, IsRarelyThereByChance) {
         above_3 += best != nullptr && best->evidence_nats > 3.0;
         above_6 += best != nullptr && best->evidence_nats > 6.0;
     }
-    // Some thirty looks, each above e nats with a probability of exp(-e) at most, most far less.
+    // Some thirty scans, each above e nats with a probability of exp(-e) at most, most far less.
     EXPECT_LE(above_3, 10);
     EXPECT_LE(above_6, 3);
 }
 
-TEST(EffectSearch, TakesTwoCausesApart) {
+TEST(ForwardSelection, TakesTwoCausesApart) {
     const SensorModel model = calibrated_sensor();
     SensorModel two = model;
     two.effects.push_back({"gauss_markov", {"x"}, {{"sigma_dps", 0.01}, {"tau_s", 5.0}}, ""});
     two.effects.push_back({"tone", {}, {{"f_hz", 31.0}, {"amplitude_dps", 0.004}}, ""});
     const auto recording = recorded(two, 180000, 24);
     const Hypotheses first = examined(recording, model);
-    const std::optional<EffectSearchResult> found = search_effects(first, recording, {});
+    const std::optional<CauseSelection> found = select_causes(first, recording, {});
     ASSERT_TRUE(found);
     ASSERT_EQ(found->causes.size(), 2U);
     std::vector<std::string> names = {found->causes[0].finding.effect, found->causes[1].finding.effect};
@@ -127,7 +127,7 @@ TEST(EffectSearch, TakesTwoCausesApart) {
 }
 
 // A random walk takes up both; only together they are worth more.
-TEST(EffectSearch, TakesTelegraphNoiseOnARampForNoRandomWalk) {
+TEST(ForwardSelection, TakesTelegraphNoiseOnARampForNoRandomWalk) {
     const SensorModel model = calibrated_sensor();
     SensorModel two = model;
     two.effects.push_back(
@@ -137,7 +137,7 @@ TEST(EffectSearch, TakesTelegraphNoiseOnARampForNoRandomWalk) {
     const Hypotheses first = examined(recording, model);
     EXPECT_EQ(find_effect(first.best()->effect)->signature->method, EvidenceMethod::spectrum)
         << "the trap is not set";
-    const std::optional<EffectSearchResult> found = search_effects(first, recording, {});
+    const std::optional<CauseSelection> found = select_causes(first, recording, {});
     ASSERT_TRUE(found);
     std::vector<std::string> names;
     for (const FoundCause& cause : found->causes) { names.push_back(cause.finding.effect); }
@@ -146,7 +146,7 @@ TEST(EffectSearch, TakesTelegraphNoiseOnARampForNoRandomWalk) {
 }
 
 // What a steady line leaves of one that swells is no further line at the same place.
-TEST(EffectSearch, TakesALineThatSwellsOnce) {
+TEST(ForwardSelection, TakesALineThatSwellsOnce) {
     const SensorModel model = calibrated_sensor();
     Recording swelling = *recorded(model, 120000, 26);
     Column& column = swelling.columns.front();
@@ -162,8 +162,8 @@ TEST(EffectSearch, TakesALineThatSwellsOnce) {
     column.scale = 1.0;
     column.offset = 0.0;
     const Hypotheses first = examined(std::make_shared<const Recording>(swelling), model);
-    const std::optional<EffectSearchResult> found =
-        search_effects(first, std::make_shared<const Recording>(swelling), {});
+    const std::optional<CauseSelection> found =
+        select_causes(first, std::make_shared<const Recording>(swelling), {});
     ASSERT_TRUE(found);
     std::vector<std::string> names;
     for (const FoundCause& cause : found->causes) { names.push_back(cause.finding.effect); }
@@ -179,7 +179,7 @@ TEST(EffectSearch, TakesALineThatSwellsOnce) {
 }
 
 // Numbers on a coarse grid look heavy-tailed to a likelihood that knows no grid, more than they look coarse.
-TEST(EffectSearch, TakesACoarseStepForNothingElse) {
+TEST(ForwardSelection, TakesACoarseStepForNothingElse) {
     SensorModel model = calibrated_sensor(0.0033);
     // The next code is rarely reached.
     model.axes[0].bias_rad_s = 1.2 * model.lsb_rad_s;
@@ -189,12 +189,12 @@ TEST(EffectSearch, TakesACoarseStepForNothingElse) {
     const Hypotheses first = examined(recording, model);
     EXPECT_GT(of(first, "heavy_tail").evidence_nats, of(first, "quantization").evidence_nats)
         << "the trap is not set";
-    const std::optional<EffectSearchResult> found = search_effects(first, recording, {});
+    const std::optional<CauseSelection> found = select_causes(first, recording, {});
     ASSERT_TRUE(found);
     ASSERT_EQ(found->causes.size(), 1U);
     EXPECT_EQ(found->causes.front().finding.effect, "quantization");
     EXPECT_EQ(found->causes.front().rivals.size(), 1U) << "itself";
-    EXPECT_TRUE(found->swallowed.empty());
+    EXPECT_TRUE(found->noise_refits.empty());
 }
 
 TEST(OccamCost, RisesSmoothlyBeyondWhatIsPlausible) {

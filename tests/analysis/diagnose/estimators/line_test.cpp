@@ -1,4 +1,4 @@
-#include "analysis/diagnose/estimators/line_test.hpp"
+#include "analysis/diagnose/estimators/line.hpp"
 
 #include <cmath>
 #include <numeric>
@@ -46,14 +46,14 @@ TEST(LineShape, IsTheCosineTransformOfASinusoid) {
     }
 }
 
-TEST(LineTest, FindsALineWithItsFrequencyAmplitudesAndPhases) {
+TEST(Line, FindsALineWithItsFrequencyAmplitudesAndPhases) {
     constexpr std::uint64_t samples = 90000;
     const SensorModel model = calibrated_sensor();
     SensorModel truth =
         with_effect(model, "tone", {{"f_hz", 22.3217}, {"amplitude_dps", 0.006}, {"phase_rad", 1.0}}, {"x"});
     truth =
         with_effect(truth, "tone", {{"f_hz", 22.3217}, {"amplitude_dps", 0.004}, {"phase_rad", -2.5}}, {"z"});
-    const auto finding = found(make_line_test, "tone", recorded(truth, samples, 5), model);
+    const auto finding = found(make_line_estimator, "tone", recorded(truth, samples, 5), model);
     ASSERT_TRUE(finding);
     EXPECT_EQ(finding->where.axes, (std::vector<std::size_t>{0, 2}));
     ASSERT_EQ(finding->entries.size(), 2U);
@@ -77,79 +77,79 @@ TEST(LineTest, FindsALineWithItsFrequencyAmplitudesAndPhases) {
     EXPECT_GT(finding->where.freq_hz->to, 22.3217);
 }
 
-TEST(LineTest, ReportsWhereALineAboveHalfTheRateAppears) {
+TEST(Line, ReportsWhereALineAboveHalfTheRateAppears) {
     const SensorModel model = calibrated_sensor();
     const SensorModel truth = with_effect(model, "tone", {{"f_hz", 59.98}, {"amplitude_dps", 0.01}});
-    const auto finding = found(make_line_test, "tone", recorded(truth, 30000, 6), model);
+    const auto finding = found(make_line_estimator, "tone", recorded(truth, 30000, 6), model);
     ASSERT_TRUE(finding);
     EXPECT_NEAR(finding->entries.front().params.at("f_hz"), 40.02, 1e-3);
 }
 
 // With a delay and a scale in the model, which the line must come through as it was seen.
-TEST(LineTest, LeavesNothingOfALineThatIsAddedToTheModel) {
+TEST(Line, LeavesNothingOfALineThatIsAddedToTheModel) {
     SensorModel model = calibrated_sensor();
     model.latency_s = 0.004;
     model = with_effect(model, "temp_scale", {{"per_C", 0.02}, {"reference_C", 15.0}});
     const SensorModel truth =
         with_effect(model, "tone", {{"f_hz", 31.4}, {"amplitude_dps", 0.05}, {"phase_rad", 0.3}}, {"y"});
     const auto recording = recorded(truth, 60000, 7);
-    const auto finding = found(make_line_test, "tone", recording, model);
+    const auto finding = found(make_line_estimator, "tone", recording, model);
     ASSERT_TRUE(finding);
     ASSERT_EQ(finding->where.axes, std::vector<std::size_t>{1});
     EXPECT_GT(finding->evidence_nats, 500.0);
     EXPECT_NEAR(finding->entries.front().params.at("amplitude_dps"), 0.05, 0.002);
-    const auto again = found(make_line_test, "tone", recording, with_cause(model, *finding));
+    const auto again = found(make_line_estimator, "tone", recording, with_cause(model, *finding));
     EXPECT_LT(evidence(again), 3.0);
 }
 
 // A clock of which the stamps tell acts no more on what is added; one that they hide does.
-TEST(LineTest, LeavesNothingOfALineBesideAWrongClock) {
+TEST(Line, LeavesNothingOfALineBesideAWrongClock) {
     for (const double in_stamps : {1.0, 0.0}) {
         const SensorModel model =
             with_effect(calibrated_sensor(), "clock_rate", {{"rel", 0.0016}, {"in_stamps", in_stamps}});
         const SensorModel truth =
             with_effect(model, "tone", {{"f_hz", 31.4}, {"amplitude_dps", 0.05}, {"phase_rad", 0.3}}, {"y"});
         const auto recording = recorded(truth, 60000, 7);
-        const auto finding = found(make_line_test, "tone", recording, model);
+        const auto finding = found(make_line_estimator, "tone", recording, model);
         ASSERT_TRUE(finding);
         EXPECT_NEAR(finding->entries.front().params.at("amplitude_dps"), 0.05, 0.002) << in_stamps;
         EXPECT_NEAR(finding->entries.front().params.at("f_hz"), 31.4, 1e-3) << in_stamps;
-        const auto again = found(make_line_test, "tone", recording, with_cause(model, *finding));
+        const auto again = found(make_line_estimator, "tone", recording, with_cause(model, *finding));
         EXPECT_LT(evidence(again), 3.0) << in_stamps;
     }
 }
 
-TEST(LineTest, TakesSeveralLinesOneAfterAnother) {
+TEST(Line, TakesSeveralLinesOneAfterAnother) {
     const SensorModel model = calibrated_sensor();
     const SensorModel truth =
         with_effect(with_effect(model, "tone", {{"f_hz", 12.0}, {"amplitude_dps", 0.05}}), "tone",
                     {{"f_hz", 12.05}, {"amplitude_dps", 0.01}});
     const auto recording = recorded(truth, 60000, 8);
-    const auto first = found(make_line_test, "tone", recording, model);
+    const auto first = found(make_line_estimator, "tone", recording, model);
     ASSERT_TRUE(first);
     EXPECT_NEAR(first->entries.front().params.at("f_hz"), 12.0, 1e-3);
-    const auto second = found(make_line_test, "tone", recording, with_cause(model, *first));
+    const auto second = found(make_line_estimator, "tone", recording, with_cause(model, *first));
     ASSERT_TRUE(second);
     EXPECT_NEAR(second->entries.front().params.at("f_hz"), 12.05, 1e-3);
     EXPECT_GT(second->evidence_nats, 100.0);
 }
 
-TEST(LineTest, TakesNoBroadExcessForALine) {
+TEST(Line, TakesNoBroadExcessForALine) {
     const SensorModel model = calibrated_sensor();
     const SensorModel louder = with_effect(model, "arw_scale", {{"factor", 1.4}});
     const SensorModel knee = with_effect(model, "gauss_markov", {{"sigma_dps", 0.02}, {"tau_s", 0.5}});
     const SensorModel filtered = with_effect(model, "lowpass", {{"order", 2.0}, {"fc_hz", 10.0}});
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        EXPECT_LT(evidence(found(make_line_test, "tone", recorded(louder, 60000, seed), model)), 5.0);
-        EXPECT_LT(evidence(found(make_line_test, "tone", recorded(knee, 60000, seed), model)), 5.0);
-        EXPECT_LT(evidence(found(make_line_test, "tone", recorded(filtered, 60000, seed), model)), 5.0);
+        EXPECT_LT(evidence(found(make_line_estimator, "tone", recorded(louder, 60000, seed), model)), 5.0);
+        EXPECT_LT(evidence(found(make_line_estimator, "tone", recorded(knee, 60000, seed), model)), 5.0);
+        EXPECT_LT(evidence(found(make_line_estimator, "tone", recorded(filtered, 60000, seed), model)), 5.0);
         // The other way about: noise is what the model's filter took away.
-        EXPECT_LT(evidence(found(make_line_test, "tone", recorded(model, 60000, seed), filtered)), 5.0);
+        EXPECT_LT(evidence(found(make_line_estimator, "tone", recorded(model, 60000, seed), filtered)), 5.0);
     }
 }
 
 // Its phase walks by a turn in some 20 s: no steady line explains more than a small part of it.
-TEST(LineTest, GivesALineThatWandersNoCredit) {
+TEST(Line, GivesALineThatWandersNoCredit) {
     constexpr std::uint64_t samples = 60000;
     constexpr double amplitude_dps = 0.02;
     const SensorModel model = calibrated_sensor();
@@ -163,17 +163,19 @@ TEST(LineTest, GivesALineThatWandersNoCredit) {
                              amplitude_dps * rad_per_deg / model.lsb_rad_s * std::sin(phase_rad);
         counts[i] = static_cast<std::int16_t>(std::lround(value));
     }
-    const auto finding = found(make_line_test, "tone", std::make_shared<const Recording>(wandering), model);
+    const auto finding =
+        found(make_line_estimator, "tone", std::make_shared<const Recording>(wandering), model);
     EXPECT_LT(evidence(finding), 0.02 * expected_gain_nats(model, amplitude_dps, samples));
 }
 
-TEST(LineTest, AnswersForOneDeadAxisAndFewSamples) {
+TEST(Line, AnswersForOneDeadAxisAndFewSamples) {
     const SensorModel model = calibrated_sensor();
     Recording recording = *recorded(model, 2048, 10);
     auto& counts = std::get<std::vector<std::int16_t>>(recording.columns[1].data);
     std::fill(counts.begin(), counts.end(), std::int16_t{3});
     recording.columns.erase(recording.columns.begin());
-    const auto finding = found(make_line_test, "tone", std::make_shared<const Recording>(recording), model);
+    const auto finding =
+        found(make_line_estimator, "tone", std::make_shared<const Recording>(recording), model);
     if (finding) { EXPECT_TRUE(std::isfinite(finding->evidence_nats)); }
     EXPECT_LT(evidence(finding), 3.0);
 }

@@ -5,16 +5,16 @@
 #include <gtest/gtest.h>
 
 #include "analysis/compare/model_draw.hpp"
-#include "analysis/diagnose/estimators/line_test.hpp"
-#include "analysis/diagnose/estimators/step_test.hpp"
-#include "analysis/diagnose/estimators/two_level_test.hpp"
+#include "analysis/diagnose/estimators/bias_step.hpp"
+#include "analysis/diagnose/estimators/line.hpp"
+#include "analysis/diagnose/estimators/random_telegraph.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
 namespace {
 
 struct Method {
-    TestMaker make;
+    EstimatorMaker make;
     const char* effect;
 };
 
@@ -24,17 +24,17 @@ class NoiseAlone : public testing::TestWithParam<Method> {};
 TEST_P(NoiseAlone, SeldomHasEvidence) {
     constexpr int recordings = 300;
     const SensorModel model = calibrated_sensor();
-    const auto baseline = baseline_of(recorded(model, 8192, 1), model);
-    const MadeTest made = GetParam().make(*find_effect(GetParam().effect), baseline);
+    const auto prediction = prediction_of(recorded(model, 8192, 1), model);
+    const MadeEstimator made = GetParam().make(*find_effect(GetParam().effect), prediction);
     int above_1 = 0;
     int above_3 = 0;
     for (int i = 0; i < recordings; ++i) {
         SimulationRequest request;
-        request.like = baseline->shared_world();
+        request.like = prediction->shared_world();
         request.seed = 100 + static_cast<std::uint64_t>(i);
         const SensorModel truth = draw_within_uncertainty(model, request.seed);
         const auto recording = std::make_shared<const Recording>(simulate_recording(truth, request));
-        const double nats = evidence(made.test->find(Observation(baseline, recording, 1)));
+        const double nats = evidence(made.estimator->find(Observation(prediction, recording, 1)));
         above_1 += nats > 1.0 ? 1 : 0;
         above_3 += nats > 3.0 ? 1 : 0;
     }
@@ -44,8 +44,9 @@ TEST_P(NoiseAlone, SeldomHasEvidence) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfLinesAndLevels, NoiseAlone,
-                         testing::Values(Method{make_line_test, "tone"}, Method{make_step_test, "bias_step"},
-                                         Method{make_two_level_test, "rtn"}),
+                         testing::Values(Method{make_line_estimator, "tone"},
+                                         Method{make_bias_step_estimator, "bias_step"},
+                                         Method{make_random_telegraph_estimator, "rtn"}),
                          [](const auto& parameter) { return std::string(parameter.param.effect); });
 
 // How many of the fits of one parameter are within two standard deviations of the truth.
@@ -70,7 +71,7 @@ TEST(StandardDeviations, OfALineHold) {
     const SensorModel model = calibrated_sensor();
     const SensorModel truth =
         with_effect(model, "tone", {{"f_hz", 22.3}, {"amplitude_dps", 0.006}, {"phase_rad", 0.4}}, {"x"});
-    const Method line{make_line_test, "tone"};
+    const Method line{make_line_estimator, "tone"};
     EXPECT_GE(within_two_sd(line, model, truth, 16384, "f_hz", 22.3, seeds_of_coverage), within_min);
     EXPECT_GE(within_two_sd(line, model, truth, 16384, "amplitude_dps", 0.006, seeds_of_coverage),
               within_min);
@@ -80,7 +81,7 @@ TEST(StandardDeviations, OfALineHold) {
 TEST(StandardDeviations, OfAJumpHold) {
     const SensorModel model = calibrated_sensor();
     const SensorModel truth = with_effect(model, "bias_step", {{"step_dps", 0.03}, {"at_s", 70.0}}, {"x"});
-    const Method step{make_step_test, "bias_step"};
+    const Method step{make_bias_step_estimator, "bias_step"};
     EXPECT_GE(within_two_sd(step, model, truth, 16384, "step_dps", 0.03, seeds_of_coverage), within_min);
     EXPECT_GE(within_two_sd(step, model, truth, 16384, "at_s", 70.0, seeds_of_coverage), within_min);
 }

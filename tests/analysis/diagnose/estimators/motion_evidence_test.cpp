@@ -8,10 +8,10 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/estimators/ceiling_test.hpp"
-#include "analysis/diagnose/estimators/response_test.hpp"
-#include "analysis/diagnose/likelihood/quiet_reference.hpp"
-#include "analysis/diagnose/selection/effect_search.hpp"
+#include "analysis/diagnose/estimators/mean_response.hpp"
+#include "analysis/diagnose/estimators/saturation.hpp"
+#include "analysis/diagnose/likelihood/denoised_reference.hpp"
+#include "analysis/diagnose/selection/forward_selection.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -68,7 +68,7 @@ const Finding* of(const Hypotheses& hypotheses, const std::string& effect) {
 
 Hypotheses examined(const SensorModel& sensor, const SensorModel& model, std::uint64_t seed) {
     const auto recording = recorded(sensor, 48000, seed, world_with_rests());
-    return examine(baseline_of(recording, model), recording, 1, 1);
+    return examine(prediction_of(recording, model), recording, 1, 1);
 }
 
 // What a filter leaves of a turn, it leaves of the gains that the model states too.
@@ -121,7 +121,7 @@ TEST(MotionEvidence, OfALatencyInSlowMotionIsNoLowPass) {
     const SensorModel model = moving_sensor();
     const auto recording =
         recorded(with_effect(model, "latency", {{"delay_s", 0.0009}}, {}), 48000, 39, slow);
-    const Hypotheses seen = examine(baseline_of(recording, model), recording, 1, 1);
+    const Hypotheses seen = examine(prediction_of(recording, model), recording, 1, 1);
     const Finding* low_pass = of(seen, "lowpass");
     if (low_pass != nullptr) { EXPECT_LT(low_pass->evidence_nats, 0.0); }
     ASSERT_NE(seen.best(), nullptr);
@@ -132,8 +132,8 @@ void expect_low_pass_alone(const std::shared_ptr<const World>& world) {
     const SensorModel model = moving_sensor();
     const SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 15.77}, {"order", 1.0}}, {});
     const auto recording = recorded(sensor, 48000, 38, world);
-    const std::optional<EffectSearchResult> found =
-        search_effects(examine(baseline_of(recording, model), recording, 1, 1), recording, {});
+    const std::optional<CauseSelection> found =
+        select_causes(examine(prediction_of(recording, model), recording, 1, 1), recording, {});
     ASSERT_TRUE(found);
     ASSERT_EQ(found->causes.size(), 1U);
     const Finding& cause = found->causes.front().finding;
@@ -162,12 +162,12 @@ TEST(MotionEvidence, OfALowPassIsFittedAsWellAsTheTruth) {
     const SensorModel model = moving_sensor();
     const SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 5.5}, {"order", 1.0}}, {});
     const auto recording = recorded(sensor, 48000, 42, world_without_rests(4.0));
-    const auto baseline = baseline_of(recording, model);
-    const Hypotheses seen = examine(baseline, recording, 1, 1);
+    const auto prediction = prediction_of(recording, model);
+    const Hypotheses seen = examine(prediction, recording, 1, 1);
     const Finding* found = of(seen, "lowpass");
     ASSERT_NE(found, nullptr);
     const auto nats = [&](const SensorModel& with) {
-        return log_likelihood_nats(Observation(baseline->with(with), recording, 1));
+        return log_likelihood_nats(Observation(prediction->with(with), recording, 1));
     };
     EXPECT_GT(nats(with_cause(model, *found)) - nats(sensor), -40.0) << "of 3e9";
 }
@@ -178,8 +178,8 @@ TEST(MotionEvidence, OfALowPassAndALatencyIsBoth) {
     SensorModel sensor = with_effect(model, "lowpass", {{"fc_hz", 15.77}, {"order", 1.0}}, {});
     sensor = with_effect(sensor, "latency", {{"delay_s", 0.003}}, {});
     const auto recording = recorded(sensor, 24000, 43, world_without_rests());
-    const std::optional<EffectSearchResult> found =
-        search_effects(examine(baseline_of(recording, model), recording, 1, 2), recording, {});
+    const std::optional<CauseSelection> found =
+        select_causes(examine(prediction_of(recording, model), recording, 1, 2), recording, {});
     ASSERT_TRUE(found);
     std::map<std::string, double> values;
     for (const FoundCause& cause : found->causes) {
@@ -206,9 +206,9 @@ TEST(MotionEvidence, OfUnevenMomentsIsTheVariancesCourse) {
         const auto expected_nats = [&](double level) {
             double nats = 0.0;
             for (const std::size_t axis : {0U, 1U, 2U}) {
-                const double white = seen.baseline->parts(axis).back().sum() * 100.0;
-                const double share = seen.baseline->parts(axis).back().white * 100.0 / white;
-                for (const float change : seen.baseline->response_change_rad_s2(axis)) {
+                const double white = seen.prediction->parts(axis).back().sum() * 100.0;
+                const double share = seen.prediction->parts(axis).back().white * 100.0 / white;
+                for (const float change : seen.prediction->response_change_rad_s2(axis)) {
                     const double off_rad_s = sd_s * static_cast<double>(change);
                     const double variance = 1.0 + off_rad_s * off_rad_s / white;
                     nats += 0.5 * (variance / level - 1.0 + std::log(level / variance));
@@ -261,7 +261,7 @@ TEST(MotionEvidence, OfLittleNoiseWhateverTheClock) {
                        0.1 * std::sin(2.0 * pi * t_s / 29.0)};
     });
     const auto recording = recorded(model, 96000, 41, world);
-    const Hypotheses seen = examine(baseline_of(recording, model), recording, 1, 1);
+    const Hypotheses seen = examine(prediction_of(recording, model), recording, 1, 1);
     for (const char* effect : {"gauss_markov", "flicker_missing", "arw_scale"}) {
         const Finding* found = of(seen, effect);
         if (found != nullptr) { EXPECT_LT(found->evidence_nats, 25.0) << effect; }
@@ -288,7 +288,7 @@ TEST(MotionEvidence, OfADeadZoneIsWhatShowsBeyondTheReferencesNoise) {
         const SensorModel sensor =
             with_effect(model, "dead_zone", {{"width_dps", width_dps}, {"jump", 1.0}}, {"x", "y", "z"});
         const auto recording = recorded(sensor, 48000, 45, world);
-        const auto finding = found(make_response_test, "dead_zone", recording, model);
+        const auto finding = found(make_mean_response_estimator, "dead_zone", recording, model);
         ASSERT_TRUE(finding) << width_dps;
         EXPECT_EQ(finding->entries[0].params.at("jump"), width_dps > 0.02 ? 1.0 : 0.0) << width_dps;
     }
@@ -304,13 +304,15 @@ TEST(MotionEvidence, OfACeilingIsThePileOfSamplesBelowIt) {
     const double limit_dps = 2.0 * deg_per_rad - 0.1;
     const SensorModel clipped = with_effect(model, "saturation", {{"limit_dps", limit_dps}}, {"x"});
     const auto recording = moved(clipped, 37);
-    const auto finding = found(make_ceiling_test, "saturation", recording, model);
+    const auto finding = found(make_saturation_estimator, "saturation", recording, model);
     ASSERT_TRUE(finding);
     EXPECT_GT(finding->evidence_nats, 20.0);
     EXPECT_EQ(finding->where.axes, std::vector<std::size_t>{0});
     const double lsb_dps = model.lsb_rad_s * deg_per_rad;
     EXPECT_NEAR(finding->entries.front().params.at("limit_dps"), limit_dps, 0.5001 * lsb_dps);
-    EXPECT_LT(evidence(found(make_ceiling_test, "saturation", recording, with_cause(model, *finding))), 0.0);
+    EXPECT_LT(
+        evidence(found(make_saturation_estimator, "saturation", recording, with_cause(model, *finding))),
+        0.0);
 }
 
 TEST(MotionEvidence, IsNotTakenFromClippedSamplesAndThreeOnEitherSide) {
@@ -339,25 +341,25 @@ TEST(MotionEvidence, OfNothingElseIsLeftUnderAKnownCeiling) {
     SensorModel sensor = model;
     sensor.M[0][0] += 2e-4;
     const auto recording = moved(sensor, 38);
-    const Hypotheses seen = examine(baseline_of(recording, model), recording, 1, 1);
+    const Hypotheses seen = examine(prediction_of(recording, model), recording, 1, 1);
     const Finding* best = seen.best();
     if (best != nullptr) { EXPECT_LT(best->evidence_nats, 6.0) << best->effect; }
 }
 
 TEST(MotionEvidence, OfACeilingIsNoneWhereTheMotionTurnsRound) {
     for (std::uint64_t seed = 41; seed <= 46; ++seed) {
-        EXPECT_LT(
-            evidence(found(make_ceiling_test, "saturation", moved(moving_sensor(), seed), moving_sensor())),
-            3.0)
+        EXPECT_LT(evidence(found(make_saturation_estimator, "saturation", moved(moving_sensor(), seed),
+                                 moving_sensor())),
+                  3.0)
             << seed;
     }
 }
 
-TEST(QuietReference, OfSteadySwingsHasLittleNoiseBeyondThem) {
+TEST(DenoisedReference, OfSteadySwingsHasLittleNoiseBeyondThem) {
     const SensorModel model = moving_sensor();
     const auto recording = recorded(model, 24000, 39, world_without_rests());
-    const auto quiet = without_reference_noise(RecordedWorld(recording), model.ref_noise_rad_s);
-    const Column& after = *quiet->recording().find("ref_x");
+    const auto denoised = without_reference_noise(RecordedWorld(recording), model.ref_noise_rad_s);
+    const Column& after = *denoised->recording().find("ref_x");
     double sum = 0.0;
     constexpr std::size_t first = 1000;
     constexpr std::size_t end = 23000;
@@ -370,12 +372,12 @@ TEST(QuietReference, OfSteadySwingsHasLittleNoiseBeyondThem) {
     EXPECT_LT(std::sqrt(sum / (end - first)), 1.2 * std::sqrt(kept) * model.ref_noise_rad_s);
 }
 
-TEST(QuietReference, HasNoNoiseAtRestAndTheWholeMotionOtherwise) {
+TEST(DenoisedReference, HasNoNoiseAtRestAndTheWholeMotionOtherwise) {
     const SensorModel model = moving_sensor();
     const auto recording = recorded(model, 24000, 34, world_with_rests());
-    const auto quiet = without_reference_noise(RecordedWorld(recording), model.ref_noise_rad_s);
+    const auto denoised = without_reference_noise(RecordedWorld(recording), model.ref_noise_rad_s);
     const Column& before = *recording->find("ref_x");
-    const Column& after = *quiet->recording().find("ref_x");
+    const Column& after = *denoised->recording().find("ref_x");
     const auto rms = [](const auto& error, std::size_t first, std::size_t end) {
         double sum = 0.0;
         for (std::size_t i = first; i < end; ++i) { sum += error(i) * error(i); }

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "analysis/compare/model_draw.hpp"
-#include "analysis/diagnose/estimators/effect_test.hpp"
+#include "analysis/diagnose/estimators/estimator.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 #include "tests/analysis/simulate/simulated.hpp"
@@ -21,24 +21,24 @@ inline SensorModel known_sensor() {
 
 struct WhiteNoiseCase {
     std::shared_ptr<const Recording> recording;
-    std::shared_ptr<const Baseline> baseline;
+    std::shared_ptr<const Prediction> prediction;
     std::shared_ptr<const Observation> seen;
 
-    std::optional<Finding> find(const char* effect, TestMaker make) const {
-        const MadeTest made = make(*find_effect(effect), baseline);
-        return made.test ? made.test->find(*seen) : std::nullopt;
+    std::optional<Finding> find(const char* effect, EstimatorMaker make) const {
+        const MadeEstimator made = make(*find_effect(effect), prediction);
+        return made.estimator ? made.estimator->find(*seen) : std::nullopt;
     }
-    std::string untestable(const char* effect, TestMaker make) const {
-        return make(*find_effect(effect), baseline).untestable;
+    std::string untestable(const char* effect, EstimatorMaker make) const {
+        return make(*find_effect(effect), prediction).untestable;
     }
 };
 
 inline WhiteNoiseCase seen_with(const SensorModel& model, std::shared_ptr<const Recording> recording) {
     WhiteNoiseCase made;
     made.recording = std::move(recording);
-    made.baseline =
-        std::make_shared<const Baseline>(std::make_shared<const RecordedWorld>(made.recording), model);
-    made.seen = std::make_shared<const Observation>(made.baseline, made.recording, 1);
+    made.prediction =
+        std::make_shared<const Prediction>(std::make_shared<const RecordedWorld>(made.recording), model);
+    made.seen = std::make_shared<const Observation>(made.prediction, made.recording, 1);
     return made;
 }
 

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/estimators/outlier_test.hpp"
-#include "analysis/diagnose/estimators/shared_noise_test.hpp"
-#include "analysis/diagnose/estimators/tail_test.hpp"
-#include "analysis/diagnose/estimators/variance_course_test.hpp"
-#include "analysis/diagnose/estimators/variance_of_test.hpp"
+#include "analysis/diagnose/estimators/outliers.hpp"
+#include "analysis/diagnose/estimators/shared_noise.hpp"
+#include "analysis/diagnose/estimators/tails.hpp"
+#include "analysis/diagnose/estimators/variance_change_point.hpp"
+#include "analysis/diagnose/estimators/variance_with_temperature.hpp"
 #include "tests/analysis/diagnose/estimators/white_noise_case.hpp"
 
 namespace gyrolog {
@@ -15,15 +15,15 @@ namespace {
 
 struct Method {
     const char* effect;
-    TestMaker make;
+    EstimatorMaker make;
 };
 
 constexpr Method methods[] = {
-    {"heavy_tail", make_tail_test},
-    {"spikes", make_outlier_test},
-    {"variance_change", make_variance_course_test},
-    {"temp_noise", make_variance_of_test},
-    {"common_mode", make_shared_noise_test},
+    {"heavy_tail", make_tail_estimator},
+    {"spikes", make_outlier_estimator},
+    {"variance_change", make_variance_change_point_estimator},
+    {"temp_noise", make_variance_with_temperature_estimator},
+    {"common_mode", make_shared_noise_estimator},
 };
 
 TEST(WhiteNoiseChance, HasNoMoreEvidenceThanItShould) {
@@ -67,8 +67,8 @@ TEST(WhiteNoiseChance, IsAsRareForShortRecordsAndSingleAxes) {
                 EXPECT_TRUE(std::isfinite(found->gain_nats)) << method.effect;
                 EXPECT_LT(found->evidence_nats, 6.0) << method.effect;
             }
-            EXPECT_NE(seen.untestable("temp_noise", make_variance_of_test), "");
-            EXPECT_EQ(seen.untestable("common_mode", make_shared_noise_test),
+            EXPECT_NE(seen.untestable("temp_noise", make_variance_with_temperature_estimator), "");
+            EXPECT_EQ(seen.untestable("common_mode", make_shared_noise_estimator),
                       axes == 1 ? "the recording has one axis only" : "");
         }
     }

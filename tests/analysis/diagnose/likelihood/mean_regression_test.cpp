@@ -26,12 +26,12 @@ protected:
         SensorModel sensor = model;
         sensor.M[axis][axis] += 4e-4;
         const auto recording = recorded(sensor, 6000, 5, world);
-        baseline_ = baseline_of(recording, model);
-        observation_ = std::make_unique<Observation>(baseline_, recording, 1);
+        prediction_ = prediction_of(recording, model);
+        observation_ = std::make_unique<Observation>(prediction_, recording, 1);
         std::mt19937_64 random(7);
         std::normal_distribution<float> normal;
         for (std::vector<float>& response : responses_) {
-            response.assign(baseline_->length(), 0.0F);
+            response.assign(prediction_->length(), 0.0F);
             for (std::size_t k = 1; k < response.size(); ++k) { response[k] = 0.1F * normal(random); }
         }
     }
@@ -40,23 +40,23 @@ protected:
         return static_cast<double>(observation_->axis(axis).cosines[k]);
     }
 
-    std::shared_ptr<const Baseline> baseline_;
+    std::shared_ptr<const Prediction> prediction_;
     std::unique_ptr<Observation> observation_;
     std::vector<std::vector<float>> responses_{2};
 };
 
 TEST_F(MeanRegressionBySums, LeavesThePowerOfWhatIsLeft) {
-    const MeanResponses responses(*baseline_, axis, responses_);
+    const MeanResponses responses(*prediction_, axis, responses_);
     const MeanRegression regression(*observation_, axis, responses);
     const AxisObservation& seen = observation_->axis(axis);
     const NormalEquations equations = regression.equations(seen.density);
     const std::vector<double> c{0.3, -0.7};
     const MeanRegression::Rest rest = regression.rest(equations, c);
     const std::vector<double> moved = equations.moved(c);
-    const UncertainMean& uncertain = baseline_->uncertain(axis);
+    const UncertainMean& uncertain = prediction_->uncertain(axis);
     ASSERT_EQ(uncertain.size(), 5U);
-    for (std::size_t i = 0; i < baseline_->bins().size(); ++i) {
-        const SpectralBin& bin = baseline_->bins()[i];
+    for (std::size_t i = 0; i < prediction_->bins().size(); ++i) {
+        const SpectralBin& bin = prediction_->bins()[i];
         double squares = 0.0;
         for (std::size_t k = bin.first; k < bin.end; ++k) {
             double left = coefficient(k) - 0.3 * static_cast<double>(responses_[0][k]) +
@@ -66,7 +66,7 @@ TEST_F(MeanRegressionBySums, LeavesThePowerOfWhatIsLeft) {
             }
             squares += left * left;
         }
-        const double power = squares / (bin.count() * baseline_->rate_hz());
+        const double power = squares / (bin.count() * prediction_->rate_hz());
         // The coefficients are rounded to floats.
         ASSERT_NEAR(rest.power[i], power, 1e-5 * power) << "bin " << i;
     }
@@ -74,21 +74,21 @@ TEST_F(MeanRegressionBySums, LeavesThePowerOfWhatIsLeft) {
 
 // The uncertain responses, held by their prior, and those asked for are one least squares problem.
 TEST_F(MeanRegressionBySums, SolvesTheSameProblemAsAllResponsesTogether) {
-    const MeanResponses responses(*baseline_, axis, responses_);
+    const MeanResponses responses(*prediction_, axis, responses_);
     const MeanRegression regression(*observation_, axis, responses);
     const AxisObservation& seen = observation_->axis(axis);
     const NormalEquations equations = regression.equations(seen.density);
     const std::vector<double> c = equations.solution();
 
-    const UncertainMean& uncertain = baseline_->uncertain(axis);
+    const UncertainMean& uncertain = prediction_->uncertain(axis);
     const auto directions = static_cast<Eigen::Index>(uncertain.size());
-    const auto length = static_cast<Eigen::Index>(baseline_->length());
+    const auto length = static_cast<Eigen::Index>(prediction_->length());
     // One row a coefficient, over its standard deviation, and one a prior.
     Eigen::MatrixXd design = Eigen::MatrixXd::Zero(length + directions, 2 + directions);
     Eigen::VectorXd target = Eigen::VectorXd::Zero(length + directions);
-    for (std::size_t i = 0; i < baseline_->bins().size(); ++i) {
-        const double sd = std::sqrt(seen.density[i] * baseline_->rate_hz());
-        for (std::size_t k = baseline_->bins()[i].first; k < baseline_->bins()[i].end; ++k) {
+    for (std::size_t i = 0; i < prediction_->bins().size(); ++i) {
+        const double sd = std::sqrt(seen.density[i] * prediction_->rate_hz());
+        for (std::size_t k = prediction_->bins()[i].first; k < prediction_->bins()[i].end; ++k) {
             const auto row = static_cast<Eigen::Index>(k);
             target[row] = coefficient(k) / sd;
             for (std::size_t j = 0; j < 2; ++j) {

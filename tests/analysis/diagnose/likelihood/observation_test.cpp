@@ -15,8 +15,8 @@ namespace {
 TEST(Observation, IsWhiteWhereTheModelIsRight) {
     const SensorModel model = calibrated_sensor();
     const auto recording = recorded(draw_within_uncertainty(model, 3), 180000, 11);
-    const Observation seen(baseline_of(recording, model), recording, 1);
-    for (const std::size_t axis : seen.baseline().axes()) {
+    const Observation seen(prediction_of(recording, model), recording, 1);
+    for (const std::size_t axis : seen.prediction().axes()) {
         const std::vector<float>& white = seen.axis(axis).whitened;
         double square = 0.0;
         double product = 0.0;
@@ -29,7 +29,7 @@ TEST(Observation, IsWhiteWhereTheModelIsRight) {
         EXPECT_NEAR(product / n, 0.0, 4.0 / std::sqrt(n));
         // By bin: chi-square, its mean over all bins with tolerance from their count.
         double misfit = 0.0;
-        const SpectralBins& bins = seen.baseline().bins();
+        const SpectralBins& bins = seen.prediction().bins();
         for (std::size_t i = 0; i < bins.size(); ++i) {
             const double ratio = seen.axis(axis).power[i] / seen.axis(axis).density[i] - 1.0;
             misfit += 0.5 * bins[i].count() * ratio * ratio;
@@ -46,9 +46,9 @@ TEST(Observation, FindsTheNoiseWithinItsUncertainty) {
     SensorModel louder = model;
     for (AxisModel& axis : louder.axes) { axis.noise.N_rad_per_sqrt_s *= 1.01; }
     const auto recording = recorded(louder, 180000, 12);
-    const Observation seen(baseline_of(recording, model), recording, 1);
+    const Observation seen(prediction_of(recording, model), recording, 1);
     // 180 000 samples know N to 0.17 %, the model to 0.5 %: +1 % is 2 sd, of which the prior keeps a tenth.
-    for (const std::size_t axis : seen.baseline().axes()) {
+    for (const std::size_t axis : seen.prediction().axes()) {
         EXPECT_NEAR(seen.axis(axis).noise.z[0], 1.8, 1.2) << axis;
     }
 }
@@ -58,14 +58,16 @@ TEST(Observation, FillsHolesWithoutLosingPower) {
     SensorModel dropping = model;
     dropping.effects.push_back({"dropped", {}, {{"per_hour", 600.0}, {"longest", 30.0}}, ""});
     const auto recording = recorded(dropping, 180000, 13);
-    const Observation seen(baseline_of(recording, model), recording, 1);
+    const Observation seen(prediction_of(recording, model), recording, 1);
     std::size_t missing = 0;
-    for (std::size_t slot = 0; slot < seen.baseline().length(); ++slot) { missing += !seen.present()[slot]; }
+    for (std::size_t slot = 0; slot < seen.prediction().length(); ++slot) {
+        missing += !seen.present()[slot];
+    }
     EXPECT_GT(missing, 1000U);
-    for (const std::size_t axis : seen.baseline().axes()) {
+    for (const std::size_t axis : seen.prediction().axes()) {
         double square = 0.0;
         for (const float w : seen.axis(axis).whitened) { square += static_cast<double>(w * w); }
-        const auto n = static_cast<double>(seen.baseline().length());
+        const auto n = static_cast<double>(seen.prediction().length());
         EXPECT_NEAR(square / n, 1.0, 5.0 * std::sqrt(2.0 / n)) << axis;
     }
 }

@@ -35,7 +35,7 @@ inline std::vector<GapCurve> curves_of(std::uint64_t seed, const Change& change,
         if (change) { change(codes); }
         column.data = std::move(codes);
     }
-    return gap_curves(Observation(baseline_of(std::make_shared<const Recording>(recording), model),
+    return gap_curves(Observation(prediction_of(std::make_shared<const Recording>(recording), model),
                                   std::make_shared<const Recording>(recording), 1));
 }
 

@@ -30,7 +30,7 @@ std::vector<GapCurve> curves_with(const std::function<double(double t_s)>& more)
     }
     column.data = std::move(numbers);
     const auto seen = std::make_shared<const Recording>(recording);
-    return gap_curves(Observation(baseline_of(seen, model), seen, 1));
+    return gap_curves(Observation(prediction_of(seen, model), seen, 1));
 }
 
 double change_rad_s2(double t_s) { return (rate_rad_s(t_s + 0.005) - rate_rad_s(t_s - 0.005)) / 0.01; }

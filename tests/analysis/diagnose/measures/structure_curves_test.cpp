@@ -35,14 +35,15 @@ TEST(StructureCurves, OfOrdinaryNoiseAreRarelyLarge) {
 TEST(StructureCurves, HaveAsManyPointsWhateverIsJudged) {
     SensorModel model = calibrated_sensor();
     const auto recording = recorded(model, samples, 1);
-    const std::vector<GapCurve> whole = gap_curves(Observation(baseline_of(recording, model), recording, 1));
+    const std::vector<GapCurve> whole =
+        gap_curves(Observation(prediction_of(recording, model), recording, 1));
     // Of a sensor known to be read too fast, the samples that repeat are not judged.
     EffectModel stale;
     stale.effect = "stale";
     stale.params = {{"eps", 0.45}};
     model.effects = {stale};
     const auto repeating = recorded(model, samples, 1);
-    const std::vector<GapCurve> part = gap_curves(Observation(baseline_of(repeating, model), repeating, 1));
+    const std::vector<GapCurve> part = gap_curves(Observation(prediction_of(repeating, model), repeating, 1));
     ASSERT_EQ(part.size(), whole.size());
     for (std::size_t i = 0; i < whole.size(); ++i) {
         EXPECT_EQ(part[i].value.size(), whole[i].value.size()) << i;
@@ -151,9 +152,9 @@ TEST(StructureCurves, ShowAConverterWhoseLowestBitIsWeak) {
 TEST(StructureCurves, JudgeCodesOfASensorAtRestOnly) {
     const SensorModel model = calibrated_sensor();
     const auto recording = recorded(model, 20'000, 10, tumbling_world(5.0));
-    const auto baseline = baseline_of(recording, model);
-    ASSERT_TRUE(baseline->moves());
-    const std::vector<GapCurve> curves = gap_curves(Observation(baseline, recording, 1));
+    const auto prediction = prediction_of(recording, model);
+    ASSERT_TRUE(prediction->moves());
+    const std::vector<GapCurve> curves = gap_curves(Observation(prediction, recording, 1));
     EXPECT_EQ(curve_of(curves, GapDomainKind::codes, 0).value, (std::vector<double>{0.0, 0.0}));
 }
 

@@ -66,9 +66,9 @@ TEST(LongDiagnosis, FindsNothingWhereNothingIs) {
     EXPECT_EQ(diagnosis.samples, samples_of_all);
     EXPECT_NEAR(diagnosis.duration_s, 400.0, 0.1);
     EXPECT_NEAR(diagnosis.rate_hz, 1000.0, 0.1);
-    ASSERT_THAT(diagnosis.looks, SizeIs(2));
-    EXPECT_EQ(diagnosis.looks[0].rows, samples_of_beginning);
-    EXPECT_EQ(diagnosis.looks[1].samples_per_row, samples_per_row);
+    ASSERT_THAT(diagnosis.passes, SizeIs(2));
+    EXPECT_EQ(diagnosis.passes[0].rows, samples_of_beginning);
+    EXPECT_EQ(diagnosis.passes[1].samples_per_row, samples_per_row);
 }
 
 // A line has an image in means, and more white noise is more of it there: each is one cause, as the samples
@@ -105,7 +105,7 @@ TEST(LongDiagnosis, TakesWhatSpikesLeaveInMeansForNoNoise) {
     const Diagnosis diagnosis = diagnosis_of(sensor, 48);
     EXPECT_EQ(diagnosis.verdict, Verdict::known);
     EXPECT_THAT(effects_of(diagnosis), ElementsAre("spikes"));
-    EXPECT_EQ(diagnosis.looks[1].verdict, Verdict::none);
+    EXPECT_EQ(diagnosis.passes[1].verdict, Verdict::none);
 }
 
 // In means some twelve to forty standard deviations, where they would be a gap that nothing explains.
@@ -115,7 +115,7 @@ TEST(LongDiagnosis, HasStrongSpikesInItsMeansToo) {
     const Diagnosis diagnosis = diagnosis_of(sensor, 50);
     EXPECT_EQ(diagnosis.verdict, Verdict::known);
     EXPECT_THAT(effects_of(diagnosis), ElementsAre("spikes"));
-    EXPECT_EQ(diagnosis.looks[1].verdict, Verdict::none);
+    EXPECT_EQ(diagnosis.passes[1].verdict, Verdict::none);
     // The model has them.
     EXPECT_EQ(diagnosis_of(sensor, 51, sensor).verdict, Verdict::none);
 }
@@ -138,7 +138,7 @@ TEST(LongDiagnosis, TakesWhatHeavyTailsLeaveInMeansForNoSpikes) {
     const SensorModel sensor = with_effect(fast_sensor(), "heavy_tail", {{"nu", 3.0}}, {"y"});
     const Diagnosis diagnosis = diagnosis_of(sensor, 53);
     EXPECT_THAT(effects_of(diagnosis), ElementsAre("heavy_tail"));
-    EXPECT_EQ(diagnosis.looks[1].verdict, Verdict::none);
+    EXPECT_EQ(diagnosis.passes[1].verdict, Verdict::none);
     EXPECT_EQ(diagnosis_of(sensor, 54, sensor).verdict, Verdict::none);
 }
 
@@ -149,8 +149,8 @@ TEST(LongDiagnosis, SeesWhatComesAfterTheBeginning) {
     EXPECT_EQ(diagnosis.verdict, Verdict::known);
     EXPECT_THAT(effects_of(diagnosis), ElementsAre("bias_step"));
     EXPECT_NEAR(param(diagnosis, "bias_step", "at_s"), 233.0, 1.0);
-    EXPECT_EQ(diagnosis.looks[0].verdict, Verdict::none);
-    EXPECT_EQ(diagnosis.looks[1].verdict, Verdict::known);
+    EXPECT_EQ(diagnosis.passes[0].verdict, Verdict::none);
+    EXPECT_EQ(diagnosis.passes[1].verdict, Verdict::known);
 }
 
 // A line in the means is no white noise, whether or not the model has it.

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/selection/effect_search.hpp"
+#include "analysis/diagnose/selection/forward_selection.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -31,7 +31,7 @@ TEST(ModelOfMeans, IsThatOfTheMeansOfItsSamples) {
         const auto recording = means(model, seed);
         EXPECT_NEAR(recording->rate_hz, 100.0, 1e-6);
         const Hypotheses seen =
-            examine(baseline_of(recording, model_of_means(model, samples, 1000.0)), recording, 1, 1);
+            examine(prediction_of(recording, model_of_means(model, samples, 1000.0)), recording, 1, 1);
         for (const std::size_t axis : {0U, 1U, 2U}) {
             double square = 0.0;
             const std::vector<float>& white = seen.observation->axis(axis).whitened;
@@ -48,7 +48,7 @@ TEST(ModelOfMeans, HasTheSlowEffects) {
     const auto recording =
         means(with_effect(model, "gauss_markov", {{"sigma_dps", 0.02}, {"tau_s", 5.0}}, {"y"}), 85);
     const Hypotheses seen =
-        examine(baseline_of(recording, model_of_means(model, samples, 1000.0)), recording, 1, 1);
+        examine(prediction_of(recording, model_of_means(model, samples, 1000.0)), recording, 1, 1);
     ASSERT_NE(seen.best(), nullptr);
     EXPECT_EQ(seen.best()->effect, "gauss_markov");
     for (const CatalogueEntry& entry : seen.catalogue) {
@@ -78,7 +78,7 @@ TEST(ModelOfMeans, HasSingleSamplesThatAreOffByLess) {
 
     const auto recording = means(model, 86);  // some 170 of them
     const Hypotheses seen =
-        examine(baseline_of(recording, model_of_means(fast_sensor(), samples, 1000.0)), recording, 1, 1);
+        examine(prediction_of(recording, model_of_means(fast_sensor(), samples, 1000.0)), recording, 1, 1);
     ASSERT_NE(seen.best(), nullptr);
     EXPECT_EQ(seen.best()->effect, "spikes");
     const Finding found = finding_of_samples(*seen.best(), samples, 1000.0);

@@ -1,0 +1,54 @@
+// Gap curves of a recording against those of simulations.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "analysis/diagnose/measures/gap_curves.hpp"
+
+namespace gyrolog {
+
+// What simulations give for every number of every curve.
+struct GapReference {
+    std::vector<std::vector<double>> mean;  // by curve, by point
+    std::vector<std::vector<double>> sd;
+    // By curve, by window over neighbouring points: of the sum of their z.
+    std::vector<std::vector<double>> window_sd;
+    std::vector<double> rms_scale;  // by curve: root mean square, over simulations, of their own rms z
+    // By curve: mean and variance of the sum of z^2 over the simulations.
+    std::vector<double> square_mean, square_variance;
+    double degrees_of_freedom = 0.0;  // of every sd
+};
+
+using SimulatedCurves = std::vector<std::vector<GapCurve>>;  // by simulation
+
+// `simulations`: at least ten, all from one prediction; the one at `left_out`, if there is one, has no part
+// in it.
+GapReference gap_reference(const SimulatedCurves& simulations,
+                           std::optional<std::size_t> left_out = std::nullopt);
+
+struct CurveDistance {
+    std::vector<double> z;
+    double distance = 0.0;  // rms of z in units of a simulation's: 1 is the floor
+    std::vector<double> window_z;
+    double squares = 0.0;  // sum of z^2
+    // -ln of the probability that a simulation's curve is as far off in sum, or at one point, or over some
+    // neighbouring points together; the largest.
+    double surprise_nats = 0.0;
+};
+
+CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
+
+// With as many curves as there are, one or another reaches some 7 nats by chance.
+inline constexpr double stands_out_nats = 7.0;
+
+// By curve of one observation: its own surprise; where no axis stands out by itself, that of all axes' curves
+// of the kind together if that is larger.
+std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
+// The largest of all, of single curves and of axes together.
+double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
+// Of every simulation against all the others: a new recording is not in its own reference either.
+std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations);
+
+}  // namespace gyrolog

@@ -1,0 +1,40 @@
+#include "analysis/diagnose/calibration/null_bias.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "analysis/diagnose/calibration/null_simulations.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr std::size_t simulations = 16;
+constexpr double sds = 4.0;
+
+}  // namespace
+
+std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hypotheses, std::uint64_t seed,
+                                                            unsigned threads,
+                                                            const std::function<bool()>& told) {
+    const NullSimulationOptions options{simulations, seed, threads, [&](double) { return told(); }};
+    const std::optional<NullSimulations> null =
+        simulate_null(hypotheses.prediction, &hypotheses.catalogue, options);
+    if (!null) { return std::nullopt; }
+    std::map<std::string, double> null_bias_nats;
+    for (std::size_t entry = 0; entry < hypotheses.catalogue.size(); ++entry) {
+        double mean = 0.0;
+        double square = 0.0;
+        for (const std::vector<double>& of_effects : null->evidence_nats) {
+            mean += of_effects[entry] / static_cast<double>(simulations);
+            square += of_effects[entry] * of_effects[entry] / static_cast<double>(simulations);
+        }
+        const double sd = std::sqrt(std::max(square - mean * mean, 0.0));
+        null_bias_nats[std::string(hypotheses.catalogue[entry].effect->name)] =
+            std::max(0.0, mean + sds * sd);
+    }
+    return null_bias_nats;
+}
+
+}  // namespace gyrolog

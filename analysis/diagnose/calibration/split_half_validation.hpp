@@ -1,0 +1,23 @@
+// Whether causes that were fitted to one half of a recording are right for the other.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "analysis/diagnose/calibration/split_half_result.hpp"
+#include "analysis/diagnose/finding.hpp"
+
+namespace gyrolog {
+
+class Prediction;
+struct Recording;
+
+// `causes` are fitted anew to either half, from nothing, with each other in the model; with what came of it
+// in the model, the other half is asked how much more of the same effect it calls for. `prediction` has none
+// of the causes.
+SplitHalfResult validate_by_halves(const std::shared_ptr<const Prediction>& prediction,
+                                   const std::shared_ptr<const Recording>& recording,
+                                   const std::vector<Finding>& causes, std::uint64_t seed, unsigned threads);
+
+}  // namespace gyrolog

@@ -1,0 +1,16 @@
+// Effects that change the sensor's mean answer to the world (temperature, time, motion).
+//
+// The cosine coefficients of the residual are independent and normal, Y_k ~ (sum_j c_j G_jk, S_k rate), with
+// G_j what the simulator answers to one unit of parameter j without noise: generalised least squares. Other
+// parameters are found by trial and parabola. N, B and K are refitted to what is left, and the model's own
+// uncertain gains, latency and clock (Prediction::uncertain) beside.
+#pragma once
+
+#include "analysis/diagnose/estimators/estimator.hpp"
+
+namespace gyrolog {
+
+MadeEstimator make_mean_response_estimator(const EffectDefinition& effect,
+                                           std::shared_ptr<const Prediction> prediction);
+
+}  // namespace gyrolog

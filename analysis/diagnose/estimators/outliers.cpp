@@ -1,0 +1,384 @@
+#include "analysis/diagnose/estimators/outliers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/likelihood/white_distribution.hpp"
+#include "analysis/diagnose/likelihood/white_share.hpp"
+#include "analysis/diagnose/likelihood/whitened_blocks.hpp"
+#include "analysis/noise/noise_model.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr double seconds_per_hour = 3600.0;
+constexpr double size_step = 1.3;
+constexpr double below_plausible = 0.7;
+constexpr double above_plausible = 1.3;
+constexpr double looked_at_sigma = 2.0;  // nearer to zero a spike and noise are not told apart
+constexpr double run_sigma = 4.5;
+// Single samples that are off are worth this at the least; less is not looked at closely.
+constexpr double worth_scanning_nats = 2.0;
+constexpr int em_rounds = 12;
+
+// Sizes in the unit of whitened samples.
+struct Limits {
+    double from = 0.0;
+    double to = 0.0;
+};
+
+struct Mixed {
+    double gain_nats = 0.0;  // without what the core's own scale gains
+    double share = 0.0;      // of samples that are off
+};
+
+struct AxisSamples {
+    std::size_t axis = 0;
+    double per_dps = 0.0;  // of a histogram's unit
+    WhitenedHistogram histogram;
+    const NormalMixture* noise = nullptr;
+    const LogDensityTable* log_noise = nullptr;
+    double scale = 1.0;                // of the noise without spikes
+    double core_gain_nats = 0.0;       // of that scale, against the best for all samples: below zero
+    std::vector<std::size_t> far;      // histogram entries looked at
+    std::vector<double> log_noise_at;  // of those
+};
+
+// Samples beyond the limit beside another one on the same side.
+template <typename Take>
+void for_each_in_run(const WhitenedBlocks& blocks, const Observation& observation, std::size_t axis,
+                     Take take) {
+    const std::vector<float>& whitened = observation.axis(axis).whitened;
+    const auto limit = static_cast<float>(run_sigma * blocks.level);
+    const auto beyond = [&](std::size_t slot, bool up) {
+        return observation.present()[slot] && (up ? whitened[slot] > limit : whitened[slot] < -limit);
+    };
+    for (std::size_t slot = 0; slot < whitened.size(); ++slot) {
+        if (std::fabs(whitened[slot]) <= limit) { continue; }
+        const bool up = whitened[slot] > 0.0F;
+        const bool run =
+            (slot > 0 && beyond(slot - 1, up)) || (slot + 1 < whitened.size() && beyond(slot + 1, up));
+        if (run && beyond(slot, up)) { take(slot); }
+    }
+}
+
+// Takes them out of the histogram.
+void drop_runs(const WhitenedBlocks& blocks, const Observation& observation, std::size_t axis,
+               WhitenedHistogram& histogram) {
+    for_each_in_run(blocks, observation, axis, [&](std::size_t slot) {
+        const std::size_t block = std::min(slot / blocks.length, blocks.size() - 1);
+        const double n = blocks.weight[block] + 1.0;
+        if (blocks.weight[block] == 0.0) { return; }
+        const double off =
+            std::fabs(static_cast<double>(observation.axis(axis).whitened[slot]) - blocks.mean[block]) *
+            std::sqrt(n / (n - 1.0)) / blocks.level;
+        std::size_t nearest = histogram.at.size();
+        for (std::size_t i = 0; i < histogram.at.size(); ++i) {
+            if (histogram.count[i] > 0.0 &&
+                (nearest == histogram.at.size() ||
+                 std::fabs(histogram.at[i] - off) < std::fabs(histogram.at[nearest] - off))) {
+                nearest = i;
+            }
+        }
+        if (nearest == histogram.at.size()) { return; }
+        histogram.count[nearest] -= 1.0;
+        histogram.samples -= 1.0;
+    });
+}
+
+double trimmed_sd(const WhitenedHistogram& histogram) {
+    double samples = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < histogram.at.size(); ++i) {
+        if (histogram.at[i] > outlier_sigma) { continue; }
+        samples += histogram.count[i];
+        squares += histogram.count[i] * histogram.at[i] * histogram.at[i];
+    }
+    return samples > 0.0 ? std::sqrt(squares / samples) : 1.0;
+}
+
+// EM for the share of samples that are off, then the likelihood ratio against none.
+Mixed mix(const AxisSamples& samples, const Limits& limits) {
+    std::vector<double> log_ratio(samples.far.size());
+    double expected = 0.0;
+    for (std::size_t i = 0; i < samples.far.size(); ++i) {
+        const double at = samples.histogram.at[samples.far[i]];
+        const double inside = samples.noise->probability_below((at - limits.from) / samples.scale) -
+                              samples.noise->probability_below((at - limits.to) / samples.scale);
+        log_ratio[i] = std::log(inside / (2.0 * (limits.to - limits.from))) - samples.log_noise_at[i];
+        if (at > run_sigma && log_ratio[i] > 0.0) { expected += samples.histogram.count[samples.far[i]]; }
+    }
+    const double n = samples.histogram.samples;
+    Mixed mixed;
+    mixed.share = std::clamp(expected / n, 0.5 / n, 0.2);
+    const auto odds = [&](std::size_t i) {
+        return std::log(mixed.share / (1.0 - mixed.share)) + log_ratio[i];
+    };
+    for (int round = 0; round < em_rounds; ++round) {
+        double off = 0.0;
+        for (std::size_t i = 0; i < samples.far.size(); ++i) {
+            off += samples.histogram.count[samples.far[i]] / (1.0 + std::exp(-odds(i)));
+        }
+        mixed.share = std::clamp(off / n, 1e-3 / n, 0.5);
+    }
+    mixed.gain_nats = n * std::log1p(-mixed.share);
+    for (std::size_t i = 0; i < samples.far.size(); ++i) {
+        const double log_odds = odds(i);
+        const double gain = log_odds > 30.0 ? log_odds : std::log1p(std::exp(log_odds));
+        mixed.gain_nats += samples.histogram.count[samples.far[i]] * gain;
+    }
+    return mixed;
+}
+
+template <typename Function>
+double top_between(double from, double to, Function function) {
+    constexpr int thirds = 14;
+    for (int i = 0; i < thirds; ++i) {
+        const double left = from + (to - from) / 3.0;
+        const double right = to - (to - from) / 3.0;
+        if (function(left) > function(right)) {
+            to = right;
+        } else {
+            from = left;
+        }
+    }
+    return 0.5 * (from + to);
+}
+
+class OutlierEstimator final : public Estimator {
+public:
+    OutlierEstimator(const EffectDefinition& effect, std::shared_ptr<const Prediction> prediction)
+        : effect_(effect), prediction_(std::move(prediction)) {
+        const EffectParam& number = effect_.params[0];
+        log_number_range_ = std::log(number.plausible_to / number.plausible_from);
+        for (const std::size_t axis : prediction_->axes()) {
+            noise_[axis] = std::make_unique<NormalMixture>(
+                whitened_mixture(*prediction_, axis, white_degrees_of_freedom(*prediction_, axis)));
+            log_noise_[axis] = std::make_unique<LogDensityTable>(*noise_[axis]);
+        }
+    }
+
+    std::optional<Finding> find(const Observation& observation) const override {
+        std::vector<AxisSamples> all;
+        for (const std::size_t axis : prediction_->axes()) {
+            if (std::optional<AxisSamples> samples = samples_of(observation, axis)) {
+                all.push_back(std::move(*samples));
+            }
+        }
+        if (all.empty()) { return std::nullopt; }
+        const std::vector<Limits> limits_dps = limits_to_try(all);
+        // By axis and limits: gain less the cost of the number.
+        std::vector<std::vector<double>> nats(all.size());
+        for (std::size_t a = 0; a < all.size(); ++a) {
+            for (const Limits& limits : limits_dps) { nats[a].push_back(worth_nats(all[a], limits)); }
+        }
+        std::vector<std::size_t> members(all.size());
+        std::iota(members.begin(), members.end(), std::size_t{0});
+        Choice best;
+        for (const std::vector<std::size_t>& subset : axis_subsets(members)) {
+            std::vector<double> sum(limits_dps.size(), 0.0);
+            for (const std::size_t member : subset) {
+                for (std::size_t i = 0; i < sum.size(); ++i) { sum[i] += nats[member][i]; }
+            }
+            const double evidence = log_sum_exp(sum) - std::log(static_cast<double>(sum.size()));
+            if (best.members.empty() || evidence > best.evidence_nats) {
+                const auto top = static_cast<std::size_t>(std::ranges::max_element(sum) - sum.begin());
+                best = {subset, evidence, sum[top], limits_dps[top]};
+            }
+        }
+        refine(all, best);
+        return finding_of(all, best);
+    }
+
+private:
+    struct Choice {
+        std::vector<std::size_t> members;
+        double evidence_nats = 0.0;
+        double worth_nats = 0.0;  // at the limits
+        Limits limits_dps;
+    };
+
+    std::optional<AxisSamples> samples_of(const Observation& observation, std::size_t axis) const {
+        const WhitenedBlocks blocks = whitened_blocks(observation, axis);
+        if (!blocks.has_noise()) { return std::nullopt; }
+        AxisSamples samples;
+        samples.axis = axis;
+        samples.per_dps = rad_per_deg * whitened_per_rad_s(observation, axis) / blocks.level;
+        samples.histogram = whitened_histogram(blocks, observation, axis);
+        drop_runs(blocks, observation, axis, samples.histogram);
+        samples.noise = noise_[axis].get();
+        samples.log_noise = log_noise_[axis].get();
+        const ScaledFit plain =
+            fit_scale(samples.histogram, *samples.log_noise, std::sqrt(samples.histogram.moment(2)));
+        const bool normal = std::isinf(white_degrees_of_freedom(*prediction_, axis));
+        samples.scale = normal ? trimmed_sd(samples.histogram) : plain.scale;
+        double core = -samples.histogram.samples * std::log(samples.scale);
+        double excess = 0.0;
+        for (std::size_t i = 0; i < samples.histogram.at.size(); ++i) {
+            const double count = samples.histogram.count[i];
+            if (count == 0.0) { continue; }
+            const double at = samples.histogram.at[i];
+            const double log_density = (*samples.log_noise)(at / samples.scale);
+            core += count * log_density;
+            if (at < looked_at_sigma) { continue; }
+            samples.far.push_back(i);
+            samples.log_noise_at.push_back(log_density - std::log(samples.scale));
+            // Were every sample here a spike, and rare.
+            excess +=
+                count * std::max(0.0, -samples.log_noise_at.back() - std::log(samples.histogram.samples));
+        }
+        samples.core_gain_nats = core - plain.log_likelihood_nats;
+        return excess > worth_scanning_nats ? std::optional(std::move(samples)) : std::nullopt;
+    }
+
+    std::vector<Limits> limits_to_try(const std::vector<AxisSamples>& all) const {
+        // Of one sample, in means of several.
+        const auto in_rows = static_cast<double>(prediction_->world().recording().samples_per_row);
+        double largest_dps = above_plausible * effect_.params[2].plausible_to / in_rows;
+        for (const AxisSamples& samples : all) {
+            for (const std::size_t i : samples.far) {
+                largest_dps = std::max(largest_dps, 1.1 * samples.histogram.at[i] / samples.per_dps);
+            }
+        }
+        std::vector<double> sizes = {below_plausible * effect_.params[1].plausible_from / in_rows};
+        while (sizes.back() < largest_dps) { sizes.push_back(sizes.back() * size_step); }
+        std::vector<Limits> limits;
+        for (std::size_t from = 0; from < sizes.size(); ++from) {
+            for (std::size_t to = from + 1; to < sizes.size(); ++to) {
+                limits.push_back({sizes[from], sizes[to]});
+            }
+        }
+        return limits;
+    }
+
+    static Mixed mix_dps(const AxisSamples& samples, const Limits& limits_dps) {
+        return mix(samples, {limits_dps.from * samples.per_dps, limits_dps.to * samples.per_dps});
+    }
+
+    // Of a number of Poisson events: known to one in its square root.
+    double number_cost_nats(double number) const {
+        return parameter_cost_nats(log_number_range_, 1.0 / std::sqrt(std::max(number, 1.0)));
+    }
+
+    double worth_nats(const AxisSamples& samples, const Limits& limits_dps) const {
+        const Mixed mixed = mix_dps(samples, limits_dps);
+        return mixed.gain_nats + samples.core_gain_nats -
+               number_cost_nats(mixed.share * samples.histogram.samples);
+    }
+
+    void refine(const std::vector<AxisSamples>& all, Choice& choice) const {
+        if (choice.evidence_nats < 0.0) { return; }
+        const auto worth = [&](const Limits& limits) {
+            double sum = 0.0;
+            for (const std::size_t member : choice.members) { sum += worth_nats(all[member], limits); }
+            return sum;
+        };
+        Limits limits = choice.limits_dps;
+        for (int round = 0; round < 2; ++round) {
+            limits.from = top_between(limits.from / size_step,
+                                      std::min(limits.from * size_step, 0.98 * limits.to), [&](double from) {
+                                          return worth({from, limits.to});
+                                      });
+            limits.to = top_between(std::max(limits.to / size_step, 1.02 * limits.from),
+                                    limits.to * size_step, [&](double to) {
+                                        return worth({limits.from, to});
+                                    });
+        }
+        const double there = worth(limits);
+        if (there < choice.worth_nats) { return; }
+        choice.evidence_nats += there - choice.worth_nats;
+        choice.worth_nats = there;
+        choice.limits_dps = limits;
+    }
+
+    std::optional<Finding> finding_of(const std::vector<AxisSamples>& all, const Choice& choice) const {
+        Finding finding;
+        finding.effect = effect_.name;
+        finding.evidence_nats = choice.evidence_nats;
+        std::vector<double> numbers;
+        Span sigmas{std::numeric_limits<double>::infinity(), 0.0};
+        double noise_dps = 0.0;
+        for (const std::size_t member : choice.members) {
+            const AxisSamples& samples = all[member];
+            const Mixed mixed = mix_dps(samples, choice.limits_dps);
+            numbers.push_back(mixed.share * samples.histogram.samples);
+            finding.axis_gain_nats[samples.axis] = mixed.gain_nats + samples.core_gain_nats;
+            finding.gain_nats += finding.axis_gain_nats[samples.axis];
+            finding.where.axes.push_back(samples.axis);
+            noise_dps = std::max(noise_dps, 1.0 / samples.per_dps);
+            sigmas.from = std::min(sigmas.from, choice.limits_dps.from * samples.per_dps);
+            sigmas.to = std::max(sigmas.to, choice.limits_dps.to * samples.per_dps);
+        }
+        if (!(finding.gain_nats > 0.0)) { return std::nullopt; }
+        finding.where.amplitude_sigma = sigmas;
+        finding.where.structure = effect_.signature->structure;
+        add_entries(choice, noise_dps, numbers, finding);
+        return finding;
+    }
+
+    // One number for all axes where theirs differ no more than chance has it.
+    void add_entries(const Choice& choice, double noise_dps, const std::vector<double>& numbers,
+                     Finding& finding) const {
+        const double total = std::accumulate(numbers.begin(), numbers.end(), 0.0);
+        const double mean = total / static_cast<double>(numbers.size());
+        double lost = 0.0;
+        double saved = -number_cost_nats(total);
+        for (const double number : numbers) {
+            lost += number > 0.0 ? number * std::log(number / mean) : 0.0;
+            saved += number_cost_nats(number);
+        }
+        const bool together = numbers.size() > 1 && saved > lost;
+        if (together) {
+            finding.evidence_nats += saved - lost;
+            finding.gain_nats -= lost;
+        }
+        for (std::size_t a = 0; a < numbers.size(); ++a) {
+            if (a == 0 || !together) {
+                add_entry(choice.limits_dps, noise_dps, together ? mean : numbers[a],
+                          together ? total : numbers[a], total, finding);
+            }
+            finding.entries.back().axes.emplace_back(axis_names[finding.where.axes[a]]);
+        }
+        finding.parameters = static_cast<int>(finding.entries.size()) + 2;
+    }
+
+    // `seen`: spikes that tell of the number; `all`: that tell of the limits.
+    void add_entry(const Limits& limits_dps, double noise_dps, double number, double seen, double all,
+                   Finding& finding) const {
+        const std::string per_hour(effect_.params[0].name);
+        const std::string smallest(effect_.params[1].name);
+        const std::string largest(effect_.params[2].name);
+        const double hours = prediction_->duration_s() / seconds_per_hour;
+        // Of m uniform numbers the extremes lie within their limits by a part m + 1 of the range; and each is
+        // known no better than the noise lets it.
+        const double limit_sd = std::hypot((limits_dps.to - limits_dps.from) / (all + 1.0), noise_dps);
+        EffectModel entry;
+        entry.effect = effect_.name;
+        entry.params = {{per_hour, number / hours}, {smallest, limits_dps.from}, {largest, limits_dps.to}};
+        finding.entries.push_back(std::move(entry));
+        finding.sd.push_back({{per_hour, number / hours / std::sqrt(std::max(seen, 1.0))},
+                              {smallest, limit_sd},
+                              {largest, limit_sd}});
+    }
+
+    const EffectDefinition& effect_;
+    std::shared_ptr<const Prediction> prediction_;
+    double log_number_range_ = 0.0;
+    std::array<std::unique_ptr<NormalMixture>, 3> noise_;
+    std::array<std::unique_ptr<LogDensityTable>, 3> log_noise_;
+};
+
+}  // namespace
+
+MadeEstimator make_outlier_estimator(const EffectDefinition& effect,
+                                     std::shared_ptr<const Prediction> prediction) {
+    return {std::make_unique<OutlierEstimator>(effect, std::move(prediction)), {}};
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,479 @@
+#include "analysis/diagnose/selection/forward_selection.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "analysis/diagnose/calibration/null_bias.hpp"
+#include "analysis/diagnose/selection/joint_refit.hpp"
+#include "analysis/parallel/parallel_for.hpp"
+#include "analysis/simulate/chain.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+// Less is no reason to prefer what was not first.
+constexpr double margin_nats = 3.0;
+constexpr double far_better_nats = 8.0;
+// How many causes are tried as the first.
+constexpr std::size_t beginnings_most = 4;
+// A cause of such evidence changes everything that others are judged by.
+constexpr double huge_nats = 1e4;
+
+// Two causes of like size must not take turns for ever.
+constexpr int main_causes_most = 3;
+
+// Of what one response leaves, to fit it together with others.
+constexpr double worth_refitting_nats = 100.0;
+// Of responses, to fit them better than one by one.
+constexpr double worth_settling_nats = 1000.0;
+
+// No cause that is dropped as needless explained so much.
+constexpr double lost_nats = 100.0;
+
+class ForwardSelection {
+public:
+    ForwardSelection(const Hypotheses& first, std::shared_ptr<const Recording> recording,
+                     const SelectionOptions& options)
+        : first_(first),
+          model_(first.prediction->model()),
+          recording_(std::move(recording)),
+          options_(options) {}
+
+    std::optional<CauseSelection> run() {
+        std::optional<Hypotheses> latest = with_first_cause();
+        if (latest && settle_responses()) { latest = with_causes(); }
+        // A cause that others make needless may come back for ever.
+        const std::size_t rounds_most = 2 * options_.causes_most;
+        for (std::size_t round = 0; latest && round < rounds_most; ++round) {
+            if (has_new_main_cause(*latest)) {
+                if (!measure_null_bias()) { return std::nullopt; }
+                if (causes_.size() > 1 && !refit()) { return std::nullopt; }
+                static_cast<void>(settle_responses());
+                latest = with_causes();
+            }
+            const bool freed = free_noise_of_model(*latest->observation);
+            const Finding* next = further(*latest);
+            if (!freed && (next == nullptr || causes_.size() == options_.causes_most)) { break; }
+            // What is next is not known before the noise is.
+            if (!freed && !add_response(*latest, *next)) { causes_.push_back({*next, findings_of(*latest)}); }
+            if (!told() || !refit_all()) { return std::nullopt; }
+            forget_null_bias();
+            latest = with_causes();
+        }
+        return result_of(std::move(latest));
+    }
+
+private:
+    CauseSelection result_of(std::optional<Hypotheses> latest) {
+        CauseSelection result;
+        result.without_causes = model_;
+        if (!free_axes_.empty()) {
+            model_ = first_.prediction->model();
+            if (!causes_.empty()) {
+                result.noise_refits = fitted_noise(*latest->observation, model_, free_axes_);
+                model_ = with_noise(std::move(model_), result.noise_refits);
+            }
+            latest = with_causes();
+        }
+        result.corrected = model_with_all_but(causes_.size());
+        result.null_bias = null_bias_;
+        result.causes = std::move(causes_);
+        std::ranges::sort(result.causes, std::greater{},
+                          [](const FoundCause& cause) { return cause.finding.evidence_nats; });
+        if (latest) {
+            result.last = *std::move(latest);
+        } else {
+            result.last = {first_.prediction, first_.observation, {}, {}};
+        }
+        return result;
+    }
+
+    Hypotheses with_causes() const {
+        return examine(first_.prediction->with(model_with_all_but(causes_.size())), recording_, options_.seed,
+                       options_.threads);
+    }
+
+    // The best finding of every method: noise may pass for a drift and a drift for noise, as long as the
+    // other is not in the model.
+    std::vector<Finding> beginnings() const {
+        std::map<EvidenceMethod, Finding> best;
+        for (const Finding& finding : findings_of(first_)) {
+            if (finding.evidence_nats < options_.evidence_min_nats) { break; }
+            if (is_of_codes(finding)) { return {finding}; }
+            best.try_emplace(method_of(finding), finding);
+        }
+        std::vector<Finding> found;
+        found.reserve(best.size());
+        for (auto& [method, finding] : best) { found.push_back(std::move(finding)); }
+        std::ranges::sort(found, std::greater{}, &Finding::evidence_nats);
+        if (found.size() > beginnings_most) { found.resize(beginnings_most); }
+        return found;
+    }
+
+    // What the converter does to the numbers, likelihoods of a continuous signal take for something else, in
+    // a simulation of it as well: it comes before all other causes, and stays.
+    static bool is_of_codes(const Finding& finding) {
+        return find_effect(finding.effect)->signature->method == EvidenceMethod::quantisation_step;
+    }
+
+    // To the spectra's likelihood it is normal noise. A telegraph's jumps are steps that such noise does not
+    // have; the power of heavy tails and of spikes varies by more than its does.
+    static bool is_not_normal(const Finding& finding) {
+        const EvidenceMethod method = find_effect(finding.effect)->signature->method;
+        return method == EvidenceMethod::random_telegraph || method == EvidenceMethod::tails ||
+               method == EvidenceMethod::outliers;
+    }
+
+    // Null without causes.
+    const Finding* main_cause() const {
+        if (causes_.empty()) { return nullptr; }
+        const Finding* main = &causes_.front().finding;
+        if (is_of_codes(*main)) { return main; }
+        for (const FoundCause& cause : causes_) {
+            if (cause.finding.evidence_nats > main->evidence_nats) { main = &cause.finding; }
+        }
+        return main;
+    }
+
+    // What a further cause must have.
+    double evidence_least_nats() const {
+        const Finding* main = main_cause();
+        const double formulas_nats = main == nullptr ? 0.0 : formulas_share * main->evidence_nats;
+        return std::max(options_.evidence_min_nats, formulas_nats);
+    }
+
+    // One beside which others may only seem to be.
+    bool has_new_main_cause(const Hypotheses& with_causes) const {
+        if (causes_.empty() || (causes_.size() == 1 && further(with_causes) == nullptr)) { return false; }
+        const Finding* main = main_cause();
+        if (!is_of_codes(*main) && !is_not_normal(*main) && main->evidence_nats < huge_nats) { return false; }
+        const bool is_new = main->effect != null_bias_.beside || main->where.axes != null_bias_.axes;
+        return is_new && main_causes_ < main_causes_most;
+    }
+
+    // False when ended early.
+    bool measure_null_bias() {
+        const Finding* main = main_cause();
+        const Hypotheses with_main = examine(first_.prediction->with(with_cause(model_, *main)), recording_,
+                                             options_.seed, options_.threads);
+        auto nats = null_bias_nats(with_main, options_.seed, options_.threads, [&] { return told(); });
+        if (!nats) { return false; }
+        null_bias_ = {*std::move(nats), main->effect, main->where.axes};
+        ++main_causes_;
+        return true;
+    }
+
+    // Where the cause that it was beside is one no more.
+    void forget_null_bias() {
+        const bool is_there = std::ranges::any_of(
+            causes_, [&](const FoundCause& cause) { return cause.finding.effect == null_bias_.beside; });
+        if (!is_there) { null_bias_ = {}; }
+    }
+
+    bool is_fast_response(const Finding& finding) const {
+        return method_of(finding) == EvidenceMethod::response &&
+               !find_effect(finding.effect)->signature->slow;
+    }
+
+    // Of causes_, those that shape the motion.
+    std::vector<std::size_t> fast_responses() const {
+        std::vector<std::size_t> places;
+        for (std::size_t i = 0; first_.prediction->moves() && i < causes_.size(); ++i) {
+            if (is_fast_response(causes_[i].finding)) { places.push_back(i); }
+        }
+        return places;
+    }
+
+    double evidence_nats_of(const std::vector<std::size_t>& places) const {
+        double nats = 0.0;
+        for (const std::size_t i : places) { nats += causes_[i].finding.evidence_nats; }
+        return nats;
+    }
+
+    // These and `more` fitted together, the other causes in the model.
+    JointRefit fitted_together(const std::vector<std::size_t>& places, const Finding* more) const {
+        SensorModel model = model_;
+        std::vector<Finding> together;
+        for (std::size_t i = 0; i < causes_.size(); ++i) {
+            if (std::ranges::count(places, i) != 0) {
+                together.push_back(causes_[i].finding);
+            } else {
+                model = with_cause(std::move(model), causes_[i].finding);
+            }
+        }
+        if (more != nullptr) { together.push_back(*more); }
+        return refit_jointly(*first_.prediction->with(model), recording_, std::move(together), options_.seed);
+    }
+
+    // A response is fitted as if those that the model is uncertain of, the latency before all, stayed as they
+    // are without it. Where it changes much of the motion they do not. Whether parameters moved.
+    bool settle_responses() {
+        const std::vector<std::size_t> places = fast_responses();
+        if (evidence_nats_of(places) < worth_settling_nats) { return false; }
+        const JointRefit refit = fitted_together(places, nullptr);
+        for (std::size_t i = 0; i < places.size(); ++i) { causes_[places[i]].finding = refit.findings[i]; }
+        return refit.moved;
+    }
+
+    // What a response leaves that was fitted without another one looks like noise, and like more of it than
+    // the other gains beside the first as it is. Takes the other if all fitted together do better than
+    // `next`.
+    bool add_response(const Hypotheses& latest, const Finding& next) {
+        const std::vector<std::size_t> places = fast_responses();
+        const bool is_fast = is_fast_response(next);
+        if (places.empty() || (!is_fast && next.evidence_nats < worth_refitting_nats)) { return false; }
+        const double before_nats = log_likelihood_nats(*latest.observation);
+        double best_nats = is_fast ? -1e300 : evidence_less_bias_nats(next);
+        std::vector<Finding> best;
+        for (const std::optional<Finding>& other : latest.findings) {
+            if (!other || !is_fast_response(*other) || !is_new(*other)) { continue; }
+            if (evidence_less_bias_nats(*other) < evidence_least_nats()) { continue; }
+            JointRefit refit = fitted_together(places, &*other);
+            const double cost_nats = other->gain_nats - evidence_less_bias_nats(*other);
+            const double nats = refit.log_likelihood_nats - before_nats - cost_nats;
+            if (!(nats > best_nats)) { continue; }
+            best_nats = nats;
+            best = std::move(refit.findings);
+        }
+        if (best.empty()) { return false; }
+        for (std::size_t i = 0; i < places.size(); ++i) { causes_[places[i]].finding = best[i]; }
+        causes_.push_back({best.back(), findings_of(latest)});
+        return true;
+    }
+
+    double evidence_less_bias_nats(const Finding& finding) const {
+        return finding.evidence_nats - null_bias_.of(finding);
+    }
+
+    EvidenceMethod method_of(const Finding& finding) const {
+        return evidence_method(*find_effect(finding.effect)->signature, *first_.prediction);
+    }
+
+    bool is_noise(const Finding& finding) const {
+        const EvidenceMethod method = method_of(finding);
+        return method == EvidenceMethod::spectrum || method == EvidenceMethod::random_telegraph ||
+               method == EvidenceMethod::tails;
+    }
+
+    // Takes the cause that is best together with the one it calls for next; what is seen with it in the
+    // model. Empty where there is none.
+    std::optional<Hypotheses> with_first_cause() {
+        std::optional<Hypotheses> best;
+        std::vector<FoundCause> best_causes;
+        double best_nats = 0.0;
+        bool best_leaves_nothing = false;
+        const std::vector<Finding> first = beginnings();
+        // What each then has is measured by what the other leaves: of huge ones the sum says nothing.
+        const bool is_huge = !first.empty() && first.front().evidence_nats >= huge_nats;
+        const double better_by_nats =
+            is_huge ? std::max(margin_nats, formulas_share * first.front().evidence_nats) : margin_nats;
+        for (const Finding& finding : first) {
+            causes_ = {{finding, is_of_codes(finding) ? std::vector{finding} : findings_of(first_)}};
+            Hypotheses with_it = with_causes();
+            const Finding* next = further(with_it);
+            const double nats = is_huge ? likelihood_with(with_it, next)
+                                        : finding.evidence_nats + (next ? next->evidence_nats : 0.0);
+            // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one,
+            // unless noise that leaves nothing either does far better.
+            const bool explains_all = next == nullptr && !is_noise(finding) &&
+                                      (!best_leaves_nothing || nats > best_nats - far_better_nats);
+            if (!best || explains_all || nats > best_nats + better_by_nats) {
+                best = std::move(with_it);
+                best_causes = causes_;
+                best_nats = nats;
+                best_leaves_nothing = next == nullptr;
+            }
+            if (explains_all) { break; }
+        }
+        causes_ = std::move(best_causes);
+        return best;
+    }
+
+    double likelihood_with(const Hypotheses& hypotheses, const Finding* next) const {
+        if (next == nullptr) { return log_likelihood_nats(*hypotheses.observation); }
+        const auto prediction =
+            hypotheses.prediction->with(with_cause(hypotheses.prediction->model(), *next));
+        return log_likelihood_nats({prediction, recording_, options_.seed});
+    }
+
+    bool told() const {
+        const double share =
+            static_cast<double>(causes_.size()) / static_cast<double>(options_.causes_most + 1);
+        return !options_.on_progress || options_.on_progress(share);
+    }
+
+    // The best first, by what is beyond the bias.
+    std::vector<Finding> findings_of(const Hypotheses& hypotheses) const {
+        std::vector<Finding> findings;
+        for (const std::optional<Finding>& finding : hypotheses.findings) {
+            if (!finding) { continue; }
+            findings.push_back(*finding);
+            findings.back().evidence_nats = evidence_less_bias_nats(*finding);
+        }
+        std::ranges::sort(findings, std::greater{}, &Finding::evidence_nats);
+        return findings;
+    }
+
+    bool repeats_itself(const Finding& finding) const {
+        const EvidenceMethod method = find_effect(finding.effect)->signature->method;
+        return method == EvidenceMethod::line || method == EvidenceMethod::step;
+    }
+
+    // The best finding that is not of an effect found before: what those could explain, their fit has. Null
+    // where none has evidence enough.
+    const Finding* further(const Hypotheses& hypotheses) const {
+        const Finding* best = nullptr;
+        double best_nats = 0.0;
+        for (const std::optional<Finding>& finding : hypotheses.findings) {
+            if (!finding || !is_new(*finding)) { continue; }
+            const double evidence_nats = evidence_less_bias_nats(*finding);
+            if (evidence_nats < evidence_least_nats()) { continue; }
+            if (best == nullptr || evidence_nats > best_nats) { best = &*finding, best_nats = evidence_nats; }
+        }
+        return best;
+    }
+
+    bool is_new(const Finding& finding) const {
+        return std::ranges::none_of(causes_, [&](const FoundCause& cause) {
+            if (cause.finding.effect != finding.effect) { return false; }
+            return !repeats_itself(finding) || is_same_line(cause.finding, finding);
+        });
+    }
+
+    // What a steady line leaves beside itself is no other line: it wanders, or swells.
+    bool is_same_line(const Finding& a, const Finding& b) const {
+        constexpr double resolutions = 10.0;
+        if (!a.where.freq_hz || !b.where.freq_hz) { return false; }
+        const double near_hz = resolutions / first_.prediction->duration_s();
+        return a.where.freq_hz->from < b.where.freq_hz->to + near_hz &&
+               b.where.freq_hz->from < a.where.freq_hz->to + near_hz;
+    }
+
+    SensorModel model_with_all_but(std::size_t left_out) const {
+        SensorModel model = model_;
+        for (std::size_t i = 0; i < causes_.size(); ++i) {
+            if (i != left_out) { model = with_cause(std::move(model), causes_[i].finding); }
+        }
+        return model;
+    }
+
+    // With the causes in the model, noise that a fit took for them is in it twice. Whether another axis has
+    // such noise.
+    bool free_noise_of_model(const Observation& with_causes) {
+        // A coarse step leaves less noise than its spectrum has, too.
+        if (causes_.empty() || is_of_codes(causes_.front().finding)) { return false; }
+        bool more = false;
+        for (const std::size_t axis : axes_to_refit(with_causes)) {
+            if (std::ranges::count(free_axes_, axis) != 0) { continue; }
+            free_axes_.push_back(axis);
+            more = true;
+        }
+        if (more) { model_ = with_free_noise(std::move(model_), with_causes, free_axes_); }
+        return more;
+    }
+
+    // Every cause with the others in the model; one that another effect does better by now gives way to it.
+    bool refit() {
+        for (std::size_t i = 0; i < causes_.size();) {
+            const Hypotheses without = examine(first_.prediction->with(model_with_all_but(i)), recording_,
+                                               options_.seed, options_.threads);
+            const std::vector<Finding> findings = findings_of(without);
+            const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
+            const double least_nats =
+                &causes_[i].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
+            const double own_nats = same == findings.end() ? 0.0 : same->evidence_nats;
+            const auto rival = std::ranges::find_if(findings, [&](const Finding& f) { return is_new(f); });
+            const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
+            if (is_of_codes(causes_[i].finding)) {
+                if (same != findings.end()) { causes_[i].finding = *same; }
+            } else if (rival_nats > own_nats + margin_nats && rival_nats >= least_nats) {
+                causes_[i].finding = *rival;
+            } else if (own_nats >= least_nats) {
+                causes_[i].finding = *same;
+            } else {
+                causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(i));
+                continue;
+            }
+            // What is a cause already is no rival of another.
+            causes_[i].rivals.clear();
+            std::ranges::copy_if(findings, std::back_inserter(causes_[i].rivals), [&](const Finding& f) {
+                return f.effect == causes_[i].finding.effect ||
+                       (is_new(f) && !is_of_codes(causes_[i].finding));
+            });
+            ++i;
+            if (!told()) { return false; }
+        }
+        return true;
+    }
+
+    // The responses among the causes together, too. One by one each is fitted to what the others' errors
+    // leave, and noise may take its place: what explains far less than before all of them together is no
+    // better.
+    bool refit_all() {
+        const std::vector<FoundCause> before = causes_;
+        const bool may_get_lost = evidence_nats_of(fast_responses()) >= worth_settling_nats;
+        const double before_nats = may_get_lost ? log_likelihood_nats(observed()) : 0.0;
+        if (!refit()) { return false; }
+        static_cast<void>(settle_responses());
+        if (may_get_lost && log_likelihood_nats(observed()) < before_nats - lost_nats) { causes_ = before; }
+        return true;
+    }
+
+    Observation observed() const {
+        return {first_.prediction->with(model_with_all_but(causes_.size())), recording_, options_.seed};
+    }
+
+    const Hypotheses& first_;
+    SensorModel model_;  // without causes
+    std::shared_ptr<const Recording> recording_;
+    SelectionOptions options_;
+    std::vector<FoundCause> causes_;
+    std::vector<std::size_t> free_axes_;
+    NullBias null_bias_;
+    int main_causes_ = 0;
+};
+
+}  // namespace
+
+double NullBias::of(const Finding& finding) const {
+    const std::vector<std::size_t>& on = finding.where.axes;
+    const bool is_beside = on.empty() || std::ranges::find_first_of(on, axes) != on.end();
+    const auto found = is_beside ? nats.find(finding.effect) : nats.end();
+    return found == nats.end() ? 0.0 : found->second;
+}
+
+const Finding* Hypotheses::best() const {
+    const Finding* best = nullptr;
+    for (const std::optional<Finding>& finding : findings) {
+        if (finding && (best == nullptr || finding->evidence_nats > best->evidence_nats)) {
+            best = &*finding;
+        }
+    }
+    return best;
+}
+
+Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
+                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads) {
+    Hypotheses hypotheses;
+    hypotheses.prediction = prediction;
+    hypotheses.observation = std::make_shared<const Observation>(prediction, recording, seed);
+    hypotheses.catalogue = make_catalogue(prediction, threads);
+    hypotheses.findings.resize(hypotheses.catalogue.size());
+    parallel_for(hypotheses.catalogue.size(), threads, [&](std::size_t i) {
+        if (hypotheses.catalogue[i].estimator) {
+            hypotheses.findings[i] = hypotheses.catalogue[i].estimator->find(*hypotheses.observation);
+        }
+    });
+    return hypotheses;
+}
+
+std::optional<CauseSelection> select_causes(const Hypotheses& first,
+                                            const std::shared_ptr<const Recording>& recording,
+                                            const SelectionOptions& options) {
+    return ForwardSelection(first, recording, options).run();
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,26 @@
+// Effects of the mean answer in motion, fitted together. One after the other, each with the others as they
+// are, two that lag alike would take many rounds, and noise is found in what they leave meanwhile.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "analysis/diagnose/finding.hpp"
+#include "analysis/diagnose/likelihood/prediction.hpp"
+
+namespace gyrolog {
+
+struct JointRefit {
+    std::vector<Finding> findings;     // with new parameters and nothing else
+    double log_likelihood_nats = 0.0;  // of the recording with all of them
+    bool moved = false;
+};
+
+// Gauss-Newton steps (Nocedal, Wright, Numerical Optimization, 10.3) in all fitted parameters of `findings`,
+// whose number does not change, from where they are; steps that lower the likelihood are shortened. `without`
+// has none of them.
+JointRefit refit_jointly(const Prediction& without, const std::shared_ptr<const Recording>& recording,
+                         std::vector<Finding> findings, std::uint64_t seed);
+
+}  // namespace gyrolog

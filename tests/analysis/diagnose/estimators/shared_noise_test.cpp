@@ -1,0 +1,78 @@
+#include "analysis/diagnose/estimators/shared_noise.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/estimators/noise_spectrum.hpp"
+#include "tests/analysis/diagnose/estimators/white_noise_case.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint64_t half_hour = 180'000;  // samples
+
+TEST(SharedNoiseEvidence, IsWhatTheCorrelationAndTheLevelGain) {
+    const SensorModel model = known_sensor();
+    const double own_dps = model.axes[0].noise.N_rad_per_sqrt_s * deg_per_rad;
+    const double shared_dps = 0.3 * own_dps;
+    const auto seen = seen_effects(model, {effect_entry("common_mode", {{"N_dps_per_sqrt_hz", shared_dps}})},
+                                   half_hour, 51);
+    const auto found = seen.find("common_mode", make_shared_noise_estimator);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->where.axes, (std::vector<std::size_t>{0, 1, 2}));
+    EXPECT_EQ(found->where.structure, "cross_axis");
+    ASSERT_EQ(found->entries.size(), 1U);
+    EXPECT_FALSE(effect_refusal(found->entries[0]));
+    EXPECT_NEAR(found->entries[0].params.at("N_dps_per_sqrt_hz"), shared_dps,
+                4.0 * found->sd[0].at("N_dps_per_sqrt_hz"));
+    // Axes that are alike, correlated by r: ln det = ln (1 - r)^2 (1 + 2 r).
+    const double r = 0.09 / 1.09;
+    const double ideal = -0.5 * static_cast<double>(seen.prediction->length()) *
+                         std::log((1.0 - r) * (1.0 - r) * (1.0 + 2.0 * r));
+    EXPECT_NEAR(found->gain_nats, ideal, 0.12 * ideal);
+}
+
+TEST(SharedNoiseEvidence, TellsTheGainsOfTheAxes) {
+    const auto seen = seen_effects(
+        known_sensor(),
+        {effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.005}, {"gain_y", -0.6}, {"gain_z", 0.8}})},
+        half_hour, 52);
+    const auto found = seen.find("common_mode", make_shared_noise_estimator);
+    ASSERT_TRUE(found);
+    const auto& params = found->entries[0].params;
+    const auto& sd = found->sd[0];
+    EXPECT_NEAR(params.at("N_dps_per_sqrt_hz"), 0.005, 4.0 * sd.at("N_dps_per_sqrt_hz"));
+    EXPECT_NEAR(params.at("gain_x"), 1.0, 1e-9);
+    EXPECT_NEAR(params.at("gain_y"), -0.6, 4.0 * sd.at("gain_y"));
+    EXPECT_NEAR(params.at("gain_z"), 0.8, 4.0 * sd.at("gain_z"));
+}
+
+TEST(SharedNoiseEvidence, LeavesOutAnAxisThatHasNone) {
+    const auto seen = seen_effects(known_sensor(),
+                                   {effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.003}}, {"x", "z"})},
+                                   half_hour, 53);
+    const auto found = seen.find("common_mode", make_shared_noise_estimator);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->where.axes, (std::vector<std::size_t>{0, 2}));
+}
+
+TEST(SharedNoiseEvidence, IsNoneForAxesThatAreLouderEachByItself) {
+    const auto seen =
+        seen_effects(known_sensor(), {effect_entry("arw_scale", {{"factor", 1.5}})}, half_hour, 54);
+    const auto found = seen.find("common_mode", make_shared_noise_estimator);
+    const auto louder = seen.find("arw_scale", make_noise_spectrum_estimator);
+    ASSERT_TRUE(louder);
+    if (found) { EXPECT_LT(found->evidence_nats, louder->evidence_nats - 20.0); }
+}
+
+TEST(SharedNoiseEvidence, IsGoneOnceTheModelHasIt) {
+    SensorModel model = known_sensor();
+    model.effects.push_back(effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.005}, {"gain_y", 0.5}}));
+    const auto seen = seen_effects(model, {}, half_hour, 55);
+    const auto found = seen.find("common_mode", make_shared_noise_estimator);
+    if (found) { EXPECT_LT(found->evidence_nats, 2.0); }
+}
+
+}  // namespace
+}  // namespace gyrolog

@@ -1,0 +1,77 @@
+#include "analysis/diagnose/estimators/variance_with_temperature.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/estimators/tails.hpp"
+#include "analysis/diagnose/estimators/variance_change_point.hpp"
+#include "tests/analysis/diagnose/estimators/white_noise_case.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint64_t hour = 360'000;  // samples
+
+TEST(VarianceWithTemperature, IsTheLikelihoodRatio) {
+    const auto seen =
+        seen_effects(known_sensor(), {effect_entry("temp_noise", {{"per_C", 0.01}, {"reference_C", 30.0}})},
+                     hour, 41, swept_temperature());
+    const auto found = seen.find("temp_noise", make_variance_with_temperature_estimator);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->where.axes, (std::vector<std::size_t>{0, 1, 2}));
+    EXPECT_TRUE(found->where.temperature);
+    ASSERT_EQ(found->entries.size(), 1U);
+    EXPECT_FALSE(effect_refusal(found->entries[0]));
+    const auto& params = found->entries[0].params;
+    // The change relative to the noise at one temperature is another at another.
+    const double at_30 = params.at("per_C") / (1.0 + params.at("per_C") * (30.0 - params.at("reference_C")));
+    EXPECT_NEAR(at_30, 0.01, 4.0 * found->sd[0].at("per_C"));
+    // n ln(sigma) has the information 2 n: n (per_C)^2 times the variance of the temperature, 25 / 3.
+    const double ideal = 3.0 * static_cast<double>(hour) * 1e-4 * 25.0 / 3.0;
+    EXPECT_NEAR(found->gain_nats, ideal, 0.15 * ideal);
+}
+
+TEST(VarianceWithTemperature, CountsFromTheModelsReferenceWhereTheLevelSaysSo) {
+    SensorModel model = known_sensor();
+    model.sd_rel["N"] = 0.001;
+    model.temperature = TemperatureModel{};
+    model.temperature->reference_C = 20.0;
+    const auto seen =
+        seen_effects(model, {effect_entry("temp_noise", {{"per_C", 0.01}})}, hour, 42, swept_temperature());
+    const auto found = seen.find("temp_noise", make_variance_with_temperature_estimator);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->entries[0].params.at("reference_C"), 20.0);
+    EXPECT_NEAR(found->entries[0].params.at("per_C"), 0.01, 4.0 * found->sd[0].at("per_C"));
+}
+
+TEST(VarianceWithTemperature, IsMoreThanThatOfACourseInTimeAndOfTails) {
+    const auto seen = seen_effects(known_sensor(), {effect_entry("temp_noise", {{"per_C", 0.01}}, {"z"})},
+                                   hour, 43, swept_temperature());
+    const auto found = seen.find("temp_noise", make_variance_with_temperature_estimator);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->where.axes, std::vector<std::size_t>{2});
+    const auto course = seen.find("variance_change", make_variance_change_point_estimator);
+    if (course) { EXPECT_LT(course->evidence_nats, found->evidence_nats - 20.0); }
+    const auto tails = seen.find("heavy_tail", make_tail_estimator);
+    if (tails) { EXPECT_LT(tails->evidence_nats, 0.5 * found->evidence_nats); }
+}
+
+TEST(VarianceWithTemperature, NeedsATemperatureThatChanges) {
+    auto world = std::make_shared<FormulaWorld>();
+    world->temperature_C = [](double) { return 30.0; };
+    const auto seen = seen_effects(known_sensor(), {}, 20'000, 44, world);
+    EXPECT_EQ(seen.untestable("temp_noise", make_variance_with_temperature_estimator),
+              "the temperature hardly changes");
+}
+
+TEST(VarianceWithTemperature, IsGoneOnceTheModelHasIt) {
+    SensorModel model = known_sensor();
+    model.effects.push_back(effect_entry("temp_noise", {{"per_C", 0.02}}));
+    const auto seen = seen_effects(model, {}, hour, 45, swept_temperature());
+    const auto found = seen.find("temp_noise", make_variance_with_temperature_estimator);
+    if (found) { EXPECT_LT(found->evidence_nats, 3.0); }
+}
+
+}  // namespace
+}  // namespace gyrolog
