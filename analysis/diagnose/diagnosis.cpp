@@ -17,6 +17,7 @@
 #include "analysis/diagnose/calibration/parametric_bootstrap.hpp"
 #include "analysis/diagnose/calibration/replicates.hpp"
 #include "analysis/diagnose/calibration/split_half_validation.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/noise_refit.hpp"
 #include "analysis/diagnose/likelihood/observed_line.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
@@ -552,15 +553,6 @@ private:
 }  // namespace
 
 std::string telling_apart(const std::string& effect) { return "to tell " + effect + " from "; }
-
-SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const SensorModel& centred) {
-    model = with_noise(std::move(model), diagnosis.noise_refits);
-    for (const Cause& cause : diagnosis.causes) { model = with_cause(std::move(model), cause.finding); }
-    for (const std::size_t axis : diagnosis.axes) {
-        model.axes[axis].bias_rad_s = centred.axes[axis].bias_rad_s;
-    }
-    return model;
-}
 
 void append_new(std::vector<std::string>& to, const std::vector<std::string>& from) {
     for (const std::string& sentence : from) {

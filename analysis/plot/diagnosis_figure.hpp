@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/report.hpp"
 #include "analysis/plot/figure.hpp"
 
 namespace gyrolog {

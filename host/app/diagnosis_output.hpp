@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/report.hpp"
 #include "host/app/console.hpp"
 #include "host/base/result.hpp"
 #include "host/formats/model_json.hpp"

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "analysis/diagnose/multiscale/means_model.hpp"
 #include "host/app/command.hpp"

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/report.hpp"
 #include "analysis/noise/curve_diagnosis.hpp"
 #include "analysis/noise/curve_report.hpp"
 

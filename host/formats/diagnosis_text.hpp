@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/report.hpp"
 
 namespace gyrolog {
 

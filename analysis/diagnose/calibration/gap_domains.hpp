@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/diagnose/calibration/gap_reference.hpp"
-#include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/report.hpp"
 
 namespace gyrolog {
 

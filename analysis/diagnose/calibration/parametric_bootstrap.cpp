@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/calibration/replicates.hpp"
 #include "analysis/diagnose/estimators/catalogue.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/observation.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"

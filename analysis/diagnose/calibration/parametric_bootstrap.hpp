@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/diagnose/finding.hpp"
 #include "analysis/diagnose/likelihood/prediction.hpp"
+#include "analysis/diagnose/report.hpp"
 
 namespace gyrolog {
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "analysis/diagnose/estimators/catalogue.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/observation.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"

@@ -5,8 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/diagnose/calibration/split_half_result.hpp"
-#include "analysis/diagnose/finding.hpp"
+#include "analysis/diagnose/report.hpp"
 
 namespace gyrolog {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
 namespace gyrolog {

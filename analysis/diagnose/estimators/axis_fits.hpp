@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnose/finding.hpp"
+#include "analysis/diagnose/report.hpp"
 #include "analysis/simulate/effect.hpp"
 
 namespace gyrolog {

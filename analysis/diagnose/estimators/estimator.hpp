@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "analysis/diagnose/finding.hpp"
 #include "analysis/diagnose/likelihood/observation.hpp"
 #include "analysis/diagnose/likelihood/prediction.hpp"
+#include "analysis/diagnose/report.hpp"
 #include "analysis/simulate/effect.hpp"
 
 namespace gyrolog {

@@ -5,6 +5,7 @@
 
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/likelihood/lag_course.hpp"
+#include "analysis/diagnose/likelihood/occam.hpp"
 
 namespace gyrolog {
 

@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/steady_line.hpp"
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 

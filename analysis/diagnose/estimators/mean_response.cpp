@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/effect_response.hpp"
 #include "analysis/diagnose/likelihood/mean_regression.hpp"
 #include "analysis/numerics/simplex_search.hpp"

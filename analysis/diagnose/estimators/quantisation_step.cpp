@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/recording/grid_step.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/repeat_patterns.hpp"
 #include "analysis/recording/grid_step.hpp"
 #include "analysis/simulate/effect_axes.hpp"

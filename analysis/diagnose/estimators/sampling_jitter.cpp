@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/likelihood/noise_nuisance.hpp"
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
 
 namespace gyrolog {

@@ -8,6 +8,7 @@
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 #include "analysis/simulate/effect_axes.hpp"

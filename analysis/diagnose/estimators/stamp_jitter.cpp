@@ -6,6 +6,7 @@
 #include "analysis/diagnose/estimators/sampling_jitter.hpp"
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/estimators/stamp_scatter.hpp"
+#include "analysis/diagnose/likelihood/occam.hpp"
 
 namespace gyrolog {
 

@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_distribution.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
 #include "analysis/diagnose/likelihood/whitened_blocks.hpp"

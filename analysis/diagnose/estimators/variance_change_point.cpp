@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/variance_fit.hpp"
 #include "analysis/diagnose/likelihood/white_distribution.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"

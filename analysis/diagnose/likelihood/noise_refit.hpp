@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "analysis/diagnose/finding.hpp"
 #include "analysis/diagnose/likelihood/observation.hpp"
+#include "analysis/diagnose/report.hpp"
 
 namespace gyrolog {
 

@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
+
 namespace gyrolog {
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/report.hpp"
 
 namespace gyrolog {
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/noise_refit.hpp"
 #include "analysis/diagnose/likelihood/observation.hpp"
 #include "analysis/diagnose/likelihood/prediction.hpp"

@@ -4,7 +4,7 @@
 #include <complex>
 #include <cstddef>
 
-#include "analysis/diagnose/finding.hpp"
+#include "analysis/diagnose/report.hpp"
 #include "analysis/simulate/effect_signature.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/diagnose/calibration/null_bias.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/selection/joint_refit.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/mean_regression.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect.hpp"

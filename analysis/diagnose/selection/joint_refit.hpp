@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/diagnose/finding.hpp"
 #include "analysis/diagnose/likelihood/prediction.hpp"
+#include "analysis/diagnose/report.hpp"
 
 namespace gyrolog {
 

@@ -8,6 +8,7 @@
 #include "analysis/diagnose/estimators/lag.hpp"
 #include "analysis/diagnose/estimators/mean_response.hpp"
 #include "analysis/diagnose/estimators/noise_spectrum.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {

@@ -6,6 +6,7 @@
 
 #include "analysis/diagnose/estimators/noise_spectrum.hpp"
 #include "analysis/diagnose/estimators/step_scan.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/counter_random.hpp"
 #include "tests/analysis/diagnose/observed.hpp"

@@ -8,6 +8,7 @@
 #include "analysis/diagnose/estimators/stamp_gaps.hpp"
 #include "analysis/diagnose/estimators/stamp_jitter.hpp"
 #include "analysis/diagnose/estimators/stamp_rate.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/lag_course.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "tests/analysis/diagnose/observed.hpp"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/estimators/steady_line.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/counter_random.hpp"
 #include "tests/analysis/diagnose/observed.hpp"

@@ -10,6 +10,7 @@
 
 #include "analysis/diagnose/estimators/mean_response.hpp"
 #include "analysis/diagnose/estimators/saturation.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/denoised_reference.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
 #include "tests/analysis/diagnose/observed.hpp"

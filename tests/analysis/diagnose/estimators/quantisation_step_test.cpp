@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 

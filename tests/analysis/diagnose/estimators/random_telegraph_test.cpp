@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/estimators/noise_spectrum.hpp"
 #include "analysis/diagnose/estimators/telegraph_filter.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/simulate/counter_random.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 

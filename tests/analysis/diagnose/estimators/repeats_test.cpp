@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/simulate/effect.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 

@@ -8,6 +8,7 @@
 #include "analysis/diagnose/estimators/stamp_jitter.hpp"
 #include "analysis/diagnose/estimators/stamp_rate.hpp"
 #include "analysis/diagnose/estimators/stamp_scatter.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/recording/grid.hpp"
 #include "analysis/simulate/counter_random.hpp"
 #include "tests/analysis/diagnose/observed.hpp"

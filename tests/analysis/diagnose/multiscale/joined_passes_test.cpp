@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/diagnosis.hpp"
 #include "tests/analysis/simulate/simulated.hpp"
 
 namespace gyrolog {

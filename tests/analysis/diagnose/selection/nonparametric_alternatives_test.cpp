@@ -9,6 +9,7 @@
 
 #include "analysis/diagnose/estimators/noise_spectrum.hpp"
 #include "analysis/diagnose/estimators/random_telegraph.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 

@@ -1,0 +1,16 @@
+// A corrected model is the model that was given with what was found in the recording.
+#pragma once
+
+#include "analysis/diagnose/report.hpp"
+#include "analysis/simulate/sensor_model.hpp"
+
+namespace gyrolog {
+
+// The function adds the finding's entries to the model's effects.
+SensorModel with_cause(SensorModel model, const Finding& finding);
+
+// The function puts the diagnosis' noise refits and causes into `model`. On the diagnosis' axes the bias
+// becomes that of `centred`.
+SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const SensorModel& centred);
+
+}  // namespace gyrolog

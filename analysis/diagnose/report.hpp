@@ -1,0 +1,191 @@
+// What a diagnosis says, as data: a verdict, the causes with their parameters, the gap with its place, what
+// was compared, and what stays open. Everything in the diagnosis may include this file; it includes nothing
+// of the diagnosis.
+//
+// Rates are in rad/s, times in s, frequencies in Hz, evidence in nats. Parameters of an effect are in the
+// effect's own units, which its names end in. Axes are 0, 1, 2.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/recording/recording.hpp"
+#include "analysis/simulate/sensor_model.hpp"
+
+namespace gyrolog {
+
+enum class Verdict {
+    none,        // the recording could have come from the model
+    known,       // the causes explain the gap
+    unexplained  // they do not, or there are none
+};
+
+struct Span {
+    double from = 0.0;
+    double to = 0.0;
+};
+
+// A place is where a gap lies. What does not apply is empty.
+struct Place {
+    std::vector<std::size_t> axes;
+    std::optional<Span> freq_hz;
+    std::optional<Span> tau_s;   // averaging times
+    std::optional<Span> time_s;  // from the recording's first sample; equal for an instant
+    bool temperature = false;
+    bool acceleration = false;
+    std::optional<Span> rate_rad_s;       // sizes of the reference rate
+    std::optional<Span> amplitude_sigma;  // sizes of the whitened samples, in standard deviations
+    std::string structure;                // "duplicated_samples", "timestamp_gaps", ...: diagnosis.md
+};
+
+// A finding is the best that one effect can do for one observation.
+struct Finding {
+    std::string effect;
+    // These entries are to be added to the model: one entry for all axes that share their parameters.
+    std::vector<EffectModel> entries;
+    // Standard deviations, by entry, of the parameters that were fitted.
+    std::vector<std::map<std::string, double>> sd;
+    // The maximum of the log-likelihood with the effect less the maximum without it, the nuisance refitted in
+    // both.
+    double gain_nats = 0.0;
+    // The log Bayes factor against the model as it is: the gain less what the freedom of the parameters earns
+    // by chance (Laplace's approximation, with the effect's plausible ranges as prior). Below 0 the effect is
+    // not called for.
+    double evidence_nats = 0.0;
+    int parameters = 0;  // that were fitted
+    std::array<double, 3> axis_gain_nats{};
+    Place where;
+};
+
+// A noise refit is a coefficient of the model that the recording has otherwise, once the causes are in the
+// model. The values are in SI units of the two-sided convention.
+struct NoiseRefit {
+    std::size_t axis = 0;
+    char coefficient = 'N';  // 'N', 'B', 'K'
+    double stated = 0.0;
+    double fitted = 0.0;
+    double fitted_sd = 0.0;
+};
+
+// A rival could stand in a cause's place.
+struct Rival {
+    std::string effect;
+    double evidence_below_best_nats = 0.0;  // by how much its log Bayes factor is less
+};
+
+struct Cause {
+    Finding finding;
+    double score = 0.0;  // the probability that the cause is right
+    // What this recording cannot tell apart from the cause, the cause itself first; empty where there is
+    // nothing.
+    std::vector<Rival> tie_group;
+    double shrink_alone = 0.0;
+    std::string decided_by;  // the recording that would break the tie, with the length it needs; or ""
+};
+
+// The gap is the distance between the recording and the model's simulations, in units of the distance between
+// two simulations.
+struct Gap {
+    double value = 0.0;
+    double floor = 1.0;
+    double lo = 0.0;  // the 95 % interval
+    double hi = 0.0;
+};
+
+struct Untestable {
+    std::string effect;
+    std::string why;  // "the recording has no temperature"
+};
+
+// A gap domain is one panel of the figure and one line of the report's table of places: numbers of the
+// recording against those of simulations, before and after the causes were added to the model. The units are
+// those of the names.
+struct GapDomain {
+    std::string name;    // "Allan deviation", "spectrum", "temperature", ...
+    std::string x_name;  // with its unit: "averaging time (s)"
+    std::string y_name;
+    bool log_x = false;
+    bool log_y = false;
+    std::size_t axis = 0;
+    bool of_all_axes = false;
+    std::vector<double> x;
+    std::vector<double> recording;
+    std::vector<double> before_lo, before_hi;  // the band that simulations fill: Diagnosis::band_probability
+    std::vector<double> after_lo, after_hi;    // empty where nothing was added
+    std::vector<bool> outside_before, outside_after;
+    double gap_before = 0.0;  // rms of the standardised differences; 1 is the floor
+    double gap_after = 0.0;
+    // -ln of the probability that a simulation is as far off here. Of so many domains one or another reaches
+    // some 7 by chance.
+    double surprise_before_nats = 0.0;
+    double surprise_after_nats = 0.0;
+
+    std::string axis_text() const { return of_all_axes ? "all" : axis_names.at(axis); }
+};
+
+// A better shape is one that no effect of the catalogue has (selection/nonparametric_alternatives.hpp) and
+// that tells the recording better than the causes do.
+struct BetterShape {
+    std::string words;
+    std::vector<std::string> than;  // effects among the causes; empty: than the model alone
+    double evidence_nats = 0.0;     // by how much its log Bayes factor is more
+};
+
+// Split-half validation fits the causes to one half of the recording and asks the other half
+// (calibration/split_half_validation.hpp).
+struct SplitHalfResult {
+    // The effects that were fitted to one half and judged by the other.
+    std::vector<std::string> judged;
+    // The log Bayes factor for more of the effect that is left most. By chance it is below 0.
+    double evidence_left_nats = 0.0;
+    // By how much the likelihood falls short of its maximum, beyond what the parameters' own error does.
+    double excess_nats = 0.0;
+};
+
+// A long recording is seen in two passes (multiscale/long_diagnosis.hpp).
+struct Pass {
+    double duration_s = 0.0;
+    std::size_t rows = 0;
+    std::size_t samples_per_row = 1;
+    Verdict verdict = Verdict::none;
+    double p_none = 1.0;
+};
+
+struct Diagnosis {
+    std::string recording_name;
+    std::string model_name;
+    double duration_s = 0.0;
+    double rate_hz = 0.0;
+    std::size_t samples = 0;
+    std::size_t simulations = 0;
+    double band_probability = 0.95;
+    std::uint64_t seed = 1;
+    std::vector<std::size_t> axes;
+    std::vector<Pass> passes;  // empty: the recording was seen in one
+
+    Verdict verdict = Verdict::none;
+    double p_none = 1.0;
+    double p_left = 1.0;  // of what the causes leave
+    std::vector<Cause> causes;
+    std::optional<BetterShape> better_shape;  // then the causes do not explain the gap
+    // Noise of the model that held part of the causes, and what it is with them in the model.
+    std::vector<NoiseRefit> noise_refits;
+    Place where;  // of the gap; with Verdict::known, of the first cause
+    Place left;   // with Verdict::unexplained and causes: of what they leave
+    Gap gap_before, gap_after;
+    double shrink = 0.0, shrink_lo = 0.0, shrink_hi = 0.0;  // share of the gap that is closed, 95 % interval
+    SplitHalfResult split_half;                             // with Verdict::known
+    std::string held_out;  // the name of the second recording that the gap was measured on; empty without one
+    std::vector<GapDomain> domains;
+    std::vector<Untestable> untestable;
+    std::vector<std::string> next_recordings;  // what would settle what is open, in sentences
+    std::vector<std::string> warnings;
+    SensorModel corrected;  // the model with the causes added and its noise refitted
+};
+
+}  // namespace gyrolog
