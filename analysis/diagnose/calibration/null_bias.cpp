@@ -15,6 +15,13 @@ constexpr double sds = 4.0;
 
 }  // namespace
 
+double NullBias::of(const Finding& finding) const {
+    const std::vector<std::size_t>& on = finding.where.axes;
+    const bool is_beside = on.empty() || std::ranges::find_first_of(on, axes) != on.end();
+    const auto found = is_beside ? nats.find(finding.effect) : nats.end();
+    return found == nats.end() ? 0.0 : found->second;
+}
+
 std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hypotheses, std::uint64_t seed,
                                                             unsigned threads,
                                                             const std::function<bool()>& told) {
@@ -22,7 +29,7 @@ std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hy
     const std::optional<NullSimulations> null =
         simulate_null(hypotheses.prediction, &hypotheses.catalogue, options);
     if (!null) { return std::nullopt; }
-    std::map<std::string, double> null_bias_nats;
+    std::map<std::string, double> bias_nats;
     for (std::size_t entry = 0; entry < hypotheses.catalogue.size(); ++entry) {
         double mean = 0.0;
         double square = 0.0;
@@ -31,10 +38,9 @@ std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hy
             square += of_effects[entry] * of_effects[entry] / static_cast<double>(simulations);
         }
         const double sd = std::sqrt(std::max(square - mean * mean, 0.0));
-        null_bias_nats[std::string(hypotheses.catalogue[entry].effect->name)] =
-            std::max(0.0, mean + sds * sd);
+        bias_nats[std::string(hypotheses.catalogue[entry].effect->name)] = std::max(0.0, mean + sds * sd);
     }
-    return null_bias_nats;
+    return bias_nats;
 }
 
 }  // namespace gyrolog

@@ -1,19 +1,32 @@
-// Evidence that an effect seems to have although nothing is behind it: under a model that the likelihoods do
-// not describe well, as one with a coarse converter, simulations of that very model show it.
+// The null bias of an effect is the evidence that it seems to have although nothing is behind it. Under a
+// model that the likelihoods do not describe well, as one with a coarse converter, simulations of that very
+// model show it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "analysis/diagnose/selection/forward_selection.hpp"
+#include "analysis/diagnose/estimators/hypotheses.hpp"
 
 namespace gyrolog {
 
-// In nats, by effect: four standard deviations above the mean of 16 simulations of the hypotheses' model; 0
-// where that is less. No value when ended early.
+// The null bias beside one main cause.
+struct NullBias {
+    std::map<std::string, double> nats;  // by effect
+    std::string beside;                  // the effect that is the main cause, empty without one
+    std::vector<std::size_t> axes;       // the main cause's; other axes have no bias
+
+    double of(const Finding& finding) const;
+};
+
+// The function returns, in nats and by effect, the mean of 16 simulations of the hypotheses' model and four
+// standard deviations more; 0 where that is below 0. `told` is called along the way; no value where it
+// returned false.
 std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hypotheses, std::uint64_t seed,
                                                             unsigned threads,
                                                             const std::function<bool()>& told);

@@ -5,10 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "analysis/diagnose/calibration/null_bias.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
+#include "analysis/diagnose/likelihood/noise_refit.hpp"
 #include "analysis/diagnose/selection/joint_refit.hpp"
-#include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
@@ -438,38 +437,6 @@ private:
 };
 
 }  // namespace
-
-double NullBias::of(const Finding& finding) const {
-    const std::vector<std::size_t>& on = finding.where.axes;
-    const bool is_beside = on.empty() || std::ranges::find_first_of(on, axes) != on.end();
-    const auto found = is_beside ? nats.find(finding.effect) : nats.end();
-    return found == nats.end() ? 0.0 : found->second;
-}
-
-const Finding* Hypotheses::best() const {
-    const Finding* best = nullptr;
-    for (const std::optional<Finding>& finding : findings) {
-        if (finding && (best == nullptr || finding->evidence_nats > best->evidence_nats)) {
-            best = &*finding;
-        }
-    }
-    return best;
-}
-
-Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
-                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads) {
-    Hypotheses hypotheses;
-    hypotheses.prediction = prediction;
-    hypotheses.observation = std::make_shared<const Observation>(prediction, recording, seed);
-    hypotheses.catalogue = make_catalogue(prediction, threads);
-    hypotheses.findings.resize(hypotheses.catalogue.size());
-    parallel_for(hypotheses.catalogue.size(), threads, [&](std::size_t i) {
-        if (hypotheses.catalogue[i].estimator) {
-            hypotheses.findings[i] = hypotheses.catalogue[i].estimator->find(*hypotheses.observation);
-        }
-    });
-    return hypotheses;
-}
 
 std::optional<CauseSelection> select_causes(const Hypotheses& first,
                                             const std::shared_ptr<const Recording>& recording,

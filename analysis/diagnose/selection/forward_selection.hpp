@@ -2,30 +2,16 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "analysis/diagnose/estimators/catalogue.hpp"
-#include "analysis/diagnose/likelihood/noise_refit.hpp"
+#include "analysis/diagnose/calibration/null_bias.hpp"
+#include "analysis/diagnose/estimators/hypotheses.hpp"
+#include "analysis/diagnose/report.hpp"
 
 namespace gyrolog {
-
-// A recording under one model, and what every effect of the catalogue could do beyond it.
-struct Hypotheses {
-    std::shared_ptr<const Prediction> prediction;
-    std::shared_ptr<const Observation> observation;
-    std::vector<CatalogueEntry> catalogue;
-    std::vector<std::optional<Finding>> findings;  // by entry of the catalogue
-
-    const Finding* best() const;  // by evidence; null where there is none
-};
-
-// `seed` for what stands in holes.
-Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
-                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads);
 
 struct FoundCause {
     Finding finding;
@@ -35,15 +21,6 @@ struct FoundCause {
 
 // Of the main cause's evidence: two right formulas of one filter differ by as much.
 inline constexpr double formulas_share = 5e-5;
-
-// What effects seem to have beside the main cause.
-struct NullBias {
-    std::map<std::string, double> nats;  // by effect
-    std::string beside;                  // the effect that is the main cause, empty without one
-    std::vector<std::size_t> axes;       // the main cause's; other axes have no bias
-
-    double of(const Finding& finding) const;
-};
 
 struct CauseSelection {
     std::vector<FoundCause> causes;        // by evidence

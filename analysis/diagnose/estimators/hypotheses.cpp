@@ -1,0 +1,32 @@
+#include "analysis/diagnose/estimators/hypotheses.hpp"
+
+#include "analysis/parallel/parallel_for.hpp"
+
+namespace gyrolog {
+
+const Finding* Hypotheses::best() const {
+    const Finding* best = nullptr;
+    for (const std::optional<Finding>& finding : findings) {
+        if (finding && (best == nullptr || finding->evidence_nats > best->evidence_nats)) {
+            best = &*finding;
+        }
+    }
+    return best;
+}
+
+Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
+                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads) {
+    Hypotheses hypotheses;
+    hypotheses.prediction = prediction;
+    hypotheses.observation = std::make_shared<const Observation>(prediction, recording, seed);
+    hypotheses.catalogue = make_catalogue(prediction, threads);
+    hypotheses.findings.resize(hypotheses.catalogue.size());
+    parallel_for(hypotheses.catalogue.size(), threads, [&](std::size_t i) {
+        if (hypotheses.catalogue[i].estimator) {
+            hypotheses.findings[i] = hypotheses.catalogue[i].estimator->find(*hypotheses.observation);
+        }
+    });
+    return hypotheses;
+}
+
+}  // namespace gyrolog
