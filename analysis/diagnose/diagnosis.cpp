@@ -17,6 +17,7 @@
 #include "analysis/diagnose/calibration/parametric_bootstrap.hpp"
 #include "analysis/diagnose/calibration/replicates.hpp"
 #include "analysis/diagnose/calibration/split_half_validation.hpp"
+#include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/noise_refit.hpp"
 #include "analysis/diagnose/likelihood/observed_line.hpp"
@@ -69,12 +70,6 @@ unsigned affordable_threads(std::size_t samples, double bytes_most) {
     return affordable < processors ? static_cast<unsigned>(affordable) : processors;
 }
 
-bool judged_by_stamps(const Finding& finding) {
-    const EvidenceMethod method = find_effect(finding.effect)->signature->method;
-    return method == EvidenceMethod::stamp_gaps || method == EvidenceMethod::stamp_rate ||
-           method == EvidenceMethod::stamp_jitter;
-}
-
 bool are_alike(const GapCurve& a, const GapCurve& b) {
     return a.kind == b.kind && a.axis == b.axis && a.other == b.other && a.value.size() == b.value.size();
 }
@@ -121,7 +116,7 @@ private:
                                                      const std::shared_ptr<const Recording>& recording) {
         SensorModel model = prediction->model();
         for (EffectModel& entry : model.effects) {
-            if (find_effect(entry.effect)->signature->method != EvidenceMethod::line) { continue; }
+            if (!traits_of(entry.effect).is_line) { continue; }
             const ObservedLine seen = observe_line(*prediction, recording, entry, options_.seed);
             entry.params["phase_rad"] = seen.phase_rad;
             if (recording == recording_ && seen.share < faint_line_share) { warn_of_faint(entry, seen); }
@@ -211,7 +206,7 @@ private:
         double stamps = 0.0;
         for (const std::optional<Finding>& finding : first_.findings) {
             if (!finding) { continue; }
-            double& best = judged_by_stamps(*finding) ? stamps : evidence;
+            double& best = traits_of(finding->effect).is_in_stamps ? stamps : evidence;
             best = std::max(best, finding->evidence_nats);
         }
         const double p_effects = evidence_tail_->probability(evidence);
@@ -403,9 +398,7 @@ private:
             std::string proposal =
                 telling_apart(cause.finding.effect) + rival.effect + ": " + cause.decided_by;
             // What noise tells grows with the time that it is listened to.
-            const EvidenceMethod method = find_effect(cause.finding.effect)->signature->method;
-            if (method == EvidenceMethod::spectrum || method == EvidenceMethod::random_telegraph ||
-                method == EvidenceMethod::tails) {
+            if (traits_of(cause.finding.effect).is_noise) {
                 const double times = std::ceil(decided_nats / std::max(rival.evidence_below_best_nats, 0.5));
                 proposal += ", some " + std::to_string(std::max(2, static_cast<int>(times))) +
                             " times as long as this one";

@@ -23,26 +23,9 @@ constexpr double left_nats = 3.0;
 // Of what one fit leaves in the other half, beyond what its own error does by chance.
 constexpr double sds = 3.0;
 
-// Codes, repeated samples and stamps are counted: no noise is fitted that could be fitted too well. Two
-// levels that the model has already cannot be looked for again. A line lies in few coefficients, which may
-// all be in one half, and so does what is slow; the largest of some spikes or of clipped samples is no
-// parameter that a second sample of them would share.
-bool can_be_halved(const EffectSignature& signature, const Prediction& prediction) {
-    if (signature.slow) { return false; }
-    switch (evidence_method(signature, prediction)) {
-        case EvidenceMethod::random_telegraph:
-        case EvidenceMethod::line:
-        case EvidenceMethod::outliers:
-        case EvidenceMethod::saturation:
-        case EvidenceMethod::repeats:
-        case EvidenceMethod::quantisation_step:
-        case EvidenceMethod::stamp_gaps:
-        case EvidenceMethod::stamp_rate:
-        case EvidenceMethod::stamp_jitter:
-            return false;
-        default:
-            return true;
-    }
+// What is slow lies in few coefficients, which may all be in one half.
+bool can_be_halved(const std::string& effect, const Prediction& prediction) {
+    return !find_effect(effect)->signature->slow && traits_of(effect, prediction).can_be_halved;
 }
 
 // One half of one recording.
@@ -79,9 +62,7 @@ public:
         return causes;
     }
 
-    bool halved(const Finding& finding) const {
-        return can_be_halved(*find_effect(finding.effect)->signature, *prediction_);
-    }
+    bool halved(const Finding& finding) const { return can_be_halved(finding.effect, *prediction_); }
 
 private:
     std::shared_ptr<const Prediction> prediction_;

@@ -19,7 +19,6 @@
 #include "analysis/diagnose/estimators/tails.hpp"
 #include "analysis/diagnose/estimators/variance_change_point.hpp"
 #include "analysis/diagnose/estimators/variance_with_temperature.hpp"
-#include "analysis/diagnose/multiscale/means_model.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
@@ -27,29 +26,74 @@ namespace gyrolog {
 
 namespace {
 
-struct MethodMaker {
-    EvidenceMethod method;
-    EstimatorMaker make;
+constexpr EstimatorTraits no_estimator{};
+
+constexpr EstimatorTraits rows[] = {
+    {.method = EvidenceMethod::response, .make = make_mean_response_estimator, .is_response = true},
+    {.method = EvidenceMethod::spectrum, .make = make_noise_spectrum_estimator, .is_noise = true},
+    {.method = EvidenceMethod::line,
+     .make = make_line_estimator,
+     .is_line = true,
+     .recurs = true,
+     .can_be_halved = false},
+    {.method = EvidenceMethod::step, .make = make_bias_step_estimator, .recurs = true},
+    {.method = EvidenceMethod::random_telegraph,
+     .make = make_random_telegraph_estimator,
+     .is_noise = true,
+     .is_not_normal = true,
+     .can_be_halved = false},
+    {.method = EvidenceMethod::tails,
+     .make = make_tail_estimator,
+     .is_noise = true,
+     .is_not_normal = true,
+     .far_off = FarOff::in_distribution,
+     .shows_in_means = false},
+    {.method = EvidenceMethod::outliers,
+     .make = make_outlier_estimator,
+     .is_not_normal = true,
+     .far_off = FarOff::single_samples,
+     .can_be_halved = false},
+    {.method = EvidenceMethod::variance_change_point, .make = make_variance_change_point_estimator},
+    {.method = EvidenceMethod::variance_with_temperature, .make = make_variance_with_temperature_estimator},
+    {.method = EvidenceMethod::shared_noise, .make = make_shared_noise_estimator},
+    {.method = EvidenceMethod::repeats,
+     .make = make_repeat_estimator,
+     .shows_in_means = false,
+     .can_be_halved = false},
+    {.method = EvidenceMethod::quantisation_step,
+     .make = make_quantisation_step_estimator,
+     .is_of_codes = true,
+     .shows_in_means = false,
+     .can_be_halved = false},
+    {.method = EvidenceMethod::saturation,
+     .make = make_saturation_estimator,
+     .shows_in_means = false,
+     .can_be_halved = false},
+    {.method = EvidenceMethod::stamp_gaps,
+     .make = make_stamp_gap_estimator,
+     .is_in_stamps = true,
+     .shows_in_means = false,
+     .can_be_halved = false},
+    {.method = EvidenceMethod::stamp_rate,
+     .make = make_stamp_rate_estimator,
+     .is_in_stamps = true,
+     .shows_in_means = false,
+     .can_be_halved = false},
+    {.method = EvidenceMethod::stamp_jitter,
+     .make = make_stamp_jitter_estimator,
+     .is_in_stamps = true,
+     .shows_in_means = false,
+     .can_be_halved = false},
 };
 
-constexpr MethodMaker makers[] = {
-    {EvidenceMethod::response, make_mean_response_estimator},
-    {EvidenceMethod::spectrum, make_noise_spectrum_estimator},
-    {EvidenceMethod::line, make_line_estimator},
-    {EvidenceMethod::step, make_bias_step_estimator},
-    {EvidenceMethod::random_telegraph, make_random_telegraph_estimator},
-    {EvidenceMethod::tails, make_tail_estimator},
-    {EvidenceMethod::outliers, make_outlier_estimator},
-    {EvidenceMethod::variance_change_point, make_variance_change_point_estimator},
-    {EvidenceMethod::variance_with_temperature, make_variance_with_temperature_estimator},
-    {EvidenceMethod::shared_noise, make_shared_noise_estimator},
-    {EvidenceMethod::repeats, make_repeat_estimator},
-    {EvidenceMethod::quantisation_step, make_quantisation_step_estimator},
-    {EvidenceMethod::saturation, make_saturation_estimator},
-    {EvidenceMethod::stamp_gaps, make_stamp_gap_estimator},
-    {EvidenceMethod::stamp_rate, make_stamp_rate_estimator},
-    {EvidenceMethod::stamp_jitter, make_stamp_jitter_estimator},
-};
+const EstimatorTraits& row_of(EvidenceMethod method) {
+    const auto* row = std::ranges::find(rows, method, &EstimatorTraits::method);
+    return row == std::end(rows) ? no_estimator : *row;
+}
+
+EvidenceMethod evidence_method(const EffectSignature& signature, const Prediction& prediction) {
+    return signature.changes_mean && prediction.moves() ? EvidenceMethod::response : signature.method;
+}
 
 std::string lacking(const EffectSignature& signature, const Prediction& prediction) {
     if (signature.needs_temperature && prediction.temperature_C().empty()) {
@@ -67,15 +111,24 @@ std::string lacking(const EffectSignature& signature, const Prediction& predicti
 
 }  // namespace
 
-EvidenceMethod evidence_method(const EffectSignature& signature, const Prediction& prediction) {
-    return signature.changes_mean && prediction.moves() ? EvidenceMethod::response : signature.method;
+const EstimatorTraits& traits_of(std::string_view effect) {
+    const EffectSignature* signature = find_effect(effect)->signature;
+    return signature == nullptr ? no_estimator : row_of(signature->method);
+}
+
+const EstimatorTraits& traits_of(std::string_view effect, const Prediction& prediction) {
+    const EffectSignature* signature = find_effect(effect)->signature;
+    return signature == nullptr ? no_estimator : row_of(evidence_method(*signature, prediction));
+}
+
+bool shows_in_means(const EffectSignature& signature) {
+    return row_of(signature.method).shows_in_means && !signature.folds;
 }
 
 MadeEstimator make_estimator(const EffectDefinition& effect,
                              const std::shared_ptr<const Prediction>& prediction) {
-    const EvidenceMethod method = evidence_method(*effect.signature, *prediction);
-    const auto* maker = std::ranges::find(makers, method, &MethodMaker::method);
-    return maker == std::end(makers) ? MadeEstimator{} : maker->make(effect, prediction);
+    const EstimatorMaker make = row_of(evidence_method(*effect.signature, *prediction)).make;
+    return make == nullptr ? MadeEstimator{} : make(effect, prediction);
 }
 
 std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Prediction>& prediction,

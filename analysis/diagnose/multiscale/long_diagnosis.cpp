@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/noise_refit.hpp"
 #include "analysis/diagnose/likelihood/observation.hpp"
@@ -35,13 +36,11 @@ constexpr double clock_strays_rel = 2e-4;
 // Two threads' of a beginning.
 constexpr double simulations_bytes_most = 0.4e9;
 
-EvidenceMethod method_of(const std::string& effect) { return find_effect(effect)->signature->method; }
-bool is_line(const std::string& effect) { return method_of(effect) == EvidenceMethod::line; }
-// Samples that are off by more than noise has it, single ones or as many as their distribution has far out.
-bool is_single_samples(const std::string& effect) { return method_of(effect) == EvidenceMethod::outliers; }
-bool is_far_off(const std::string& effect) {
-    return is_single_samples(effect) || method_of(effect) == EvidenceMethod::tails;
+bool is_line(const std::string& effect) { return traits_of(effect).is_line; }
+bool is_single_samples(const std::string& effect) {
+    return traits_of(effect).far_off == FarOff::single_samples;
 }
+bool is_far_off(const std::string& effect) { return traits_of(effect).far_off != FarOff::none; }
 
 double folded_hz(double f_hz, double rate_hz) {
     const double turns = f_hz / rate_hz;
@@ -63,10 +62,7 @@ double worst_sd_rel(const Finding& finding) {
 SensorModel with_any_single_samples(SensorModel model) {
     for (const ChainLink& link : signal_chain()) {
         const EffectDefinition* effect = link.effect;
-        if (effect == nullptr || effect->signature == nullptr ||
-            effect->signature->method != EvidenceMethod::outliers) {
-            continue;
-        }
+        if (effect == nullptr || traits_of(effect->name).far_off != FarOff::single_samples) { continue; }
         EffectModel entry{std::string(effect->name), {}, {}, ""};
         for (const EffectParam& param : effect->params) { entry.params[std::string(param.name)] = 0.0; }
         model.effects.push_back(std::move(entry));
@@ -227,7 +223,7 @@ private:
         };
         for (const EffectModel& entry : model_.effects) {
             if (is_line(found.effect) && is_line(entry.effect) && is_image_of(entry)) { return true; }
-            if (is_far_off(found.effect) && method_of(entry.effect) == EvidenceMethod::tails &&
+            if (is_far_off(found.effect) && traits_of(entry.effect).far_off == FarOff::in_distribution &&
                 share_an_axis(entry, in_means)) {
                 return true;
             }

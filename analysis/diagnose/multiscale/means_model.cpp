@@ -4,18 +4,16 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
 namespace {
 
-bool has_method(const EffectModel& entry, EvidenceMethod method) {
-    const EffectSignature* signature = find_effect(entry.effect)->signature;
-    return signature != nullptr && signature->method == method;
+bool is_line(const EffectModel& entry) { return traits_of(entry.effect).is_line; }
+bool is_of_single_samples(const EffectModel& entry) {
+    return traits_of(entry.effect).far_off == FarOff::single_samples;
 }
-
-bool is_line(const EffectModel& entry) { return has_method(entry, EvidenceMethod::line); }
-bool is_of_single_samples(const EffectModel& entry) { return has_method(entry, EvidenceMethod::outliers); }
 
 // What single samples are off by, in a mean of `samples`; with its inverse, back again.
 void scale_sizes(std::map<std::string, double>& values, double by) {
@@ -39,21 +37,6 @@ std::complex<double> line_in_means(double f_hz, double rate_hz, std::size_t samp
     const double sine = std::sin(half_turn);
     const double kernel = std::abs(sine) < 1e-12 ? 1.0 : std::sin(half_turn * number) / (number * sine);
     return kernel * std::polar(1.0, half_turn * (number - 1.0));
-}
-
-bool shows_in_means(const EffectSignature& signature) {
-    switch (signature.method) {
-        case EvidenceMethod::tails:
-        case EvidenceMethod::repeats:
-        case EvidenceMethod::quantisation_step:
-        case EvidenceMethod::saturation:
-        case EvidenceMethod::stamp_gaps:
-        case EvidenceMethod::stamp_rate:
-        case EvidenceMethod::stamp_jitter:
-            return false;
-        default:
-            return !signature.folds;
-    }
 }
 
 SensorModel model_of_means(SensorModel model, std::size_t samples, double rate_hz) {

@@ -10,10 +10,6 @@
 
 namespace gyrolog {
 
-// Not so the samples' distribution, their codes and their stamps, nor what folds: a mean is no sample. One
-// that is far enough off does: a mean has it smaller.
-bool shows_in_means(const EffectSignature& signature);
-
 // What means of `samples` at `rate_hz` have of a line, in rows counted from their first samples: its height
 // and how far its phase is ahead, Dirichlet's kernel.
 std::complex<double> line_in_means(double f_hz, double rate_hz, std::size_t samples);

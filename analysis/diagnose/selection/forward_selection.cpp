@@ -96,14 +96,14 @@ private:
                        options_.threads);
     }
 
-    // The best finding of every method: noise may pass for a drift and a drift for noise, as long as the
+    // The best finding of every estimator: noise may pass for a drift and a drift for noise, as long as the
     // other is not in the model.
     std::vector<Finding> beginnings() const {
         std::map<EvidenceMethod, Finding> best;
         for (const Finding& finding : findings_of(first_)) {
             if (finding.evidence_nats < options_.evidence_min_nats) { break; }
             if (is_of_codes(finding)) { return {finding}; }
-            best.try_emplace(method_of(finding), finding);
+            best.try_emplace(traits_of(finding.effect, *first_.prediction).method, finding);
         }
         std::vector<Finding> found;
         found.reserve(best.size());
@@ -113,19 +113,8 @@ private:
         return found;
     }
 
-    // What the converter does to the numbers, likelihoods of a continuous signal take for something else, in
-    // a simulation of it as well: it comes before all other causes, and stays.
-    static bool is_of_codes(const Finding& finding) {
-        return find_effect(finding.effect)->signature->method == EvidenceMethod::quantisation_step;
-    }
-
-    // To the spectra's likelihood it is normal noise. A telegraph's jumps are steps that such noise does not
-    // have; the power of heavy tails and of spikes varies by more than its does.
-    static bool is_not_normal(const Finding& finding) {
-        const EvidenceMethod method = find_effect(finding.effect)->signature->method;
-        return method == EvidenceMethod::random_telegraph || method == EvidenceMethod::tails ||
-               method == EvidenceMethod::outliers;
-    }
+    // It comes before all other causes, and stays.
+    static bool is_of_codes(const Finding& finding) { return traits_of(finding.effect).is_of_codes; }
 
     // Null without causes.
     const Finding* main_cause() const {
@@ -149,7 +138,10 @@ private:
     bool has_new_main_cause(const Hypotheses& with_causes) const {
         if (causes_.empty() || (causes_.size() == 1 && further(with_causes) == nullptr)) { return false; }
         const Finding* main = main_cause();
-        if (!is_of_codes(*main) && !is_not_normal(*main) && main->evidence_nats < huge_nats) { return false; }
+        if (!is_of_codes(*main) && !traits_of(main->effect).is_not_normal &&
+            main->evidence_nats < huge_nats) {
+            return false;
+        }
         const bool is_new = main->effect != null_bias_.beside || main->where.axes != null_bias_.axes;
         return is_new && main_causes_ < main_causes_most;
     }
@@ -174,7 +166,7 @@ private:
     }
 
     bool is_fast_response(const Finding& finding) const {
-        return method_of(finding) == EvidenceMethod::response &&
+        return traits_of(finding.effect, *first_.prediction).is_response &&
                !find_effect(finding.effect)->signature->slow;
     }
 
@@ -248,14 +240,8 @@ private:
         return finding.evidence_nats - null_bias_.of(finding);
     }
 
-    EvidenceMethod method_of(const Finding& finding) const {
-        return evidence_method(*find_effect(finding.effect)->signature, *first_.prediction);
-    }
-
     bool is_noise(const Finding& finding) const {
-        const EvidenceMethod method = method_of(finding);
-        return method == EvidenceMethod::spectrum || method == EvidenceMethod::random_telegraph ||
-               method == EvidenceMethod::tails;
+        return traits_of(finding.effect, *first_.prediction).is_noise;
     }
 
     // Takes the cause that is best together with the one it calls for next; what is seen with it in the
@@ -317,11 +303,6 @@ private:
         return findings;
     }
 
-    bool repeats_itself(const Finding& finding) const {
-        const EvidenceMethod method = find_effect(finding.effect)->signature->method;
-        return method == EvidenceMethod::line || method == EvidenceMethod::step;
-    }
-
     // The best finding that is not of an effect found before: what those could explain, their fit has. Null
     // where none has evidence enough.
     const Finding* further(const Hypotheses& hypotheses) const {
@@ -339,7 +320,7 @@ private:
     bool is_new(const Finding& finding) const {
         return std::ranges::none_of(causes_, [&](const FoundCause& cause) {
             if (cause.finding.effect != finding.effect) { return false; }
-            return !repeats_itself(finding) || is_same_line(cause.finding, finding);
+            return !traits_of(finding.effect).recurs || is_same_line(cause.finding, finding);
         });
     }
 
