@@ -71,7 +71,8 @@ unsigned affordable_threads(std::size_t samples, double bytes_most) {
 }
 
 bool are_alike(const GapCurve& a, const GapCurve& b) {
-    return a.kind == b.kind && a.axis == b.axis && a.other == b.other && a.value.size() == b.value.size();
+    return a.measure == b.measure && a.axis == b.axis && a.other == b.other &&
+           a.value.size() == b.value.size();
 }
 
 class Diagnoser {

@@ -10,20 +10,6 @@ namespace gyrolog {
 
 namespace {
 
-// Where no simulation differs from another, rounding is no scale, and one sample further out than any of
-// theirs is no wonder.
-double least_sd(GapDomainKind kind) {
-    switch (kind) {
-        case GapDomainKind::amplitude:
-            return 0.5;
-        case GapDomainKind::repeats:
-        case GapDomainKind::rhythm:
-            return 1.0;
-        default:
-            return 1e-6;
-    }
-}
-
 double sum_of_squares(const std::vector<double>& z) {
     double sum = 0.0;
     for (const double value : z) { sum += value * value; }
@@ -86,7 +72,7 @@ void add_points(const UsedSimulations& used, std::size_t c, GapReference& refere
             const double off = (*simulation)[c].value[i] - mean[i];
             sd[i] += off * off / (count - 1.0);
         }
-        sd[i] = std::max(std::sqrt(sd[i]), least_sd(first.kind));
+        sd[i] = std::max(std::sqrt(sd[i]), first.measure->least_sd);
     }
     reference.mean.push_back(std::move(mean));
     reference.sd.push_back(std::move(sd));
@@ -117,15 +103,15 @@ void add_sums(const UsedSimulations& used, std::size_t c, GapReference& referenc
     reference.rms_scale.push_back(std::sqrt(average / static_cast<double>(std::max<std::size_t>(points, 1))));
 }
 
-// Of the axes' curves of one kind: at one point or window of all of them, or in all.
-double surprise_of_axes(const std::vector<CurveDistance>& gaps, const std::vector<std::size_t>& same_kind,
+// Of the axes' curves of one measure: at one point or window of all of them, or in all.
+double surprise_of_axes(const std::vector<CurveDistance>& gaps, const std::vector<std::size_t>& same_measure,
                         const GapReference& reference) {
-    const auto axes = static_cast<double>(same_kind.size());
+    const auto axes = static_cast<double>(same_measure.size());
     const auto worst_of = [&](auto member) {
         double worst = 0.0;
-        for (std::size_t i = 0; i < (gaps[same_kind.front()].*member).size(); ++i) {
+        for (std::size_t i = 0; i < (gaps[same_measure.front()].*member).size(); ++i) {
             double squares = 0.0;
-            for (const std::size_t c : same_kind) {
+            for (const std::size_t c : same_measure) {
                 squares += normal_square((gaps[c].*member)[i], reference.degrees_of_freedom);
             }
             worst = std::max(worst, squares);
@@ -134,11 +120,11 @@ double surprise_of_axes(const std::vector<CurveDistance>& gaps, const std::vecto
     };
     const double worst = std::max(worst_of(&CurveDistance::z), worst_of(&CurveDistance::window_z));
     const auto places =
-        static_cast<double>(gaps[same_kind.front()].z.size() + gaps[same_kind.front()].window_z.size());
+        static_cast<double>(gaps[same_measure.front()].z.size() + gaps[same_measure.front()].window_z.size());
     double squares = 0.0;
     double mean = 0.0;
     double variance = 0.0;
-    for (const std::size_t c : same_kind) {
+    for (const std::size_t c : same_measure) {
         squares += gaps[c].squares;
         mean += reference.square_mean[c];
         variance += reference.square_variance[c];
@@ -190,9 +176,9 @@ CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::
 namespace {
 
 struct Surprises {
-    std::vector<double> own_nats;                               // by curve
-    std::map<GapDomainKind, std::vector<std::size_t>> of_axes;  // curves of one axis alone, by kind
-    std::map<GapDomainKind, double> together_nats;              // where there are several
+    std::vector<double> own_nats;                                // by curve
+    std::map<const Measure*, std::vector<std::size_t>> of_axes;  // curves of one axis alone, by measure
+    std::map<const Measure*, double> together_nats;              // where there are several
 };
 
 Surprises surprises_of(const std::vector<GapCurve>& curves, const GapReference& reference) {
@@ -202,12 +188,12 @@ Surprises surprises_of(const std::vector<GapCurve>& curves, const GapReference& 
         gaps.push_back(gap_of(curves[c], reference, c));
         surprises.own_nats.push_back(gaps.back().surprise_nats);
         if (curves[c].of_all_axes) { continue; }
-        std::vector<std::size_t>& same = surprises.of_axes[curves[c].kind];
+        std::vector<std::size_t>& same = surprises.of_axes[curves[c].measure];
         const bool as_long = same.empty() || gaps[same.front()].z.size() == gaps[c].z.size();
         if (curves[c].axis == curves[c].other && as_long) { same.push_back(c); }
     }
-    for (const auto& [kind, same] : surprises.of_axes) {
-        if (same.size() > 1) { surprises.together_nats[kind] = surprise_of_axes(gaps, same, reference); }
+    for (const auto& [measure, same] : surprises.of_axes) {
+        if (same.size() > 1) { surprises.together_nats[measure] = surprise_of_axes(gaps, same, reference); }
     }
     return surprises;
 }
@@ -217,8 +203,8 @@ Surprises surprises_of(const std::vector<GapCurve>& curves, const GapReference& 
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
     const Surprises all = surprises_of(curves, reference);
     std::vector<double> surprises = all.own_nats;
-    for (const auto& [kind, together_nats] : all.together_nats) {
-        const std::vector<std::size_t>& same = all.of_axes.at(kind);
+    for (const auto& [measure, together_nats] : all.together_nats) {
+        const std::vector<std::size_t>& same = all.of_axes.at(measure);
         const bool one_stands_out =
             std::ranges::any_of(same, [&](std::size_t c) { return all.own_nats[c] >= stands_out_nats; });
         if (one_stands_out) { continue; }
@@ -230,7 +216,7 @@ std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const Ga
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
     const Surprises all = surprises_of(curves, reference);
     double worst = std::ranges::max(all.own_nats);
-    for (const auto& [kind, together_nats] : all.together_nats) { worst = std::max(worst, together_nats); }
+    for (const auto& [measure, together_nats] : all.together_nats) { worst = std::max(worst, together_nats); }
     return worst;
 }
 

@@ -44,7 +44,7 @@ CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::
 inline constexpr double stands_out_nats = 7.0;
 
 // By curve of one observation: its own surprise; where no axis stands out by itself, that of all axes' curves
-// of the kind together if that is larger.
+// of the measure together if that is larger.
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
 // The largest of all, of single curves and of axes together.
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);

@@ -6,82 +6,6 @@
 
 namespace gyrolog {
 
-namespace {
-
-// Points further off than this many standard deviations are where the gap is.
-constexpr double outside_sigma = 3.0;
-
-std::optional<Span> outside(const GapCurve& curve, const std::vector<double>& z) {
-    std::optional<Span> span;
-    double worst = 0.0;
-    for (const double value : z) { worst = std::max(worst, std::fabs(value)); }
-    const double limit = std::min(outside_sigma, 0.7 * worst);
-    for (std::size_t i = 0; i < z.size(); ++i) {
-        if (std::fabs(z[i]) < limit) { continue; }
-        if (!span) { span = Span{curve.x[i], curve.x[i]}; }
-        span->from = std::min(span->from, curve.x[i]);
-        span->to = std::max(span->to, curve.x[i]);
-    }
-    return span;
-}
-
-Span worst_point(const GapCurve& curve, const std::vector<double>& z) {
-    const auto worst =
-        std::ranges::max_element(z, {}, [](double value) { return std::fabs(value); }) - z.begin();
-    const double x = curve.x[static_cast<std::size_t>(worst)];
-    return {x, x};
-}
-
-void place(const GapCurve& curve, const std::vector<double>& z, Place& where) {
-    const std::optional<Span> span = outside(curve, z);
-    switch (curve.kind) {
-        case GapDomainKind::allan:
-        case GapDomainKind::memory:
-            where.tau_s = span;
-            break;
-        case GapDomainKind::rhythm:
-        case GapDomainKind::period:
-            // Multiples and parts of a period stand out with it.
-            where.tau_s = worst_point(curve, z);
-            break;
-        case GapDomainKind::narrow:
-        case GapDomainKind::spectrum:
-            where.freq_hz = span;
-            break;
-        case GapDomainKind::course:
-        case GapDomainKind::drift:
-        case GapDomainKind::gain_course:
-        case GapDomainKind::delay_course:
-            where.time_s = span;
-            break;
-        case GapDomainKind::amplitude:
-            where.amplitude_sigma = span;
-            break;
-        case GapDomainKind::temperature:
-            where.temperature = true;
-            break;
-        case GapDomainKind::cross_axis:
-            where.structure = "cross_axis";
-            where.freq_hz = span;
-            break;
-        case GapDomainKind::repeats:
-            where.structure = "duplicated_samples";
-            break;
-        case GapDomainKind::codes:
-            where.structure = "code_grid";
-            break;
-        case GapDomainKind::rate_noise:
-        case GapDomainKind::rate:
-            where.rate_rad_s = span;
-            break;
-        case GapDomainKind::acceleration:
-            where.acceleration = true;
-            break;
-    }
-}
-
-}  // namespace
-
 GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& reference) {
     GapSummary summary;
     const std::vector<double> surprises = surprises_nats(curves, reference);
@@ -100,7 +24,7 @@ GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& re
     summary.gap = {value, 1.0, std::max(0.0, value - 1.96 * sd), value + 1.96 * sd};
     for (std::size_t c = 0; c < curves.size(); ++c) {
         if (curves[worst].of_all_axes) { summary.where.axes.push_back(curves[c].axis); }
-        if (curves[c].kind != curves[worst].kind || surprises[c] < stands_out_nats) { continue; }
+        if (curves[c].measure != curves[worst].measure || surprises[c] < stands_out_nats) { continue; }
         if (curves[c].of_all_axes) { continue; }
         summary.where.axes.push_back(curves[c].axis);
     }
@@ -108,7 +32,7 @@ GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& re
     std::vector<std::size_t>& axes = summary.where.axes;
     std::ranges::sort(axes);
     axes.erase(std::unique(axes.begin(), axes.end()), axes.end());
-    place(curves[worst], gaps[worst].z, summary.where);
+    curves[worst].measure->locate(curves[worst], gaps[worst].z, summary.where);
     return summary;
 }
 

@@ -63,10 +63,10 @@ private:
     }
 
     void describe() {
-        const auto look_of = [](const Diagnosis& seen, std::size_t samples_per_row) {
+        const auto pass_of = [](const Diagnosis& seen, std::size_t samples_per_row) {
             return Pass{seen.duration_s, seen.samples, samples_per_row, seen.verdict, seen.p_none};
         };
-        whole_.passes = {look_of(beginning_, 1), look_of(means_, samples_per_row_)};
+        whole_.passes = {pass_of(beginning_, 1), pass_of(means_, samples_per_row_)};
         whole_.rate_hz = beginning_.rate_hz;
         whole_.duration_s = means_.duration_s;
         whole_.samples = means_.samples * samples_per_row_;

@@ -5,6 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/calibration/gap_summary.hpp"
+#include "analysis/diagnose/measures/allan.hpp"
+#include "analysis/diagnose/measures/amplitude.hpp"
+#include "analysis/diagnose/measures/courses.hpp"
+#include "analysis/diagnose/measures/noise_level.hpp"
+#include "analysis/diagnose/measures/reference_rate.hpp"
+#include "analysis/diagnose/measures/spectrum.hpp"
 
 namespace gyrolog {
 namespace {
@@ -26,11 +32,11 @@ GapReference reference_of(const std::vector<GapCurve>& curves) {
 
 TEST(GapDomains, AreInUnitsThatPeopleUse) {
     const std::vector<GapCurve> curves = {
-        {GapDomainKind::allan, 1, 1, {1.0, 2.0}, {0.1, 0.2}},
-        {GapDomainKind::spectrum, 0, 0, {1.0, 2.0}, {3.0 * (std::cbrt(2.0) - 1.0), 0.0}},
-        {GapDomainKind::course, 0, 0, {10.0, 20.0}, {std::log(2.0), 0.0}},
-        {GapDomainKind::rate, 0, 2, {-1.0, 1.0}, {0.1, 0.1}},
-        {GapDomainKind::amplitude, 0, 0, {2.0, 3.0, 0.0}, {0.1, 0.1, 0.1}},
+        {&measures::allan, 1, 1, {1.0, 2.0}, {0.1, 0.2}},
+        {&measures::spectrum, 0, 0, {1.0, 2.0}, {3.0 * (std::cbrt(2.0) - 1.0), 0.0}},
+        {&measures::course, 0, 0, {10.0, 20.0}, {std::log(2.0), 0.0}},
+        {&measures::rate, 0, 2, {-1.0, 1.0}, {0.1, 0.1}},
+        {&measures::amplitude, 0, 0, {2.0, 3.0, 0.0}, {0.1, 0.1, 0.1}},
     };
     const GapReference reference = reference_of(curves);
     const std::vector<GapDomain> domains = gap_domains({curves, reference}, nullptr, 0.95);
@@ -50,8 +56,8 @@ TEST(GapDomains, AreInUnitsThatPeopleUse) {
 }
 
 TEST(GapDomains, ShowTheCorrectedModelsBandAsSeenFromTheRecording) {
-    const std::vector<GapCurve> before = {{GapDomainKind::drift, 0, 0, {1.0, 2.0}, {5.0, 0.1}}};
-    const std::vector<GapCurve> after = {{GapDomainKind::drift, 0, 0, {1.0, 2.0}, {0.11, 0.3}}};
+    const std::vector<GapCurve> before = {{&measures::drift, 0, 0, {1.0, 2.0}, {5.0, 0.1}}};
+    const std::vector<GapCurve> after = {{&measures::drift, 0, 0, {1.0, 2.0}, {0.11, 0.3}}};
     const GapReference reference = reference_of(before);
     const MeasuredGap corrected{after, reference};
     const GapDomain domain = gap_domains({before, reference}, &corrected, 0.95).at(0);
@@ -64,7 +70,7 @@ TEST(GapDomains, ShowTheCorrectedModelsBandAsSeenFromTheRecording) {
 }
 
 TEST(GapDomains, OfAllAxesSayThatTheyAre) {
-    GapCurve own{GapDomainKind::memory, 1, 1, {1.0, 2.0}, {0.1, 0.1}};
+    GapCurve own{&measures::memory, 1, 1, {1.0, 2.0}, {0.1, 0.1}};
     GapCurve shared = own;
     shared.of_all_axes = true;
     const std::vector<GapCurve> curves = {own, shared};
@@ -78,10 +84,10 @@ TEST(GapDomains, OfAllAxesSayThatTheyAre) {
 
 // Its multiples and parts stand out with it; and it is seen on all axes together.
 TEST(GapSummary, SaysTheBestPeriodOfARhythmAndAllAxes) {
-    GapCurve rhythm{GapDomainKind::rhythm, 0, 0, {20.0, 40.0, 80.0}, {0.4, 0.9, 0.3}};
+    GapCurve rhythm{&measures::rhythm, 0, 0, {20.0, 40.0, 80.0}, {0.4, 0.9, 0.3}};
     rhythm.of_all_axes = true;
-    const std::vector<GapCurve> curves = {{GapDomainKind::drift, 0, 0, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.1}},
-                                          {GapDomainKind::drift, 2, 2, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.1}},
+    const std::vector<GapCurve> curves = {{&measures::drift, 0, 0, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.1}},
+                                          {&measures::drift, 2, 2, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.1}},
                                           rhythm};
     GapReference reference = reference_of(curves);
     reference.window_sd.assign(curves.size(), {});

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/measures/courses.hpp"
+#include "analysis/diagnose/measures/spectrum.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -14,7 +17,7 @@ std::vector<GapCurve> curves_by_chance(std::mt19937_64& random) {
     std::normal_distribution<double> normal(0.0, 1.0);
     std::vector<GapCurve> curves;
     for (std::size_t c = 0; c < 6; ++c) {
-        GapCurve curve{GapDomainKind::spectrum, c, c, {}, {}};
+        GapCurve curve{&measures::spectrum, c, c, {}, {}};
         const double common = normal(random);
         for (int i = 0; i < 20; ++i) {
             curve.x.push_back(i);
@@ -68,7 +71,7 @@ std::vector<GapCurve> flat_curves(std::mt19937_64& random, double offset, std::s
     std::normal_distribution<double> normal(0.0, 1.0);
     std::vector<GapCurve> curves;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        GapCurve curve{GapDomainKind::course, axis, axis, {}, {}};
+        GapCurve curve{&measures::course, axis, axis, {}, {}};
         for (std::size_t i = 0; i < 32; ++i) {
             curve.x.push_back(static_cast<double>(i));
             curve.value.push_back(normal(random) + (i >= from && i < end ? offset : 0.0));

@@ -39,14 +39,15 @@ inline std::vector<GapCurve> curves_of(std::uint64_t seed, const Change& change,
                                   std::make_shared<const Recording>(recording), 1));
 }
 
-inline const GapCurve& curve_of(const std::vector<GapCurve>& curves, GapDomainKind kind, std::size_t axis) {
+inline const GapCurve& curve_of(const std::vector<GapCurve>& curves, const Measure& measure,
+                                std::size_t axis) {
     return *std::ranges::find_if(
-        curves, [&](const GapCurve& curve) { return curve.kind == kind && curve.axis == axis; });
+        curves, [&](const GapCurve& curve) { return curve.measure == &measure && curve.axis == axis; });
 }
 
-inline const GapCurve& shared_curve_of(const std::vector<GapCurve>& curves, GapDomainKind kind) {
+inline const GapCurve& shared_curve_of(const std::vector<GapCurve>& curves, const Measure& measure) {
     return *std::ranges::find_if(
-        curves, [&](const GapCurve& curve) { return curve.kind == kind && curve.of_all_axes; });
+        curves, [&](const GapCurve& curve) { return curve.measure == &measure && curve.of_all_axes; });
 }
 
 inline double most(const GapCurve& curve) { return std::ranges::max(curve.value); }

@@ -1,10 +1,10 @@
-#include "analysis/diagnose/measures/motion_curves.hpp"
-
 #include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/measures/rate_change.hpp"
+#include "analysis/diagnose/measures/reference_rate.hpp"
 #include "tests/analysis/diagnose/measures/changed_codes.hpp"
 
 namespace gyrolog {
@@ -37,16 +37,16 @@ double change_rad_s2(double t_s) { return (rate_rad_s(t_s + 0.005) - rate_rad_s(
 
 TEST(MotionCurves, OfAnOrdinarySensorAreSmall) {
     const std::vector<GapCurve> curves = curves_with([](double) { return 0.0; });
-    for (const GapDomainKind kind :
-         {GapDomainKind::gain_course, GapDomainKind::delay_course, GapDomainKind::acceleration}) {
-        for (const double value : curve_of(curves, kind, 0).value) { EXPECT_LT(std::fabs(value), 4.5); }
+    for (const Measure* measure :
+         {&measures::gain_course, &measures::delay_course, &measures::acceleration}) {
+        for (const double value : curve_of(curves, *measure, 0).value) { EXPECT_LT(std::fabs(value), 4.5); }
     }
 }
 
 TEST(MotionCurves, ShowWhenAnAxisIsLate) {
     const std::vector<GapCurve> curves = curves_with(
         [](double t_s) { return t_s > 200.0 && t_s < 300.0 ? -0.0004 * change_rad_s2(t_s) : 0.0; });
-    const GapCurve& late = curve_of(curves, GapDomainKind::delay_course, 0);
+    const GapCurve& late = curve_of(curves, measures::delay_course, 0);
     for (std::size_t i = 0; i < late.x.size(); ++i) {
         const bool inside = late.x[i] > 225.0 && late.x[i] < 275.0;
         const bool outside = late.x[i] < 175.0 || late.x[i] > 325.0;
@@ -58,7 +58,7 @@ TEST(MotionCurves, ShowWhenAnAxisIsLate) {
 TEST(MotionCurves, ShowWhenTheGainIsOff) {
     const std::vector<GapCurve> curves =
         curves_with([](double t_s) { return t_s > 450.0 ? 0.0004 * rate_rad_s(t_s) : 0.0; });
-    const GapCurve& gain = curve_of(curves, GapDomainKind::gain_course, 0);
+    const GapCurve& gain = curve_of(curves, measures::gain_course, 0);
     EXPECT_GT(gain.value.back(), 6.0);
     EXPECT_LT(gain.value.front(), 4.5);
 }
@@ -67,7 +67,7 @@ TEST(MotionCurves, ShowWhenTheGainIsOff) {
 TEST(MotionCurves, ShowWhatDependsOnTheDirectionOfTheChange) {
     const std::vector<GapCurve> curves =
         curves_with([](double t_s) { return change_rad_s2(t_s) > 0.0 ? -1e-4 : 1e-4; });
-    const GapCurve& change = curve_of(curves, GapDomainKind::acceleration, 0);
+    const GapCurve& change = curve_of(curves, measures::acceleration, 0);
     EXPECT_TRUE(std::ranges::is_sorted(change.x));
     // As many samples in every range: the sines are more often slow than fast.
     const std::size_t middle = change.x.size() / 2;

@@ -1,11 +1,13 @@
-#include "analysis/diagnose/measures/structure_curves.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/measures/codes.hpp"
+#include "analysis/diagnose/measures/narrow_lines.hpp"
+#include "analysis/diagnose/measures/period.hpp"
+#include "analysis/diagnose/measures/repeats.hpp"
 #include "tests/analysis/diagnose/measures/changed_codes.hpp"
 
 namespace gyrolog {
@@ -17,10 +19,10 @@ TEST(StructureCurves, OfOrdinaryNoiseAreRarelyLarge) {
     double large = 0.0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         const std::vector<GapCurve> curves = curves_of(seed, {});
-        for (const GapDomainKind kind :
-             {GapDomainKind::repeats, GapDomainKind::period, GapDomainKind::narrow, GapDomainKind::codes}) {
+        for (const Measure* measure :
+             {&measures::repeats, &measures::period, &measures::narrow, &measures::codes}) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                for (const double value : curve_of(curves, kind, axis).value) {
+                for (const double value : curve_of(curves, *measure, axis).value) {
                     EXPECT_LT(value, 4.9) << "seed " << seed;  // 1 of two millions
                     large += value > 2.326;
                     count += 1.0;
@@ -59,10 +61,10 @@ TEST(StructureCurves, ShowSamplesThatStick) {
             if (sticks(random)) { codes[i] = codes[i - 1]; }
         }
     });
-    const GapCurve& repeats = curve_of(curves, GapDomainKind::repeats, changed_axis);
+    const GapCurve& repeats = curve_of(curves, measures::repeats, changed_axis);
     EXPECT_GT(repeats.value[0], 5.0);
     EXPECT_LT(std::fabs(repeats.value[1]), 4.5);
-    EXPECT_LT(std::fabs(curve_of(curves, GapDomainKind::repeats, 1).value[0]), 4.5);
+    EXPECT_LT(std::fabs(curve_of(curves, measures::repeats, 1).value[0]), 4.5);
 }
 
 TEST(StructureCurves, ShowWhatComesBackTooFaintToSeeOnce) {
@@ -71,14 +73,14 @@ TEST(StructureCurves, ShowWhatComesBackTooFaintToSeeOnce) {
         const double height = 1.3 * white_sd_codes(codes);
         for (std::size_t i = 9; i < codes.size(); i += every) { codes[i] += std::round(height); }
     });
-    const GapCurve& period = curve_of(curves, GapDomainKind::period, changed_axis);
+    const GapCurve& period = curve_of(curves, measures::period, changed_axis);
     const auto peak = std::ranges::max_element(period.value) - period.value.begin();
     EXPECT_GT(most(period), 6.0);
     // Within the octave, or one above for its multiple.
     EXPECT_NEAR(std::log2(period.x[static_cast<std::size_t>(peak)] * 100.0 / every), 0.5, 1.0);
-    EXPECT_LT(most(curve_of(curves, GapDomainKind::period, 1)), 4.5);
+    EXPECT_LT(most(curve_of(curves, measures::period, 1)), 4.5);
     // Neither its tails nor a line say so.
-    EXPECT_LT(most(curve_of(curves, GapDomainKind::narrow, changed_axis)), 4.5);
+    EXPECT_LT(most(curve_of(curves, measures::narrow, changed_axis)), 4.5);
 }
 
 TEST(StructureCurves, ShowALineThatWandersAndWhere) {
@@ -94,11 +96,11 @@ TEST(StructureCurves, ShowALineThatWandersAndWhere) {
                 height * std::sin(2.0 * 3.14159265358979 * f_hz * static_cast<double>(i) / 100.0 + phase_rad);
         }
     });
-    const GapCurve& narrow = curve_of(curves, GapDomainKind::narrow, changed_axis);
+    const GapCurve& narrow = curve_of(curves, measures::narrow, changed_axis);
     const auto peak = std::ranges::max_element(narrow.value) - narrow.value.begin();
     EXPECT_GT(most(narrow), 6.0);
     EXPECT_NEAR(narrow.x[static_cast<std::size_t>(peak)], f_hz, 0.3);
-    EXPECT_LT(most(curve_of(curves, GapDomainKind::narrow, 1)), 4.5);
+    EXPECT_LT(most(curve_of(curves, measures::narrow, 1)), 4.5);
 }
 
 TEST(StructureCurves, ShowASlowSwingBelowTheBandsOfLines) {
@@ -109,10 +111,10 @@ TEST(StructureCurves, ShowASlowSwingBelowTheBandsOfLines) {
             codes[i] += height * std::sin(2.0 * 3.14159265358979 * f_hz * static_cast<double>(i) / 100.0);
         }
     });
-    const GapCurve& narrow = curve_of(curves, GapDomainKind::narrow, changed_axis);
+    const GapCurve& narrow = curve_of(curves, measures::narrow, changed_axis);
     EXPECT_GT(narrow.value.front(), 6.0);
     EXPECT_NEAR(narrow.x.front(), f_hz, 0.2 * f_hz);
-    EXPECT_LT(curve_of(curves, GapDomainKind::narrow, 1).value.front(), 4.5);
+    EXPECT_LT(curve_of(curves, measures::narrow, 1).value.front(), 4.5);
 }
 
 TEST(StructureCurves, ShowACodeThatIsNeverShown) {
@@ -120,8 +122,8 @@ TEST(StructureCurves, ShowACodeThatIsNeverShown) {
         const double level = std::round(codes.front()) + 4.0;
         for (double& code : codes) { code += code == level ? 1.0 : 0.0; }
     });
-    const GapCurve& changed = curve_of(curves, GapDomainKind::codes, changed_axis);
-    const GapCurve& ordinary = curve_of(curves, GapDomainKind::codes, 1);
+    const GapCurve& changed = curve_of(curves, measures::codes, changed_axis);
+    const GapCurve& ordinary = curve_of(curves, measures::codes, 1);
     EXPECT_GT(changed.value[0], 10.0);
     EXPECT_LT(ordinary.value[0], 4.5);
     EXPECT_LT(ordinary.value[1], 4.5);
@@ -135,7 +137,7 @@ TEST(StructureCurves, ShowACodeInTheTailThatIsNeverShown) {
         const double level = sorted[sorted.size() - 30];
         for (double& code : codes) { code += code == level ? 1.0 : 0.0; }
     });
-    EXPECT_GT(curve_of(curves, GapDomainKind::codes, changed_axis).value[0], 4.9);
+    EXPECT_GT(curve_of(curves, measures::codes, changed_axis).value[0], 4.9);
 }
 
 TEST(StructureCurves, ShowAConverterWhoseLowestBitIsWeak) {
@@ -146,7 +148,7 @@ TEST(StructureCurves, ShowAConverterWhoseLowestBitIsWeak) {
             if (std::fmod(code, 2.0) != 0.0 && misses(random)) { code -= 1.0; }
         }
     });
-    EXPECT_GT(curve_of(curves, GapDomainKind::codes, changed_axis).value[1], 10.0);
+    EXPECT_GT(curve_of(curves, measures::codes, changed_axis).value[1], 10.0);
 }
 
 TEST(StructureCurves, JudgeCodesOfASensorAtRestOnly) {
@@ -155,7 +157,7 @@ TEST(StructureCurves, JudgeCodesOfASensorAtRestOnly) {
     const auto prediction = prediction_of(recording, model);
     ASSERT_TRUE(prediction->moves());
     const std::vector<GapCurve> curves = gap_curves(Observation(prediction, recording, 1));
-    EXPECT_EQ(curve_of(curves, GapDomainKind::codes, 0).value, (std::vector<double>{0.0, 0.0}));
+    EXPECT_EQ(curve_of(curves, measures::codes, 0).value, (std::vector<double>{0.0, 0.0}));
 }
 
 }  // namespace

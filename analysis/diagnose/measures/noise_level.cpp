@@ -1,9 +1,11 @@
-#include "analysis/diagnose/measures/noise_level_curves.hpp"
+#include "analysis/diagnose/measures/noise_level.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/measures/curve_place.hpp"
+#include "analysis/diagnose/measures/shown_values.hpp"
 #include "analysis/numerics/repetition.hpp"
 #include "analysis/numerics/tail_probability.hpp"
 
@@ -96,16 +98,16 @@ std::vector<float> levels(const Observation& observation, const std::vector<floa
     return level;
 }
 
-GapCurve of_all_axes(GapDomainKind kind, const Observation& observation) {
+GapCurve of_all_axes(const Measure& measure, const Observation& observation) {
     const std::vector<std::size_t>& axes = observation.prediction().axes();
-    GapCurve curve{kind, axes.front(), axes.front(), {}, {}};
+    GapCurve curve{&measure, axes.front(), axes.front(), {}, {}};
     curve.of_all_axes = axes.size() > 1;
     return curve;
 }
 
 GapCurve rhythm_curve(const Observation& observation, const std::vector<std::vector<float>>& series,
                       double step_s) {
-    GapCurve curve = of_all_axes(GapDomainKind::rhythm, observation);
+    GapCurve curve = of_all_axes(measures::rhythm, observation);
     std::vector<Repetition> found = repetitions(series, step_s);
     std::ranges::reverse(found);
     for (const Repetition& one : found) {
@@ -117,12 +119,28 @@ GapCurve rhythm_curve(const Observation& observation, const std::vector<std::vec
 
 }  // namespace
 
-std::vector<GapCurve> noise_level_curves(const Observation& observation) {
+const Measure measures::memory{.name = "bursts of noise",
+                               .x_name = "length (s)",
+                               .y_name = "over the model (dB)",
+                               .shown_x = as_it_is,
+                               .shown_y = cube_root_dB,
+                               .locate = locate_averaging_times,
+                               .log_x = true,
+                               .shared_name = "shared "};
+const Measure measures::rhythm{.name = "rhythm of the noise",
+                               .x_name = "period (s)",
+                               .y_name = "excess (its sd)",
+                               .shown_x = as_it_is,
+                               .shown_y = as_it_is,
+                               .locate = locate_period,
+                               .log_x = true,
+                               .least_sd = 1.0};
+
+void add_noise_level_curves(const Observation& observation, std::vector<GapCurve>& curves) {
     const Prediction& prediction = observation.prediction();
     const auto length =
         static_cast<std::size_t>(std::max(rhythm_samples_least, rhythm_step_s * prediction.rate_hz()));
     const bool has_rhythm = prediction.length() / length >= rhythm_steps_least;
-    std::vector<GapCurve> curves;
     std::vector<std::vector<float>> series;
     std::vector<float> sum;
     for (const std::size_t axis : prediction.axes()) {
@@ -131,11 +149,11 @@ std::vector<GapCurve> noise_level_curves(const Observation& observation) {
         sum.resize(squares.size(), 0.0F);
         for (std::size_t i = 0; i < sum.size(); ++i) { sum[i] += squares[i]; }
         if (has_rhythm) { series.push_back(levels(observation, squares, all, length)); }
-        curves.push_back({GapDomainKind::memory, axis, axis, {}, {}});
+        curves.push_back({&measures::memory, axis, axis, {}, {}});
         fill_memory(observation, std::move(squares), all.variance, curves.back());
     }
     if (prediction.axes().size() > 1) {
-        curves.push_back(of_all_axes(GapDomainKind::memory, observation));
+        curves.push_back(of_all_axes(measures::memory, observation));
         const double variance = moments_of(sum).variance;
         fill_memory(observation, std::move(sum), variance, curves.back());
     }
@@ -143,7 +161,6 @@ std::vector<GapCurve> noise_level_curves(const Observation& observation) {
         curves.push_back(
             rhythm_curve(observation, series, static_cast<double>(length) / prediction.rate_hz()));
     }
-    return curves;
 }
 
 }  // namespace gyrolog

@@ -1,4 +1,4 @@
-#include "analysis/diagnose/measures/noise_level_curves.hpp"
+#include "analysis/diagnose/measures/noise_level.hpp"
 
 #include <cmath>
 #include <random>
@@ -15,13 +15,13 @@ TEST(NoiseLevelCurves, OfOrdinaryNoiseAreSmall) {
     std::size_t large = 0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         const std::vector<GapCurve> curves = curves_of(seed, {});
-        for (const double value : curve_of(curves, GapDomainKind::memory, 0).value) {
+        for (const double value : curve_of(curves, measures::memory, 0).value) {
             EXPECT_LT(std::fabs(value), 1.5) << "seed " << seed;
         }
-        for (const double value : shared_curve_of(curves, GapDomainKind::memory).value) {
+        for (const double value : shared_curve_of(curves, measures::memory).value) {
             EXPECT_LT(std::fabs(value), 1.5) << "seed " << seed;
         }
-        large += most(shared_curve_of(curves, GapDomainKind::rhythm)) > 2.326 ? 1U : 0U;
+        large += most(shared_curve_of(curves, measures::rhythm)) > 2.326 ? 1U : 0U;
     }
     // One of a hundred in each of some seven octaves: six of twelve come once in ten thousand times.
     EXPECT_LE(large, 5U);
@@ -38,8 +38,8 @@ TEST(NoiseLevelCurves, ShowNoiseInBurstsOfOneLength) {
             return factor;
         });
     });
-    const GapCurve& memory = curve_of(curves, GapDomainKind::memory, changed_axis);
-    const GapCurve& quiet = curve_of(curves, GapDomainKind::memory, 1);
+    const GapCurve& memory = curve_of(curves, measures::memory, changed_axis);
+    const GapCurve& quiet = curve_of(curves, measures::memory, 1);
     // Blocks of m samples have 2/m for themselves and 0.3^2 of the bursts.
     const auto at = static_cast<std::size_t>(std::log2(burst));
     EXPECT_NEAR(std::pow(1.0 + memory.value[at], 3.0), 1.0 + 0.09 * burst / (2.0 * 1.135), 0.6);
@@ -62,8 +62,8 @@ TEST(NoiseLevelCurves, ShowBurstsThatAllAxesShare) {
                   },
                   {0, 1, 2});
     const auto at = static_cast<std::size_t>(std::log2(burst));
-    const double alone = curve_of(curves, GapDomainKind::memory, 1).value[at];
-    const double shared = shared_curve_of(curves, GapDomainKind::memory).value[at];
+    const double alone = curve_of(curves, measures::memory, 1).value[at];
+    const double shared = shared_curve_of(curves, measures::memory).value[at];
     EXPECT_NEAR(std::pow(1.0 + shared, 3.0) - 1.0, 3.0 * (0.01 * burst / (2.0 * 1.135)), 1.0);
     EXPECT_GT(shared, 1.5 * alone);
 }
@@ -77,7 +77,7 @@ TEST(NoiseLevelCurves, ShowNoiseThatSwellsEverySoOften) {
                       scale_noise(codes, [&](std::size_t i) { return i % every < length ? 1.06 : 1.0; });
                   },
                   {0, 1, 2});
-    const GapCurve& rhythm = shared_curve_of(curves, GapDomainKind::rhythm);
+    const GapCurve& rhythm = shared_curve_of(curves, measures::rhythm);
     const auto peak = static_cast<std::size_t>(std::ranges::max_element(rhythm.value) - rhythm.value.begin());
     EXPECT_GT(most(rhythm), 5.5);
     EXPECT_NEAR(rhythm.x[peak], static_cast<double>(every) / 100.0, 0.5);

@@ -1,0 +1,74 @@
+#include "analysis/diagnose/measures/amplitude.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "analysis/diagnose/measures/curve_place.hpp"
+#include "analysis/diagnose/measures/shown_values.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr double sigmas[] = {0.5, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0};
+
+GapCurve amplitude_curve(const Observation& observation, std::size_t axis) {
+    GapCurve curve{&measures::amplitude, axis, axis, {std::begin(sigmas), std::end(sigmas)}, {}};
+    std::vector<double> beyond(curve.x.size(), 0.0);
+    double skewness = 0.0;
+    double count = 0.0;
+    const std::vector<float>& white = observation.axis(axis).whitened;
+    // Counted one threshold after the other, with the samples near at hand: no branch depends on their
+    // values.
+    constexpr std::size_t piece = 1024;
+    std::array<float, piece> values{};
+    for (std::size_t first = 0; first < white.size(); first += piece) {
+        std::size_t known = 0;
+        for (std::size_t slot = first; slot < std::min(first + piece, white.size()); ++slot) {
+            values[known] = white[slot];
+            known += std::size_t{observation.present()[slot]};
+        }
+        double cubes = 0.0;
+        for (std::size_t i = 0; i < known; ++i) {
+            const auto value = static_cast<double>(values[i]);
+            cubes += value * value * value;
+        }
+        skewness += cubes;
+        for (std::size_t s = 0; s < beyond.size(); ++s) {
+            const auto least = static_cast<float>(curve.x[s]);
+            int more = 0;
+            for (std::size_t i = 0; i < known; ++i) { more += std::fabs(values[i]) > least ? 1 : 0; }
+            beyond[s] += static_cast<double>(more);
+        }
+        count += static_cast<double>(known);
+    }
+    for (const double number : beyond) { curve.value.push_back(2.0 * std::sqrt(number + 0.375)); }
+    curve.x.push_back(0.0);
+    curve.value.push_back(skewness / std::sqrt(15.0 * std::max(count, 1.0)));
+    return curve;
+}
+
+void locate_amplitudes(const GapCurve& curve, const std::vector<double>& z, Place& where) {
+    where.amplitude_sigma = span_outside(curve, z);
+}
+
+}  // namespace
+
+const Measure measures::amplitude{.name = "tails",
+                                  .x_name = "standard deviations",
+                                  .y_name = "2√count over model",
+                                  .shown_x = as_it_is,
+                                  .shown_y = as_it_is,
+                                  .locate = locate_amplitudes,
+                                  .over_mean = true,
+                                  // One sample further out than any of the simulations' is no wonder.
+                                  .least_sd = 0.5};
+
+void add_amplitude_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
+    if (observation.prediction().world().recording().samples_per_row != 1) { return; }
+    curves.push_back(amplitude_curve(observation, axis));
+}
+
+}  // namespace gyrolog

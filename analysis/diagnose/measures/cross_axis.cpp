@@ -1,0 +1,64 @@
+#include "analysis/diagnose/measures/cross_axis.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/diagnose/measures/curve_place.hpp"
+#include "analysis/diagnose/measures/frequency_bands.hpp"
+#include "analysis/diagnose/measures/shown_values.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+Eigen::Map<const Eigen::ArrayXf> cosines(const AxisObservation& seen) {
+    return {seen.cosines.data(), static_cast<Eigen::Index>(seen.cosines.size())};
+}
+
+GapCurve correlation_curve(const Observation& observation, std::size_t axis, std::size_t other) {
+    const SpectralBins& bins = observation.prediction().bins();
+    const AxisObservation& a = observation.axis(axis);
+    const AxisObservation& b = observation.axis(other);
+    const std::vector<std::size_t> edges = band_edges(bins);
+    GapCurve curve{&measures::cross_axis, axis, other, {}, {}};
+    for (std::size_t band = 0; band + 1 < edges.size(); ++band) {
+        const auto first = static_cast<Eigen::Index>(bins[edges[band]].first);
+        const auto size = static_cast<Eigen::Index>(bins[edges[band + 1] - 1].end) - first;
+        const auto of_a = cosines(a).segment(first, size);
+        const auto of_b = cosines(b).segment(first, size);
+        const auto squares_a = static_cast<double>(of_a.square().sum());
+        const auto squares_b = static_cast<double>(of_b.square().sum());
+        const auto product = static_cast<double>((of_a * of_b).sum());
+        const auto count = static_cast<double>(size);
+        if (count < 8.0) { continue; }
+        curve.x.push_back(std::sqrt(bins[edges[band]].f_hz * bins[edges[band + 1] - 1].f_hz));
+        curve.value.push_back(product / std::sqrt(std::max(squares_a * squares_b, 1e-300)) *
+                              std::sqrt(count));
+    }
+    return curve;
+}
+
+void locate_correlation(const GapCurve& curve, const std::vector<double>& z, Place& where) {
+    where.structure = "cross_axis";
+    where.freq_hz = span_outside(curve, z);
+}
+
+}  // namespace
+
+const Measure measures::cross_axis{.name = "correlation with ",
+                                   .x_name = "frequency (Hz)",
+                                   .y_name = "correlation (its sd)",
+                                   .shown_x = as_it_is,
+                                   .shown_y = as_it_is,
+                                   .locate = locate_correlation,
+                                   .log_x = true,
+                                   .names_other = true};
+
+void add_cross_axis_curves(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
+    for (const std::size_t other : observation.prediction().axes()) {
+        if (other > axis) { curves.push_back(correlation_curve(observation, axis, other)); }
+    }
+}
+
+}  // namespace gyrolog

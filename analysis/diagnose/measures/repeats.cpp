@@ -1,0 +1,78 @@
+#include "analysis/diagnose/measures/repeats.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <variant>
+
+#include "analysis/diagnose/likelihood/repeat_patterns.hpp"
+#include "analysis/diagnose/measures/shown_values.hpp"
+#include "analysis/simulate/effect_axes.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+constexpr std::size_t repeat_lags = 2;
+constexpr std::size_t compared_lags = 4;  // after those
+
+using RepeatCounts = std::array<double, repeat_lags + compared_lags>;  // by lag, from 1 on
+
+RepeatCounts count_repeats(const Recording& recording, std::size_t axis) {
+    std::array<std::size_t, repeat_lags + compared_lags> repeats{};
+    std::visit(
+        [&](const auto& data) {
+            const ValueRange range(data);
+            for (const Segment& segment : recording.segments) {
+                const std::size_t end = segment.first + segment.count;
+                for (std::size_t row = segment.first + 1; row < end; ++row) {
+                    const auto value = data[row];
+                    const bool counts_here = !range.ends_at(value);
+                    const std::size_t lags = std::min(repeats.size(), row - segment.first);
+                    for (std::size_t lag = 1; lag <= lags; ++lag) {
+                        repeats[lag - 1] += std::size_t{counts_here && data[row - lag] == value};
+                    }
+                }
+            }
+        },
+        recording.find(gyro_columns.at(axis))->data);
+    RepeatCounts counts{};
+    std::ranges::copy(repeats, counts.begin());
+    return counts;
+}
+
+GapCurve repeats_curve(const Observation& observation, std::size_t axis) {
+    const RepeatCounts counts = count_repeats(observation.recording(), axis);
+    double compared = 0.0;
+    for (std::size_t lag = repeat_lags; lag < counts.size(); ++lag) {
+        compared += counts[lag] / static_cast<double>(compared_lags);
+    }
+    GapCurve curve{&measures::repeats, axis, axis, {}, {}};
+    for (std::size_t lag = 0; lag < repeat_lags; ++lag) {
+        curve.x.push_back(static_cast<double>(lag + 1) / observation.prediction().rate_hz());
+        const double variance = counts[lag] + compared / static_cast<double>(compared_lags) + 1.0;
+        curve.value.push_back((counts[lag] - compared) / std::sqrt(variance));
+    }
+    return curve;
+}
+
+void locate_repeats(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& where) {
+    where.structure = "duplicated_samples";
+}
+
+}  // namespace
+
+const Measure measures::repeats{.name = "repeated samples",
+                                .x_name = "lag (s)",
+                                .y_name = "excess (its sd)",
+                                .shown_x = as_it_is,
+                                .shown_y = as_it_is,
+                                .locate = locate_repeats,
+                                .least_sd = 1.0};
+
+void add_repeats_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
+    if (observation.prediction().world().recording().samples_per_row != 1) { return; }
+    curves.push_back(repeats_curve(observation, axis));
+}
+
+}  // namespace gyrolog
