@@ -7,6 +7,7 @@
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
+#include "analysis/diagnose/likelihood/whittle.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog {
@@ -19,15 +20,6 @@ constexpr double worth_refining_nats = 1.0;
 // Parameters may leave their plausible range by this factor.
 constexpr double beyond_plausible = 3.0;
 constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
-
-double log_likelihood(const SpectralBins& bins, std::span<const double> power,
-                      std::span<const double> density) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-        sum -= 0.5 * bins[i].count() * (std::log(density[i]) + power[i] / density[i]);
-    }
-    return sum;
-}
 
 class NoiseSpectrumEstimator final : public Estimator {
 public:
@@ -94,9 +86,9 @@ private:
         expected_density(parts, sd_rel, seen.noise.z, density);
         double prior = 0.0;
         for (const double z : seen.noise.z) { prior += 0.5 * z * z; }
-        const double kept = log_likelihood(prediction_->bins(), seen.power, density) - prior;
+        const double kept = whittle_log_likelihood_nats(prediction_->bins(), seen.power, density) - prior;
         expected_density(parts, sd_rel, {}, density);
-        const double plain = log_likelihood(prediction_->bins(), seen.power, density);
+        const double plain = whittle_log_likelihood_nats(prediction_->bins(), seen.power, density);
         return std::max(kept, plain) - seen.noise.log_likelihood_nats;
     }
 

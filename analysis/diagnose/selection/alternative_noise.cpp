@@ -1,6 +1,6 @@
 #include "analysis/diagnose/selection/alternative_noise.hpp"
 
-#include <cmath>
+#include "analysis/diagnose/likelihood/whittle.hpp"
 
 namespace gyrolog {
 
@@ -12,11 +12,7 @@ AlternativeNoise alternative_noise(const Observation& without, const Observation
     noise.density.resize(bins.size());
     expected_density(prediction.parts(axis), noise_uncertainty(prediction.model(), axis),
                      with.axis(axis).noise.z, noise.density);
-    double log_likelihood_nats = 0.0;
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-        log_likelihood_nats -=
-            0.5 * bins[i].count() * (std::log(noise.density[i]) + seen.power[i] / noise.density[i]);
-    }
+    double log_likelihood_nats = whittle_log_likelihood_nats(bins, seen.power, noise.density);
     for (const double z : with.axis(axis).noise.z) { log_likelihood_nats -= 0.5 * z * z; }
     noise.lost_nats = seen.noise.log_likelihood_nats - log_likelihood_nats;
     return noise;
