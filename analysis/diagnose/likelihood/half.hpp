@@ -1,7 +1,7 @@
-// Halves of a recording that have nothing in common, so that what is fitted to one can be judged by the
-// other. For whatever is read from frequencies every other pair of cosine coefficients, for whatever is read
-// from single samples every other one of as many equal parts of the time: both sorts are independent where
-// the model of the noise is right.
+// Two halves of a recording have nothing in common, so that what is fitted to one can be judged by the other.
+// What is read from frequencies takes every other pair of cosine coefficients; what is read from single
+// samples takes every other one of as many equal parts of the time. Both sorts are independent where the
+// model of the noise is right.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@ enum class Half { both, first, second };
 
 inline constexpr std::size_t half_parts = 64;  // of the time, in turns
 
-// Pairs: of a ramp, and of whatever else is odd about the middle, only odd coefficients are not zero.
+// Coefficients go in pairs: of a ramp, and of whatever else is odd about the middle, only odd coefficients
+// are not zero.
 constexpr bool has_coefficient(Half half, std::size_t k) {
     return half == Half::both || ((k / 2) % 2 == 0) == (half == Half::first);
 }

@@ -1,7 +1,7 @@
-// When the samples of a moving sensor were really taken, as far as the motion tells: by how many sample
-// periods what they show runs ahead of their stamps. In windows of a second, the misfit of the recording to
-// the model's answer is taken at whole lags about a course that is followed through the record. The noise
-// counts as white, with a constant in each window that is as large as the drift.
+// The lag course tells when the samples of a moving sensor were really taken, as far as the motion tells: by
+// how many sample periods what they show runs ahead of their stamps. In windows of a second, the misfit of
+// the recording to the model's answer is taken at whole lags about a course that is followed through the
+// record. The noise counts as white, with a constant in each window that is as large as the drift.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +28,9 @@ public:
     // `recording` covers the grid of `prediction`, which moves.
     LagCourse(const Prediction& prediction, const Recording& recording);
 
-    // The steady slope that fits best.
+    // The slope is the steady one that fits best.
     LagSlope slope() const;
-    // The fewest steps, each paying for the freedom of its place and size.
+    // The steps are the fewest that pay for the freedom of their places and sizes.
     std::vector<LagStep> steps() const;
 
 private:

@@ -1,5 +1,5 @@
-// Generalised least squares of responses in the cosine coefficients of one axis, with the model's uncertain
-// responses (Prediction::uncertain) projected out within their prior.
+// The mean regression is generalised least squares of responses in the cosine coefficients of one axis. The
+// model's uncertain responses (Prediction::uncertain) are projected out within their prior.
 #pragma once
 
 #include <span>
@@ -11,30 +11,31 @@
 
 namespace gyrolog {
 
-// Of c in Y = sum c_j G_j + noise: the log likelihood gains b'c - 1/2 c'A c, most at A c = b. The parameters
-// of the uncertain responses move by give + shift c.
+// The normal equations are those of c in Y = sum_j c_j G_j + noise. The log likelihood gains b'c - 1/2 c'A c,
+// in nats, and gains most at A c = b. The parameters of the uncertain responses move by give + shift c.
 struct NormalEquations {
     Matrix A;
     std::vector<double> b;
     Matrix shift;              // a row for each uncertain parameter; empty where the model is certain
     std::vector<double> give;  // by uncertain parameter
 
-    // Of other data on the same c; shift and give stay.
+    // The function adds other data on the same c; shift and give stay.
     void add(const NormalEquations& other);
-    // Most likely c. A direction of which the data know nothing stays at zero.
+    // The most likely c. A direction of which the data know nothing stays at zero.
     std::vector<double> solution() const;
-    // Standard deviations of c; 0 in a direction of which the data know nothing.
+    // The standard deviations of c; 0 in a direction of which the data know nothing.
     std::vector<double> sd() const;
     double gain_nats(std::span<const double> c) const;
-    // By uncertain parameter.
+    // How far the uncertain parameters move, one by one.
     std::vector<double> moved(std::span<const double> c) const;
 };
 
-// Responses on one axis, and what every regression on them needs.
+// Mean responses are the responses on one axis, and what every regression on them needs.
 class MeanResponses {
 public:
     MeanResponses() = default;
-    // Cosine coefficients by response. Beyond the last that weighs anything under the model they are cut off.
+    // `cosines`: coefficients by response. Beyond the last that weighs anything under the model they are cut
+    // off.
     MeanResponses(const Prediction& prediction, std::size_t axis, std::vector<std::vector<float>> cosines);
 
     std::size_t size() const { return cosines_.size(); }
@@ -55,11 +56,11 @@ public:
     // The arguments outlive it.
     MeanRegression(const Observation& observation, std::size_t axis, const MeanResponses& responses);
 
-    // Under `density` by bin.
+    // The equations where the noise has `density`, by bin, two-sided, (rad/s)^2/Hz.
     NormalEquations equations(std::span<const double> density) const;
 
-    // What fitting c leaves: power by bin, and what the prior of the uncertain responses charges for giving
-    // way.
+    // The rest is what fitting c leaves: power by bin, and what the prior of the uncertain responses charges
+    // for giving way.
     struct Rest {
         std::vector<double> power;
         double charge_nats = 0.0;

@@ -1,5 +1,5 @@
-// The model's noise coefficients, free within their stated uncertainty, under the Whittle likelihood of
-// binned cosine coefficients:
+// The noise nuisance is the model's noise coefficients N, B and K, free within their stated uncertainty under
+// Whittle's likelihood of binned cosine coefficients (whittle.hpp):
 //   -1/2 sum_bins n (ln S + P / S) - 1/2 sum z^2,    coefficient = stated (1 + sd_rel z)
 #pragma once
 
@@ -21,14 +21,16 @@ struct NoiseNuisance {
     double log_likelihood_nats = 0.0;  // with the prior's -z^2 / 2, without constants
 };
 
-// Relative standard deviations of N, B, K of an axis; 0 where the model states none.
+// The function returns the relative standard deviations of N, B and K of an axis; 0 where the model states
+// none.
 std::array<double, 3> noise_uncertainty(const SensorModel& model, std::size_t axis);
 
-// Density by bin of parts whose N, B and K are off by z.
+// The function fills `density`, by bin, with the sum of the parts whose N, B and K are off by z.
 void expected_density(std::span<const SpectralParts> parts, const std::array<double, 3>& sd_rel,
                       const std::array<double, 3>& z, std::span<double> density);
 
-// `power`: by bin, as density. `start`: where to begin.
+// The function finds the most likely z by Fisher scoring. `power`: by bin, a density as `parts` have it.
+// `start`: where to begin.
 NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralParts> parts,
                            std::span<const double> power, const std::array<double, 3>& sd_rel,
                            const NoiseNuisance& start = {});

@@ -1,5 +1,5 @@
-// One recording, real or simulated, against a prediction: what is left of it when the model's noise-free
-// answer is taken off, in the form that likelihoods need.
+// An observation is one recording, real or simulated, against a prediction: what is left of it when the
+// model's noise-free answer is taken off, in the form that likelihoods need.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ namespace gyrolog {
 class CosineTransform;
 
 struct AxisObservation {
-    // By slot, about its mean. Slots without a sample hold a straight line between their neighbours plus
-    // white noise of the model's level, so that the power there is what it is elsewhere.
+    // The residual by slot, about its mean. Slots without a sample hold a straight line between their
+    // neighbours plus white noise of the model's level, so that the power there is what it is elsewhere.
     std::vector<float> residual_rad_s;
     std::vector<float> cosines;               // DCT-II of the residual, Y_0 = 0; rad/s
     double mean_rad_s = 0.0;                  // that was taken off
@@ -26,25 +26,25 @@ struct AxisObservation {
     std::vector<double> power;    // by bin: mean square of the coefficients, over the rate: a density
     NoiseNuisance noise;          // the model's coefficients, fitted within their uncertainty
     std::vector<double> density;  // by bin: expected under `noise`
-    // By slot: the inverse transform of Y_k / sqrt(density rate); standard normal and independent where the
-    // model is right.
+    // The whitened samples by slot, the inverse transform of Y_k / sqrt(S rate): standard normal and
+    // independent where the model is right.
     std::vector<float> whitened;
 };
 
 class Observation {
 public:
-    // Where the reference's noise comes from that is in every sample's expectation: from the recording, or,
-    // for what was simulated in the denoised world, from `seed`.
+    // Every sample's expectation has the reference's noise in it: as it was recorded, or, of what was
+    // simulated in the denoised world, drawn from `seed`.
     enum class ReferenceNoise { recorded, drawn };
 
-    // `recording` covers the prediction's grid (it, or a simulation like it). `seed` for what stands in
-    // holes.
+    // `recording` covers the prediction's grid: it is the prediction's own or a simulation like it. `seed`
+    // draws what stands in holes.
     Observation(std::shared_ptr<const Prediction> prediction, std::shared_ptr<const Recording> recording,
                 std::uint64_t seed, ReferenceNoise reference_noise = ReferenceNoise::recorded);
 
     const Prediction& prediction() const { return *prediction_; }
     const Recording& recording() const { return *recording_; }
-    // Of an axis that the prediction has.
+    // `axis` is one that the prediction has.
     const AxisObservation& axis(std::size_t axis) const { return axes_[axis]; }
     // By slot: a sample was there, is to be judged and belongs to the prediction's half.
     const std::vector<bool>& present() const { return present_; }
@@ -62,9 +62,11 @@ private:
     std::array<AxisObservation, 3> axes_;
 };
 
-// Of the spectra, with the priors of all that was fitted.
+// The function returns Whittle's log-likelihood, summed over the axes, with the priors of all that was
+// fitted, in nats and without constants.
 double log_likelihood_nats(const Observation& observation);
-// What the priors of the model's uncertain responses charge for the values they were fitted at.
+// The function returns what the priors of the model's uncertain responses charge for the values they were
+// fitted at.
 double uncertain_charge_nats(const Observation& observation, std::size_t axis);
 
 }  // namespace gyrolog

@@ -1,4 +1,5 @@
-// When a line that a model has swings in a recording.
+// An observed line is a line of the model as the recording has it: what swings had another phase at another
+// first sample.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +15,9 @@ struct ObservedLine {
     double share = 0.0;  // of the amplitude that the line has, 0 where it is not in the recording
 };
 
-// Of `line`, an entry of the prediction's model whose effect has EvidenceMethod::line, what fits the
-// recording best: the model's answer to it is linear in the cosine and the sine of its phase. `seed` for what
-// stands in holes.
+// The function fits `line`, an entry of the prediction's model whose effect is a line, to the recording by
+// least squares: the model's answer to it is linear in the cosine and the sine of its phase. `seed` draws
+// what stands in holes.
 ObservedLine observe_line(const Prediction& prediction, const std::shared_ptr<const Recording>& recording,
                           const EffectModel& line, std::uint64_t seed);
 

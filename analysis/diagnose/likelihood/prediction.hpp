@@ -1,6 +1,6 @@
-// What the likelihood of a recording under one model needs apart from its noise: the grid of samples, what
-// the world did, the model's noise-free answer to it and its expected spectrum. Simulations of the recording
-// share it.
+// A prediction is what the likelihood of a recording under one model needs apart from its noise: the grid of
+// samples, what the world did, the model's noise-free answer to it and its expected spectrum. Simulations of
+// the recording share it.
 #pragma once
 
 #include <array>
@@ -21,11 +21,11 @@
 namespace gyrolog {
 
 inline constexpr std::size_t diagnosable_samples_min = 2048;
-// 24 h at 100 Hz; several copies of each axis are held at once. Of longer ones: long_diagnosis.hpp.
+// 24 h at 100 Hz; several copies of each axis are held at once. Longer ones: multiscale/long_diagnosis.hpp.
 inline constexpr std::size_t diagnosable_samples_max = 9'000'000;
 
-// Why a recording cannot be diagnosed: no axis x, y or z, counts without a scale, too short, more holes than
-// samples. Empty when it can.
+// The function says why a recording cannot be diagnosed: no axis x, y or z, counts without a scale, too
+// short, more holes than samples. It returns nothing where the recording can.
 std::optional<std::string> diagnosis_refusal(const Recording& recording);
 
 class Prediction {
@@ -37,18 +37,18 @@ public:
     std::shared_ptr<const RecordedWorld> shared_world() const { return world_; }
     const SensorModel& model() const { return model_; }
     double rate_hz() const { return rate_hz_; }
-    // Slots of the grid from the first sample that are looked at: fast_length() of all.
+    // The number of slots of the grid, from the first sample on, that are judged: fast_length() of all.
     std::size_t length() const { return length_; }
     double duration_s() const { return static_cast<double>(length_) / rate_hz_; }
-    // Of the recording: what its bins and observations keep to.
+    // The half of the recording that bins and observations keep to.
     Half half() const { return half_; }
     const std::vector<std::size_t>& axes() const { return axes_; }  // that the recording has
     bool moves() const { return world_->has_reference(); }
 
-    // By slot; empty without a thermometer.
+    // The temperature by slot; empty without a thermometer.
     const std::vector<float>& temperature_C() const { return temperature_C_; }
     // The model's answer to the denoised world without noise and quantisation, by slot, and what the
-    // reference's noise as it was recorded makes of it; empty for an axis the recording lacks.
+    // reference's noise as it was recorded makes of it; empty for an axis that the recording lacks.
     const std::vector<float>& response_rad_s(std::size_t axis) const { return response_rad_s_[axis]; }
 
     // In a moving world, by slot: the denoised world's rate as the model times it, about the sensor's axes,
@@ -57,11 +57,11 @@ public:
     const std::vector<float>& response_change_rad_s2(std::size_t axis) const {
         return response_change_rad_s2_[axis];
     }
-    // The same world with the reference's noise filtered out as far as its spectrum allows: what a model
-    // misses of the motion is a function of the true rate, not of the noise. The world itself where nothing
-    // moves.
+    // The same world with the reference's noise filtered out as far as its spectrum allows
+    // (denoised_reference.hpp): what a model misses of the motion is a function of the true rate, not of the
+    // noise. It is the world itself where nothing moves.
     std::shared_ptr<const RecordedWorld> denoised_world() const { return shared_->denoised_world; }
-    // The model's answer to it.
+    // The model's answer to the denoised world, by slot.
     const std::vector<float>& denoised_response_rad_s(std::size_t axis) const {
         return denoised_response_rad_s_[axis];
     }
@@ -71,20 +71,20 @@ public:
 
     const SpectralBins& bins() const { return bins_; }
     const std::vector<double>& bin_frequencies_hz() const { return f_hz_; }
-    // Two-sided densities at the bins' middles under the model, rate's unit squared per Hz.
+    // The two-sided densities at the bins' middles under the model, in (rad/s)^2/Hz.
     const std::vector<SpectralParts>& parts(std::size_t axis) const { return parts_[axis]; }
 
-    // By slot, the variance of the white noise as a multiple of its mean over the record; empty where the
+    // The variance of the white noise by slot, as a multiple of its mean over the record; empty where the
     // model has it constant.
     const std::vector<float>& white_course(std::size_t axis) const { return white_course_[axis]; }
 
-    // The same world, another model.
+    // The prediction of another model for the same world.
     std::shared_ptr<const Prediction> with(const SensorModel& model) const;
-    // The same world and model.
+    // The prediction of one half for the same world and model.
     std::shared_ptr<const Prediction> of_half(Half half) const;
-    // Shared by all predictions that come from one.
+    // The memory is shared by all predictions that come from one.
     ResponseMemory& memory() const { return shared_->responses; }
-    // Of length() values.
+    // A transform of length() values.
     TransformPool::Lease transform() const { return shared_->transforms.lease(); }
 
 private:

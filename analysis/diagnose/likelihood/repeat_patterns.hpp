@@ -1,9 +1,9 @@
-// Which quantities of a sample repeat those of the sample before, counted by pattern: bit c of a pattern is
+// Repeat patterns tell which quantities of a sample repeat those of the sample before: bit c of a pattern is
 // set where quantity c repeats.
 //
-// Model: a share eps of the samples repeats in all quantities of a set at once; apart from that, each
-// quantity repeats by chance, independently of the others, at a rate of its own in every block of time (a
-// rounded value repeats the more often, the less it moves).
+// The model: a share eps of the samples repeats in all quantities of a set at once. Apart from that, each
+// quantity repeats by chance, independently of the others, at a rate of its own in every block of time: a
+// rounded value repeats the more often, the less it moves.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,8 @@ inline constexpr std::size_t repeat_patterns = 1U << repeat_quantities_max;
 
 using PatternCounts = std::array<double, repeat_patterns>;
 
-// Clipped samples are equal, too: at its ends a quantity repeats because it goes no further.
+// A range knows a quantity's ends. Clipped samples are equal, too: at its ends a quantity repeats because it
+// goes no further.
 template <typename Value>
 class ValueRange {
 public:
@@ -34,13 +35,13 @@ private:
     Value highest_;
 };
 
-// Rows whose `lag`-th before belongs to the same segment, by pattern, in `blocks` equal blocks of rows. A
-// quantity's lowest and highest value count as no repeats.
+// The function counts the rows whose `lag`-th before belongs to the same segment, by pattern, in `blocks`
+// equal blocks of rows. A quantity's lowest and highest value count as no repeats.
 std::vector<PatternCounts> count_patterns(const Recording& recording,
                                           const std::vector<const Column*>& quantities, std::size_t lag,
                                           std::size_t blocks);
 
-// Of all patterns that contain `set`, and of all there are.
+// The number of all patterns that contain `set`, and of all there are.
 double count_containing(const PatternCounts& counts, std::size_t set);
 double count_all(const PatternCounts& counts);
 
@@ -49,8 +50,8 @@ struct RepeatFit {
     double log_likelihood_nats = 0.0;
 };
 
-// The most likely chance rates for a given eps, and the most likely eps; `set` has two quantities or more
-// (eps and the chance of a single one cannot be told apart). By expectation maximisation.
+// The functions find the most likely chance rates for a given eps, and the most likely eps, by expectation
+// maximisation. `set` has two quantities or more: eps and the chance of a single one cannot be told apart.
 RepeatFit fit_chance(const std::vector<PatternCounts>& blocks, std::size_t quantities, std::size_t set,
                      double eps);
 RepeatFit fit_repeats(const std::vector<PatternCounts>& blocks, std::size_t quantities, std::size_t set);

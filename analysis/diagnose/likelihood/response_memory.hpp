@@ -1,4 +1,4 @@
-// Responses that were simulated once for a world, for whoever needs them again.
+// The response memory keeps responses that were simulated once for a world, for whoever needs them again.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ public:
     using Key = std::pair<std::string, std::map<std::string, double>>;
     using Response = std::array<std::vector<float>, 3>;
 
-    // What is known under `key`, or what `simulate` gives. Any threads.
+    // The function returns what is known under `key`, or what `simulate` gives. Any thread may call it.
     Response recall(const Key& key, const std::function<Response()>& simulate);
 
 private:

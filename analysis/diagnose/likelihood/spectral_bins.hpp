@@ -1,4 +1,4 @@
-// The cosine coefficients of a record gathered by frequency.
+// Spectral bins gather the cosine coefficients of a record by frequency.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace gyrolog {
 
-// Coefficients first ... end - 1, those of them that the half has; one each at low frequencies, then a share
-// of an octave.
+// A bin holds the coefficients first ... end - 1, those of them that the half has. At low frequencies it
+// holds one, then a share of an octave.
 struct SpectralBin {
     std::size_t first = 1;
     std::size_t end = 2;
@@ -22,7 +22,7 @@ struct SpectralBin {
 };
 using SpectralBins = std::vector<SpectralBin>;
 
-// None is empty.
+// The function returns the bins of a record of `length` samples. None is empty.
 SpectralBins spectral_bins(std::size_t length, double rate_hz, Half half = Half::both);
 
 }  // namespace gyrolog

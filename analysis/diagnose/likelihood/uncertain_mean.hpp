@@ -1,5 +1,5 @@
-// Directions in which a model's noise-free answer is uncertain by its own statement: gains of M, the latency,
-// the clock.
+// The uncertain mean is the directions in which a model's noise-free answer is uncertain by its own
+// statement: the gains of M, the latency, the clock.
 #pragma once
 
 #include <span>
@@ -24,18 +24,19 @@ public:
     std::size_t size() const { return responses_.size(); }
     const UncertainResponse& operator[](std::size_t u) const { return responses_[u]; }
 
-    // sum over a bin of the products of two responses.
+    // The sums over each bin of the products of two responses.
     const BinSums& products(std::size_t u, std::size_t v) const;
-    // Of each response with other coefficients.
+    // The same of each response with other coefficients.
     std::vector<BinSums> products_with(const SpectralBins& bins, std::span<const float> cosines) const;
 
-    // Information matrix of the parameters, with their prior, where each bin's coefficients weigh so much.
+    // The information matrix of the parameters, with their prior, where each bin's coefficients weigh so
+    // much.
     Matrix information(const BinSums& weights) const;
-    // Gradient of the log posterior at the parameters `at`, where what is left of the coefficients has these
-    // products with the responses.
+    // The gradient of the log posterior at the parameters `at`, where what is left of the coefficients has
+    // these products with the responses.
     std::vector<double> pull(const BinSums& weights, std::span<const BinSums> products,
                              std::span<const double> at) const;
-    // information^-1 pull: how far the parameters move to their most likely values.
+    // The Newton step information^-1 pull: how far the parameters move to their most likely values.
     std::vector<double> step(const BinSums& weights, std::span<const BinSums> products,
                              std::span<const double> at) const;
 

@@ -1,6 +1,7 @@
-// How the white noise's level goes with something: the likelihood of block variances.
+// The variance fit tells how the white noise's level goes with something, by the likelihood of block
+// variances.
 //
-// Of normal samples a block's variance v with n degrees of freedom has the log-likelihood
+// A block's variance v of normal samples, with n degrees of freedom, has the log-likelihood
 //   -n/2 (ln s + v / s),    s = s0 h,   h = 1 - share + share g^2
 // with g the factor on the white noise's standard deviation and s0 free: the level itself is no evidence.
 #pragma once
@@ -13,7 +14,7 @@
 
 namespace gyrolog {
 
-// Blocks joined to fewer.
+// The function joins neighbouring blocks to no more than `at_most`.
 WhitenedBlocks joined(const WhitenedBlocks& blocks, std::size_t at_most);
 
 // By how much the variances `level`, up to a common factor, fit better than a constant.
@@ -26,7 +27,7 @@ double unit_level(const WhitenedBlocks& blocks, std::span<const double> level);
 // else 1. A gain is worth so many times less.
 double overdispersion(const WhitenedBlocks& blocks, std::span<const double> level);
 
-// Degrees of freedom of Student's t that the samples have when each is divided by the level of the blocks
+// The degrees of freedom of Student's t that the samples have when each is divided by the level of the blocks
 // around it; infinity where they are as good as normal. What the model says stays.
 double tails_beside(const WhitenedBlocks& blocks, const Observation& observation, std::size_t axis,
                     double model_nu);

@@ -1,4 +1,4 @@
-// How the white noise of an axis is distributed by the prediction's model.
+// The white distribution is that of an axis' white noise by the prediction's model.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace gyrolog {
 
-// Degrees of freedom of Student's t; infinity: normal. Of several entries the last one rules, as it does in
-// the simulator.
+// The degrees of freedom of Student's t; infinity: normal. Of several entries the last one rules, as it does
+// in the simulator.
 double white_degrees_of_freedom(const Prediction& prediction, std::size_t axis);
 
-// Of a whitened sample whose white noise has `nu` degrees of freedom.
+// The distribution of a whitened sample whose white noise has `nu` degrees of freedom.
 NormalMixture whitened_mixture(const Prediction& prediction, std::size_t axis, double nu);
 
 struct ScaledFit {
@@ -21,7 +21,7 @@ struct ScaledFit {
     double scale = 1.0;
 };
 
-// The scale at which the samples fit the distribution best. `start`: where to begin.
+// The function finds the scale at which the samples fit the distribution best. `start`: where to begin.
 ScaledFit fit_scale(const WhitenedHistogram& histogram, const LogDensityTable& log_density, double start);
 
 }  // namespace gyrolog

@@ -1,5 +1,5 @@
-// What part of an axis' whitened samples is the sensor's white noise. Effects on the white noise act on that
-// part alone.
+// The white share is the part of an axis' whitened samples that is the sensor's white noise. Effects on the
+// white noise act on that part alone.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@ namespace gyrolog {
 
 struct WhiteShare {
     double variance = 1.0;  // of a whitened sample's
-    // Of a whitened sample, its own instant's white noise: what is left are other instants' and other noise.
+    // The variance of the white noise of a whitened sample's own instant; the rest is of other instants and
+    // other noise.
     double own_variance = 1.0;
     double lattice = 0.0;  // the model's converter step in the unit of whitened samples
 };
