@@ -1,4 +1,5 @@
-// The chance that simulations of a model have as much evidence against it as a recording.
+// The evidence tail is the chance that simulations of a model have as much evidence against it as a
+// recording.
 #pragma once
 
 #include <vector>
@@ -7,14 +8,14 @@ namespace gyrolog {
 
 class EvidenceTail {
 public:
-    // Of at least twenty simulations.
+    // `simulated_nats`: of at least twenty simulations.
     explicit EvidenceTail(std::vector<double> simulated_nats);
 
-    // Within the simulations by rank, (1 + number as large) / (1 + number); beyond their largest tenth by an
-    // exponential tail fitted to it, which falls no faster than exp(-nats), as the tail of log likelihood
+    // The chance is, within the simulations, (1 + number as large) / (1 + number); beyond their largest tenth
+    // an exponential tail fitted to it, which falls no faster than exp(-nats), as the tail of log likelihood
     // ratios does (S. S. Wilks, Ann. Math. Statist. 9 (1938) 60).
     double probability(double nats) const;
-    // With probability() = p.
+    // The evidence with probability() = p.
     double threshold_nats(double p) const;
 
 private:

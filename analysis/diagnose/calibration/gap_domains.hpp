@@ -1,4 +1,4 @@
-// Gap curves for the eye: in units that people use, with the band that simulations fill.
+// Gap domains are gap curves for the eye: in units that people use, with the band that simulations fill.
 #pragma once
 
 #include <vector>
@@ -8,14 +8,15 @@
 
 namespace gyrolog {
 
-// Curves of one observation with their reference.
+// The curves of one observation with their reference.
 struct MeasuredGap {
     const std::vector<GapCurve>& curves;
     const GapReference& reference;
 };
 
-// `after`: null where the model was not changed. The corrected model leaves another residual of the same
-// recording: its band is drawn where it lies as seen from the recording.
+// The function makes a domain of each curve. `after` is null where the model was not changed. The corrected
+// model leaves another residual of the same recording: its band is drawn where it lies as seen from the
+// recording. `band_probability`: of a simulation's point to lie in the band.
 std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap* after,
                                    double band_probability);
 

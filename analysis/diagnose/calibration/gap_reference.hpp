@@ -1,4 +1,5 @@
-// Gap curves of a recording against those of simulations.
+// The gap reference is what simulations give for every number of every curve. It tells how far a recording's
+// curves are off, and how rarely chance has it so.
 #pragma once
 
 #include <cstddef>
@@ -9,22 +10,21 @@
 
 namespace gyrolog {
 
-// What simulations give for every number of every curve.
 struct GapReference {
     std::vector<std::vector<double>> mean;  // by curve, by point
     std::vector<std::vector<double>> sd;
-    // By curve, by window over neighbouring points: of the sum of their z.
+    // By curve, by window over neighbouring points: the standard deviation of the sum of their z.
     std::vector<std::vector<double>> window_sd;
     std::vector<double> rms_scale;  // by curve: root mean square, over simulations, of their own rms z
-    // By curve: mean and variance of the sum of z^2 over the simulations.
+    // By curve: mean and variance, over the simulations, of the sum of z^2.
     std::vector<double> square_mean, square_variance;
     double degrees_of_freedom = 0.0;  // of every sd
 };
 
 using SimulatedCurves = std::vector<std::vector<GapCurve>>;  // by simulation
 
-// `simulations`: at least ten, all from one prediction; the one at `left_out`, if there is one, has no part
-// in it.
+// `simulations` are at least ten, all from one prediction. The one at `left_out`, if there is one, has no
+// part in the reference.
 GapReference gap_reference(const SimulatedCurves& simulations,
                            std::optional<std::size_t> left_out = std::nullopt);
 
@@ -34,7 +34,8 @@ struct CurveDistance {
     std::vector<double> window_z;
     double squares = 0.0;  // sum of z^2
     // -ln of the probability that a simulation's curve is as far off in sum, or at one point, or over some
-    // neighbouring points together; the largest.
+    // neighbouring points together; the largest. A point is judged by Student's t, the sum by a gamma
+    // distribution with the simulations' mean and variance.
     double surprise_nats = 0.0;
 };
 
@@ -43,12 +44,13 @@ CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::
 // With as many curves as there are, one or another reaches some 7 nats by chance.
 inline constexpr double stands_out_nats = 7.0;
 
-// By curve of one observation: its own surprise; where no axis stands out by itself, that of all axes' curves
-// of the measure together if that is larger.
+// By curve of one observation: its own surprise or, where no axis stands out by itself, that of all axes'
+// curves of the measure together if that is larger.
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
-// The largest of all, of single curves and of axes together.
+// The largest of all surprises, of single curves and of axes together.
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
-// Of every simulation against all the others: a new recording is not in its own reference either.
+// The worst surprise of every simulation against all the others: a new recording is not in its own reference
+// either.
 std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations);
 
 }  // namespace gyrolog

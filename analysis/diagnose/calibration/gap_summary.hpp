@@ -1,4 +1,4 @@
-// Gap curves summed up: how far, and where.
+// The gap summary tells how far the curves are off, and where.
 #pragma once
 
 #include <vector>
@@ -13,6 +13,8 @@ struct GapSummary {
     Place where;  // of that curve
 };
 
+// The gap is the distance of the curve that surprises most, with its 95 % interval: that of the root of a
+// noncentral chi-square with as many degrees of freedom as the curve has points.
 GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& reference);
 
 }  // namespace gyrolog

@@ -1,4 +1,5 @@
-// What a recording would look like by chance: simulations of a model, like it in everything but the noise.
+// Null simulations are what a recording would look like by chance: simulations of a model, like it in
+// everything but the noise.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +15,14 @@ namespace gyrolog {
 
 struct NullSimulations {
     std::vector<std::vector<GapCurve>> curves;  // by simulation
-    // By simulation, by entry of the catalogue; empty unless asked for. Where an effect has no trace,
+    // By simulation, by entry of the catalogue; empty unless asked for. An effect without a trace has
     // no_evidence_nats.
     std::vector<std::vector<double>> evidence_nats;
 };
 
 inline constexpr double no_evidence_nats = -50.0;
 
-// By simulation: of the effect that has the most.
+// By simulation: the evidence of the effect that has the most.
 std::vector<double> best_evidence_nats(const NullSimulations& null);
 
 struct NullSimulationOptions {
@@ -29,14 +30,14 @@ struct NullSimulationOptions {
     std::uint64_t seed = 1;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // with the share that is done; false ends the work
-    // Where the sensor moves, each with its reference measured anew and looked at like the recording's: what
-    // the reference's noise does at a dead zone's edge no likelihood knows. Several times as slow; curves
-    // only.
+    // Each simulation of a sensor that moves has its reference measured anew and is judged like the
+    // recording: what the reference's noise does at a dead zone's edge no likelihood knows. It is several
+    // times as slow, and gives curves only.
     bool measure_anew = false;
 };
 
-// Sensors are drawn within the model's stated uncertainty. `catalogue`: of the same prediction, or null where
-// only curves are wanted. No value when ended early.
+// The function draws sensors within the model's stated uncertainty. `catalogue` is that of the same
+// prediction, or null where only curves are wanted. It returns no value when ended early.
 std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Prediction>& prediction,
                                              const std::vector<CatalogueEntry>* catalogue,
                                              const NullSimulationOptions& options);

@@ -1,4 +1,4 @@
-// Recordings of sensors drawn from what a model leaves open, like one that is looked at.
+// Replicates are recordings of sensors drawn from what a model leaves open, like one that is judged.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,16 @@
 
 namespace gyrolog {
 
-// Like the prediction's in everything but the gyros: its stamps, its temperature, and its denoised world for
-// the motion, as it was measured without noise.
+// The replicate is like the prediction's recording in everything but the gyros: its stamps, its temperature,
+// and its denoised world for the motion, as it was measured without noise.
 Recording replicate_recording(const Prediction& prediction, const SensorModel& model, std::uint64_t seed);
 
-// The columns of what is taken for the truth, the reference rate and the specific force, as `model` measures
-// them: with noise anew.
+// The function replaces the columns of what is taken for the truth, the reference rate and the specific
+// force, as `model` measures them: with noise anew.
 Recording measured_anew(Recording recording, const SensorModel& model, std::uint64_t seed);
 
-// Not where the reference is an orientation, whose noise no model states, nor, for the memory that a world of
-// their own takes, of more than a million samples.
+// A reference orientation cannot: no model states its noise. Nor can more than a million samples, for the
+// memory that a world of their own takes.
 bool can_be_measured_anew(const Recording& recording);
 
 struct ReplicateOptions {
@@ -29,7 +29,8 @@ struct ReplicateOptions {
     std::function<bool(double)> on_progress{};  // with the share that is done; false ends the work
 };
 
-// Calls task(i, seed) for each i below the count, as parallel_for() does. False when ended early.
+// The function calls task(i, seed) for each i below the count, as parallel_for() does. It returns false when
+// ended early.
 bool for_each_replicate(const ReplicateOptions& options,
                         const std::function<void(std::size_t i, std::uint64_t seed)>& task);
 

@@ -1,4 +1,5 @@
-// Whether causes that were fitted to one half of a recording are right for the other.
+// Split-half validation tells whether causes that were fitted to one half of a recording are right for the
+// other.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +13,9 @@ namespace gyrolog {
 class Prediction;
 struct Recording;
 
-// `causes` are fitted anew to either half, from nothing, with each other in the model; with what came of it
-// in the model, the other half is asked how much more of the same effect it calls for. `prediction` has none
-// of the causes.
+// The function fits `causes` anew to either half, from nothing, with each other in the model. With what came
+// of it in the model, it asks the other half how much more of the same effect it calls for. `prediction` has
+// none of the causes.
 SplitHalfResult validate_by_halves(const std::shared_ptr<const Prediction>& prediction,
                                    const std::shared_ptr<const Recording>& recording,
                                    const std::vector<Finding>& causes, std::uint64_t seed, unsigned threads);

@@ -1,4 +1,5 @@
-// One effect's fits to single axes and to all together, and which of them the data call for.
+// Axis fits are one effect's fits to single axes and to all together; best_of() tells which of them the data
+// call for.
 #pragma once
 
 #include <map>
@@ -11,7 +12,7 @@
 
 namespace gyrolog {
 
-// Parameters for some axes alike.
+// A fit whose parameters hold for some axes alike.
 struct AxesFit {
     std::vector<std::size_t> axes;
     std::vector<double> gain_nats;  // by axis
@@ -23,13 +24,15 @@ struct AxesFit {
     double evidence_nats() const { return total_gain_nats() - cost_nats; }
 };
 
-// What it costs that a parameter could be anywhere in its plausible range: log-uniform where that lies on one
-// side of zero. At least half a nat.
+// The function returns what it costs, in nats, that a parameter could be anywhere in its plausible range
+// (likelihood/occam.hpp): log-uniform where the range lies on one side of zero, with normal ends beyond it.
+// The cost is at least half a nat.
 double occam_cost_nats(const EffectParam& param, double value, double sd);
 const EffectParam& param_of(const EffectDefinition& effect, std::string_view name);
 
-// Of single-axis fits those that pay for themselves (the best one if none does), or a fit that several share
-// where that has more evidence. `shared_cost_nats`: of parameters that single-axis fits have in common.
+// The function returns those single-axis fits that pay for themselves (the best one if none does), or the fit
+// that several share where it has more evidence. `common_cost_nats`: the cost of parameters that single-axis
+// fits have in common.
 std::optional<Finding> best_of(const EffectDefinition& effect, const std::vector<AxesFit>& single,
                                double common_cost_nats, const std::optional<AxesFit>& shared);
 

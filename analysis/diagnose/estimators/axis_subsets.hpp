@@ -1,4 +1,4 @@
-// Which axes an effect may act on.
+// Axis subsets are the choices of axes that an effect may act on.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace gyrolog {
 
-// Every choice of one or more of them, single axes first.
+// The function returns every choice of one or more of the axes, single axes first.
 std::vector<std::vector<std::size_t>> axis_subsets(std::span<const std::size_t> axes);
 
 }  // namespace gyrolog

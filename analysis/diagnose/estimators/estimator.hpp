@@ -12,17 +12,19 @@
 
 namespace gyrolog {
 
-// Made once for a prediction; after that it does not change and any number of threads may ask it.
+// An estimator is made once for a prediction. After that it does not change, and any number of threads may
+// ask it.
 class Estimator {
 public:
     virtual ~Estimator() = default;
 
-    // The best that the effect can do for this observation beyond the prediction's model; no value where the
-    // data have no trace of it (gain 0).
+    // The function returns the best that the effect can do for this observation beyond the prediction's
+    // model; no value where the data have no trace of it (gain 0).
     virtual std::optional<Finding> find(const Observation& observation) const = 0;
 };
 
-// Null with a reason where the recording cannot show the effect: no temperature, no motion, too short.
+// The estimator is null, with a reason, where the recording cannot show the effect: no temperature, no
+// motion, too short.
 struct MadeEstimator {
     std::unique_ptr<Estimator> estimator;
     std::string untestable;  // why not; a clause without a full stop

@@ -1,4 +1,5 @@
-// Least squares of a jump in the lowest cosine coefficients of a record, at many moments at once.
+// The step scan is least squares of a jump in the lowest cosine coefficients of a record, at many moments at
+// once.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@ double step_coefficient(std::size_t length, double at, std::size_t k);
 
 class StepScan {
 public:
-    // Looks at coefficients 1 ... `used` of a record of `length` samples, at twice as many moments.
+    // The scan takes coefficients 1 ... `used` of a record of `length` samples, at twice as many moments.
     StepScan(std::size_t length, std::size_t used);
 
     std::size_t used() const { return used_; }

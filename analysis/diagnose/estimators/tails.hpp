@@ -1,4 +1,4 @@
-// Noise with heavier tails than the model's: Student's t in place of the normal distribution.
+// Tails are noise with heavier tails than the model's: Student's t in place of the normal distribution.
 //
 // The likelihood is that of the whitened samples, independent, with a free scale in both distributions: the
 // level of the noise is no evidence. The effect's first parameter is the number of degrees of freedom.

@@ -1,4 +1,4 @@
-// The parameter values that an effect's signature asks to be tried.
+// The trial grid is the parameter values that an effect's signature asks to be tried.
 #pragma once
 
 #include <map>
@@ -20,12 +20,12 @@ struct TrialPoint {
     double peak = 0.0;                      // that values stay below
 };
 
-// All points of all groups, group by group, the last parameter running fastest. One point without parameters
-// where the signature asks for none. Groups with values below a peak come once for each of `peaks`, which are
-// in the parameter's unit.
+// The function returns all points of all groups, group by group, the last parameter running fastest: one
+// point without parameters where the signature asks for none. Groups with values below a peak come once for
+// each of `peaks`, which are in the parameter's unit.
 std::vector<TrialPoint> trial_points(const EffectSignature& signature, std::span<const double> peaks = {});
 
-// A value moved along its trial's scale, where a step of 1 is one of the trial values'.
+// The function moves a value along its trial's scale, where a step of 1 is one of the trial values'.
 double moved_value(const TrialValues& values, double peak, double value, double steps);
 // How far such a step leads, about a value.
 double step_at(const TrialValues& values, double peak, double value);

@@ -1,5 +1,6 @@
-// A recording that is too long to be looked at sample by sample is looked at twice: its beginning as it is,
-// for what is fast, and all of it in means of samples, for what is slow.
+// A long diagnosis is that of a recording which is too long to be judged sample by sample. It takes two
+// passes: over the beginning as it is, for what is fast, and over all of it in means of samples, for what is
+// slow.
 #pragma once
 
 #include <memory>
@@ -10,23 +11,23 @@
 
 namespace gyrolog {
 
-// Of one recording at rest; each alone has no diagnosis_refusal().
+// Both are of one recording at rest; each alone has no diagnosis_refusal().
 struct LongRecording {
     std::shared_ptr<const Recording> beginning;
     std::shared_ptr<const Recording> means;
 };
 
-// With these a diagnosis takes less than 1 GB: 20 min at 1 kHz, and 24 h in means of 0.1 s.
+// With these lengths a diagnosis takes less than 1 GB: 20 min at 1 kHz, and 24 h in means of 0.1 s.
 inline constexpr std::size_t beginning_max = 1'200'000;
 inline constexpr std::size_t means_max = 900'000;
 
 // A cause belongs to the pass that sees more of it: what keeps less than half of its spectral gain when the
-// beginning is seen in means, or does not show in them at all, is fast and stays as the beginning has it.
-// The means are held against a model with the fast causes and with as much white noise as the means
-// themselves have: what spikes, repeated samples or fast noise leave in them is white, and how white the
-// samples are the beginning tells better. What is slow comes from the means. A beginning that is not
-// explained is looked at once more with the slow causes in its model. joined_passes() makes one answer of
-// both; each calls a gap half as often by chance.
+// beginning is seen in means, or does not show in them at all, is fast and stays as the beginning has it. The
+// means are held against a model with the fast causes and with as much white noise as the means themselves
+// have: what spikes, repeated samples or fast noise leave in them is white, and how white the samples are the
+// beginning tells better. What is slow comes from the means. A beginning that is not explained is judged once
+// more with the slow causes in its model. joined_passes() makes one answer of both; each calls a gap half as
+// often by chance.
 //
 // Of a second recording options.holdout is held against the beginning and `holdout_means`, of as many
 // samples, against the means; either may be null.

@@ -1,4 +1,4 @@
-// The noise that an nonparametric alternative is judged under.
+// The alternative noise is what a nonparametric alternative is judged under.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ struct AlternativeNoise {
     double lost_nats = 0.0;       // against the noise that fits best without a rival
 };
 
-// Of a model without the causes, with the coefficients that were fitted beside them: what would explain the
-// rival's shape is not in it.
+// The noise is that of a model without the causes, with the coefficients that were fitted beside them: what
+// would explain the alternative's shape is not in it.
 AlternativeNoise alternative_noise(const Observation& without, const Observation& with, std::size_t axis);
 
 }  // namespace gyrolog

@@ -1,4 +1,4 @@
-// Which effects, alone or together, a recording calls for.
+// The forward selection tells which effects, alone or together, a recording calls for.
 #pragma once
 
 #include <functional>
@@ -15,11 +15,11 @@ namespace gyrolog {
 
 struct FoundCause {
     Finding finding;
-    // The findings of all effects with the other causes in the model, this one not: its rivals.
+    // The rivals are the findings of all effects with the other causes in the model, this one not.
     std::vector<Finding> rivals;
 };
 
-// Of the main cause's evidence: two right formulas of one filter differ by as much.
+// Two right formulas of one filter differ by this share of the main cause's evidence.
 inline constexpr double formulas_share = 5e-5;
 
 struct CauseSelection {
@@ -39,8 +39,9 @@ struct SelectionOptions {
     std::function<bool(double)> on_progress{};  // false ends the work
 };
 
-// Greedily by evidence; after each new cause all are fitted again, one by one, with the others in the model,
-// and those that the others made needless are dropped. `first` is under the model as it was given.
+// The function selects greedily, by evidence. After each new cause all are fitted again, one by one, with the
+// others in the model, and those that the others made needless are dropped. `first` is under the model as it
+// was given. The function returns no value when ended early.
 std::optional<CauseSelection> select_causes(const Hypotheses& first,
                                             const std::shared_ptr<const Recording>& recording,
                                             const SelectionOptions& options);

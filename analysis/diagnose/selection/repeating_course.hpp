@@ -1,4 +1,5 @@
-// An nonparametric alternative: a mean that repeats itself, whatever its shape.
+// The repeating course is a nonparametric alternative: a mean that repeats itself, whatever its shape
+// (numerics/repetition.hpp).
 #pragma once
 
 #include "analysis/diagnose/selection/nonparametric_alternatives.hpp"
