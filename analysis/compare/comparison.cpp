@@ -7,6 +7,7 @@
 
 #include "analysis/compare/model_draw.hpp"
 #include "analysis/parallel/parallel_for.hpp"
+#include "analysis/simulate/random_purpose.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 
 namespace gyrolog {
@@ -32,9 +33,6 @@ double false_alarms_a_part(double parts, std::size_t axes) {
 double even_deviation(double deviation) { return std::cbrt(deviation * deviation); }
 double even_skewness(double skewness) { return std::asinh(skewness); }
 double even_kurtosis(double excess_kurtosis) { return std::log(2.0 + excess_kurtosis); }
-
-// An odd multiplier: seeds that differ by one have no simulation in common.
-constexpr std::uint64_t seed_step = 0x9E3779B97F4A7C15U;
 
 std::vector<std::string> axes_of(const Recording& recording) {
     std::vector<std::string> axes;
@@ -161,7 +159,8 @@ private:
     }
 
     void simulate(std::size_t simulation) {
-        const std::uint64_t seed = options_.seed * seed_step + simulation;
+        const std::uint64_t seed =
+            derived_seed(options_.seed, RandomPurpose::compared_simulations, simulation);
         SimulationRequest request;
         request.seed = seed;
         request.like = world_;

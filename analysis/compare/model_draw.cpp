@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
-#include "analysis/simulate/counter_random.hpp"
+#include "analysis/simulate/random_purpose.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-// Streams that no stage of the simulator uses: its identifiers begin with letters.
-constexpr std::uint32_t noise_stream = 0x01000000;
-constexpr std::uint32_t sensor_stream = 0x02000000;
 
 using Uncertainties = std::map<std::string, double>;
 
@@ -24,7 +20,7 @@ double uncertainty(const Uncertainties& of, const char* name) {
 SensorModel draw_within_uncertainty(const SensorModel& model, std::uint64_t seed) {
     SensorModel drawn = model;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const RandomStream random(seed, noise_stream + static_cast<std::uint32_t>(axis));
+        const RandomStream random = derived_stream(seed, RandomPurpose::noise_coefficients, axis);
         const Uncertainties& own = model.axes[axis].sd_rel;
         std::uint64_t next = 0;
         const auto vary = [&](const char* name, double& coefficient) {
@@ -38,7 +34,7 @@ SensorModel draw_within_uncertainty(const SensorModel& model, std::uint64_t seed
         vary("K", noise.K_rad_per_s_sqrt_s);
         vary("R", noise.R_rad_per_s2);
     }
-    const RandomStream random(seed, sensor_stream);
+    const RandomStream random = derived_stream(seed, RandomPurpose::sensor_parameters);
     std::uint64_t next = 0;
     drawn.timestamp_jitter_s *=
         std::max(0.0, 1.0 + uncertainty(model.sd_rel, "timestamp_jitter") * random.normal(next++));

@@ -187,8 +187,18 @@ private:
         answer_.held_out = "";
     }
 
+    NullSimulationOptions simulation_options(std::size_t simulations, RandomPurpose purpose) const {
+        NullSimulationOptions options;
+        options.simulations = simulations;
+        options.seed = options_.seed;
+        options.purpose = purpose;
+        options.threads = options_.threads;
+        return options;
+    }
+
     bool simulate_before() {
-        NullSimulationOptions options{options_.simulations, options_.seed, options_.threads, {}};
+        NullSimulationOptions options =
+            simulation_options(options_.simulations, RandomPurpose::null_simulations);
         options.on_progress = [&](double share) { return told("simulating the model", 0.1 + 0.5 * share); };
         std::optional<NullSimulations> null = simulate_null(prediction_, &first_.catalogue, options);
         if (!null) { return false; }
@@ -241,13 +251,13 @@ private:
     bool simulate_after() {
         if (!found_ || found_->causes.empty()) { return true; }
         after_curves_ = gap_curves(*found_->last.observation);
-        NullSimulationOptions options{
-            std::min(options_.simulations, simulations_after_most), options_.seed + 1, options_.threads, {}};
+        NullSimulationOptions options = simulation_options(
+            std::min(options_.simulations, simulations_after_most), RandomPurpose::simulations_after);
         if (!judge_what_is_left(options)) { return false; }
         if (answer_.p_left >= unexplained_below_p() || answer_.p_left < tolerated_above_p) { return true; }
         const bool moves = prediction_->moves();
         options.simulations *= moves ? times_more_in_motion : times_more_in_doubt;
-        options.seed = options_.seed + 4;
+        options.purpose = RandomPurpose::simulations_in_doubt;
         options.measure_anew = moves && can_be_measured_anew(*recording_);
         return judge_what_is_left(options);
     }
@@ -425,7 +435,7 @@ private:
     // Of a gap that is not explained the causes are no more than a guess.
     bool widen_uncertainties() {
         if (answer_.verdict != Verdict::known) { return true; }
-        BootstrapOptions options{.seed = options_.seed + 3, .threads = options_.threads};
+        BootstrapOptions options{.seed = options_.seed, .threads = options_.threads};
         options.on_progress = [&](double share) {
             return told("looking how well the parameters are known", share);
         };
@@ -479,8 +489,8 @@ private:
                                              const SensorModel& model) {
         const auto prediction =
             with_own_start(std::make_shared<const Prediction>(world, model), options_.holdout);
-        NullSimulationOptions options{
-            std::min(options_.simulations, simulations_after_most), options_.seed + 2, options_.threads, {}};
+        NullSimulationOptions options = simulation_options(
+            std::min(options_.simulations, simulations_after_most), RandomPurpose::holdout_simulations);
         options.on_progress = [&](double share) { return told("judging the second recording", share); };
         const std::optional<NullSimulations> null = simulate_null(prediction, nullptr, options);
         if (!null) { return std::nullopt; }

@@ -16,8 +16,8 @@ constexpr std::uint32_t weyl_0 = 0x9E3779B9U;
 constexpr std::uint32_t weyl_1 = 0xBB67AE85U;
 constexpr int rounds = 10;
 
-// The fourth counter word keeps the extra bits of the tails apart from the draws.
-enum Purpose : std::uint32_t { draws = 0, tail_bits = 1 };
+// The fourth counter word keeps the extra bits of the tails and derived seeds apart from the draws.
+enum CounterUse : std::uint32_t { draws = 0, tail_bits = 1, seeds = 2 };
 
 std::uint32_t low_word(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
 std::uint32_t high_word(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32U); }
@@ -175,6 +175,12 @@ PhiloxCounter philox4x32_10(PhiloxCounter counter, PhiloxKey key) {
         key[1] += weyl_1;
     }
     return counter;
+}
+
+std::uint64_t hashed_seed(std::uint64_t seed, std::uint32_t purpose, std::uint64_t number) {
+    const PhiloxCounter words = philox4x32_10({low_word(number), high_word(number), purpose, seeds},
+                                              {low_word(seed), high_word(seed)});
+    return std::uint64_t{words[1]} << 32U | words[0];
 }
 
 RandomStream::RandomStream(std::uint64_t seed, std::uint32_t stream_id)

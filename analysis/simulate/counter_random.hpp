@@ -18,6 +18,9 @@ using PhiloxKey = std::array<std::uint32_t, 2>;
 
 PhiloxCounter philox4x32_10(PhiloxCounter counter, PhiloxKey key);
 
+// A seed that differs with each of the three: two words of the generator at a counter that no stream reaches.
+std::uint64_t hashed_seed(std::uint64_t seed, std::uint32_t purpose, std::uint64_t number);
+
 class RandomStream {
 public:
     RandomStream(std::uint64_t seed, std::uint32_t stream_id);

@@ -25,7 +25,8 @@ double NullBias::of(const Finding& finding) const {
 std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hypotheses, std::uint64_t seed,
                                                             unsigned threads,
                                                             const std::function<bool()>& told) {
-    const NullSimulationOptions options{simulations, seed, threads, [&](double) { return told(); }};
+    const NullSimulationOptions options{simulations, seed, RandomPurpose::null_bias_simulations, threads,
+                                        [&](double) { return told(); }};
     const std::optional<NullSimulations> null =
         simulate_null(hypotheses.prediction, &hypotheses.catalogue, options);
     if (!null) { return std::nullopt; }

@@ -9,8 +9,6 @@ namespace gyrolog {
 
 namespace {
 
-constexpr std::uint32_t seed_stream = 0x04000000;
-
 std::vector<double> evidence_of_all(const std::vector<CatalogueEntry>& catalogue,
                                     const Observation& observation) {
     std::vector<double> evidence_nats(catalogue.size(), no_evidence_nats);
@@ -48,7 +46,7 @@ std::optional<NullSimulations> simulate_null(const std::shared_ptr<const Predict
     NullSimulations null;
     null.curves.resize(options.simulations);
     if (catalogue != nullptr) { null.evidence_nats.resize(options.simulations); }
-    const ReplicateOptions draws{options.simulations, options.seed, seed_stream, options.threads,
+    const ReplicateOptions draws{options.simulations, options.seed, options.purpose, options.threads,
                                  options.on_progress};
     const bool done = for_each_replicate(draws, [&](std::size_t i, std::uint64_t seed) {
         Recording simulated = replicate_recording(*prediction, prediction->model(), seed);

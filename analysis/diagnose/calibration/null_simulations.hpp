@@ -10,6 +10,7 @@
 
 #include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/diagnose/measures/gap_curves.hpp"
+#include "analysis/simulate/random_purpose.hpp"
 
 namespace gyrolog {
 
@@ -28,6 +29,7 @@ std::vector<double> best_evidence_nats(const NullSimulations& null);
 struct NullSimulationOptions {
     std::size_t simulations = 200;
     std::uint64_t seed = 1;
+    RandomPurpose purpose = RandomPurpose::null_simulations;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // with the share that is done; false ends the work
     // Each simulation of a sensor that moves has its reference measured anew and is judged like the

@@ -16,8 +16,6 @@ namespace gyrolog {
 
 namespace {
 
-constexpr std::uint32_t seed_stream = 0x05000000;
-
 // Sixteen know a standard deviation to 18 %. Of long recordings fewer, for their time; of a new world, where
 // the sensor moves, the sooner.
 constexpr std::size_t simulations_most = 16;
@@ -86,8 +84,8 @@ public:
     // By simulation and cause what was found again; empty when ended early.
     std::vector<std::vector<std::optional<Finding>>> found_again() const {
         std::vector<std::vector<std::optional<Finding>>> again(simulations_);
-        const ReplicateOptions draws{simulations_, options_.seed, seed_stream, options_.threads,
-                                     options_.on_progress};
+        const ReplicateOptions draws{simulations_, options_.seed, RandomPurpose::bootstrap_simulations,
+                                     options_.threads, options_.on_progress};
         const bool done = for_each_replicate(
             draws, [&](std::size_t i, std::uint64_t seed) { again[i] = in_simulation(seed); });
         if (!done) { again.clear(); }

@@ -6,16 +6,9 @@
 
 #include "analysis/compare/model_draw.hpp"
 #include "analysis/parallel/parallel_for.hpp"
-#include "analysis/simulate/counter_random.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 
 namespace gyrolog {
-
-namespace {
-
-constexpr std::uint32_t noise_stream = 0x05000001;
-
-}  // namespace
 
 Recording replicate_recording(const Prediction& prediction, const SensorModel& model, std::uint64_t seed) {
     SimulationRequest request;
@@ -27,13 +20,13 @@ Recording replicate_recording(const Prediction& prediction, const SensorModel& m
 }
 
 Recording measured_anew(Recording recording, const SensorModel& model, std::uint64_t seed) {
-    std::uint32_t stream = noise_stream;
+    std::uint64_t number = 0;
     for (Column& column : recording.columns) {
         const bool is_rate = column.name == "ref_x" || column.name == "ref_y" || column.name == "ref_z";
         const bool is_force = column.name == "ax" || column.name == "ay" || column.name == "az";
         if (!is_rate && !is_force) { continue; }
         const double sd = is_rate ? model.ref_noise_rad_s : model.acc_noise_m_s2;
-        const RandomStream noise(seed, stream++);
+        const RandomStream noise = derived_stream(seed, RandomPurpose::reference_measured_anew, number++);
         std::vector<double> values = column.values();
         for (std::size_t row = 0; row < values.size(); ++row) { values[row] += sd * noise.normal(row); }
         column.data = std::move(values);
@@ -52,7 +45,6 @@ bool can_be_measured_anew(const Recording& recording) {
 
 bool for_each_replicate(const ReplicateOptions& options,
                         const std::function<void(std::size_t i, std::uint64_t seed)>& task) {
-    const RandomStream seeds(options.seed, options.stream);
     std::mutex mutex;
     std::size_t done = 0;
     bool stopped = false;
@@ -61,7 +53,7 @@ bool for_each_replicate(const ReplicateOptions& options,
             const std::lock_guard lock(mutex);
             if (stopped) { return; }
         }
-        task(i, static_cast<std::uint64_t>(seeds.uniform(i) * 0x1p32));
+        task(i, derived_seed(options.seed, options.purpose, i));
         const std::lock_guard lock(mutex);
         ++done;
         const double share = static_cast<double>(done) / static_cast<double>(options.count);

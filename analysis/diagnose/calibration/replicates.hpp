@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "analysis/diagnose/likelihood/prediction.hpp"
+#include "analysis/simulate/random_purpose.hpp"
 
 namespace gyrolog {
 
@@ -24,7 +25,7 @@ bool can_be_measured_anew(const Recording& recording);
 struct ReplicateOptions {
     std::size_t count = 0;
     std::uint64_t seed = 1;
-    std::uint32_t stream = 0;  // of the seeds: draws for different ends share nothing
+    RandomPurpose purpose = RandomPurpose::null_simulations;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // with the share that is done; false ends the work
 };

@@ -7,15 +7,12 @@
 #include "analysis/diagnose/likelihood/white_share.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/chain.hpp"
-#include "analysis/simulate/counter_random.hpp"
 #include "analysis/simulate/effect_axes.hpp"
+#include "analysis/simulate/random_purpose.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-constexpr std::uint32_t stand_in_stream = 0x03000000;
-constexpr std::uint32_t reference_stream = 0x05000000;
 
 // In motion, of the recording.
 constexpr double unknown_start_s = 0.1;
@@ -232,7 +229,7 @@ void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
     const std::vector<float>& expected =
         drawn ? prediction_->denoised_response_rad_s(axis) : prediction_->response_rad_s(axis);
     const double drawn_sd_rad_s = drawn ? prediction_->reference_noise_rad_s(axis) : 0.0;
-    const RandomStream noise(seed, reference_stream + static_cast<std::uint32_t>(axis));
+    const RandomStream noise = derived_stream(seed, RandomPurpose::replicate_reference_noise, axis);
     const Column& column = *recording_->find(gyro_columns[axis]);
     const std::int64_t origin = prediction_->world().recording().segments.front().first_index;
     for_each_slot(segments_, origin, residual_rad_s.size(), [&](std::size_t slot, std::size_t row) {
@@ -281,7 +278,7 @@ void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform&
     const double white = prediction.parts(axis).back().sum();
     const auto fill = [&] {
         fill_holes(residual, present_, std::sqrt(white * rate_hz),
-                   RandomStream(seed, stand_in_stream + static_cast<std::uint32_t>(axis)));
+                   derived_stream(seed, RandomPurpose::stand_ins, axis));
     };
     fill();
     fit_model(axis, transform);
