@@ -215,6 +215,7 @@ struct Row {
 std::vector<Row> rows_of(const Diagnosis& diagnosis) {
     std::vector<Row> rows;
     for (const GapDomain& domain : diagnosis.domains) {
+        if (domain.x.size() < 2) { continue; }  // a single number is no curve
         auto row = std::ranges::find(rows, domain.name, &Row::name);
         if (row == rows.end()) { row = rows.insert(rows.end(), {domain.name, {}}); }
         row->domains.push_back(&domain);

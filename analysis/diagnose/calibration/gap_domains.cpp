@@ -1,6 +1,5 @@
 #include "analysis/diagnose/calibration/gap_domains.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -15,12 +14,6 @@ std::string name_of(const GapCurve& curve) {
     const Measure& measure = *curve.measure;
     return (curve.of_all_axes ? measure.shared_name : "") + std::string(measure.name) +
            (measure.names_other ? axis_names.at(curve.other) : "");
-}
-
-// Where the x of the points rise: the amplitudes end in a number that is none of them, at 0.
-std::size_t points_of(const GapCurve& curve) {
-    const auto end = std::ranges::is_sorted_until(curve.x);
-    return std::min(static_cast<std::size_t>(end - curve.x.begin()), curve.value.size());
 }
 
 struct Band {
@@ -55,7 +48,7 @@ std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap*
     for (std::size_t c = 0; c < before.curves.size(); ++c) {
         const GapCurve& curve = before.curves[c];
         const Measure& measure = *curve.measure;
-        const std::size_t points = points_of(curve);
+        const std::size_t points = curve.value.size();
         std::vector<double> shift(points, 0.0);
         GapDomain domain;
         domain.name = name_of(curve);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "analysis/diagnose/measures/curve_place.hpp"
 #include "analysis/diagnose/measures/shown_values.hpp"
@@ -14,10 +15,11 @@ namespace {
 
 constexpr double sigmas[] = {0.5, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0};
 
-GapCurve amplitude_curve(const Observation& observation, std::size_t axis) {
+void append_amplitude_curves(const Observation& observation, std::size_t axis,
+                             std::vector<GapCurve>& curves) {
     GapCurve curve{&measures::amplitude, axis, axis, {std::begin(sigmas), std::end(sigmas)}, {}};
     std::vector<double> beyond(curve.x.size(), 0.0);
-    double skewness = 0.0;
+    double all_cubes = 0.0;
     double count = 0.0;
     const std::vector<float>& white = observation.axis(axis).whitened;
     // Counted one threshold after the other, with the samples near at hand: no branch depends on their
@@ -35,7 +37,7 @@ GapCurve amplitude_curve(const Observation& observation, std::size_t axis) {
             const auto value = static_cast<double>(values[i]);
             cubes += value * value * value;
         }
-        skewness += cubes;
+        all_cubes += cubes;
         for (std::size_t s = 0; s < beyond.size(); ++s) {
             const auto least = static_cast<float>(curve.x[s]);
             int more = 0;
@@ -45,14 +47,17 @@ GapCurve amplitude_curve(const Observation& observation, std::size_t axis) {
         count += static_cast<double>(known);
     }
     for (const double number : beyond) { curve.value.push_back(2.0 * std::sqrt(number + 0.375)); }
-    curve.x.push_back(0.0);
-    curve.value.push_back(skewness / std::sqrt(15.0 * std::max(count, 1.0)));
-    return curve;
+    curves.push_back(std::move(curve));
+    const double skewness = all_cubes / std::sqrt(15.0 * std::max(count, 1.0));
+    curves.push_back({&measures::skewness, axis, axis, {0.0}, {skewness}});
 }
 
 void locate_amplitudes(const GapCurve& curve, const std::vector<double>& z, Place& where) {
     where.amplitude_sigma = span_outside(curve, z);
 }
+
+// All sizes make it.
+void locate_nowhere(const GapCurve&, const std::vector<double>&, Place&) {}
 
 }  // namespace
 
@@ -66,9 +71,17 @@ const Measure measures::amplitude{.name = "tails",
                                   // One sample further out than any of the simulations' is no wonder.
                                   .least_sd = 0.5};
 
-void add_amplitude_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
+const Measure measures::skewness{.name = "skewness",
+                                 .x_name = "",
+                                 .y_name = "skewness (its sd)",
+                                 .shown_x = as_it_is,
+                                 .shown_y = as_it_is,
+                                 .locate = locate_nowhere,
+                                 .least_sd = 0.5};
+
+void add_amplitude_curves(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     if (observation.prediction().world().recording().samples_per_row != 1) { return; }
-    curves.push_back(amplitude_curve(observation, axis));
+    append_amplitude_curves(observation, axis, curves);
 }
 
 }  // namespace gyrolog

@@ -23,7 +23,7 @@ using AddCurves = void (*)(const Observation& observation, std::size_t axis, std
 // In the order of the report.
 constexpr AddCurves of_each_axis[] = {
     add_allan_curve,       add_spectrum_curve,    add_narrow_curve,          add_course_curves,
-    add_amplitude_curve,   add_repeats_curve,     add_period_curve,          add_codes_curve,
+    add_amplitude_curves,  add_repeats_curve,     add_period_curve,          add_codes_curve,
     add_temperature_curve, add_cross_axis_curves, add_reference_rate_curves, add_rate_change_curves};
 
 }  // namespace

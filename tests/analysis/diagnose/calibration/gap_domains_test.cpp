@@ -36,7 +36,7 @@ TEST(GapDomains, AreInUnitsThatPeopleUse) {
         {&measures::spectrum, 0, 0, {1.0, 2.0}, {3.0 * (std::cbrt(2.0) - 1.0), 0.0}},
         {&measures::course, 0, 0, {10.0, 20.0}, {std::log(2.0), 0.0}},
         {&measures::rate, 0, 2, {-1.0, 1.0}, {0.1, 0.1}},
-        {&measures::amplitude, 0, 0, {2.0, 3.0, 0.0}, {0.1, 0.1, 0.1}},
+        {&measures::amplitude, 0, 0, {2.0, 3.0}, {0.1, 0.1}},
     };
     const GapReference reference = reference_of(curves);
     const std::vector<GapDomain> domains = gap_domains({curves, reference}, nullptr, 0.95);
@@ -49,7 +49,7 @@ TEST(GapDomains, AreInUnitsThatPeopleUse) {
     EXPECT_NEAR(domains[2].recording[0], 10.0 * std::log10(2.0), 1e-9);
     EXPECT_EQ(domains[3].name, "rate about z");
     EXPECT_NEAR(domains[3].x[1], deg_per_rad, 1e-12);
-    EXPECT_EQ(domains[4].x.size(), 2U) << "the skewness is no amplitude";
+    EXPECT_EQ(domains[4].x.size(), 2U);
     EXPECT_NEAR(domains[4].recording[1], 0.0, 1e-12);
     EXPECT_NEAR(domains[4].before_hi[1], 1.96 * 0.02, 1e-5);
     EXPECT_TRUE(domains[0].after_lo.empty());
@@ -80,6 +80,19 @@ TEST(GapDomains, OfAllAxesSayThatTheyAre) {
     EXPECT_EQ(domains[0].name, "bursts of noise");
     EXPECT_EQ(domains[1].axis_text(), "all");
     EXPECT_EQ(domains[1].name, "shared bursts of noise");
+}
+
+// One number for all sizes.
+TEST(GapSummary, SaysNoAmplitudeWhereTheGapIsASkewness) {
+    const std::vector<GapCurve> curves = {
+        {&measures::amplitude, 1, 1, {2.0, 3.0}, {0.1, 0.1}},
+        {&measures::skewness, 1, 1, {0.0}, {5.0}},
+    };
+    GapReference reference = reference_of(curves);
+    reference.window_sd.assign(curves.size(), {});
+    const Place where = summarise(curves, reference).where;
+    EXPECT_EQ(where.axes, std::vector<std::size_t>{1});
+    EXPECT_FALSE(where.amplitude_sigma);
 }
 
 // Its multiples and parts stand out with it; and it is seen on all axes together.
