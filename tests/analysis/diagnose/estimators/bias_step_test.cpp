@@ -135,10 +135,16 @@ TEST(BiasStep, YieldsToARandomWalk) {
 
 TEST(BiasStep, AnswersForOneDeadAxisAndFewSamples) {
     const SensorModel model = calibrated_sensor();
+    EXPECT_LT(evidence(found(make_bias_step_estimator, "bias_step", few_samples_with_a_dead_axis(model, 10),
+                             model)),
+              3.0);
+    const SensorModel sensor = with_effect(model, "bias_step", {{"at_s", 9.0}, {"step_dps", 0.1}}, {"z"});
     const auto finding =
-        found(make_bias_step_estimator, "bias_step", few_samples_with_a_dead_axis(model, 10), model);
-    if (finding) { EXPECT_TRUE(std::isfinite(finding->evidence_nats)); }
-    EXPECT_LT(evidence(finding), 3.0);
+        found(make_bias_step_estimator, "bias_step", few_samples_with_a_dead_axis(sensor, 10), model);
+    ASSERT_TRUE(finding);
+    EXPECT_TRUE(std::isfinite(finding->evidence_nats));
+    EXPECT_GT(finding->evidence_nats, 20.0);
+    EXPECT_EQ(finding->where.axes, std::vector<std::size_t>{2});
 }
 
 }  // namespace

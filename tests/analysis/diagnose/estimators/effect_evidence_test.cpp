@@ -123,7 +123,8 @@ TEST(ForwardSelection, TakesTwoCausesApart) {
     std::ranges::sort(names);
     EXPECT_EQ(names, (std::vector<std::string>{"gauss_markov", "tone"}));
     const Finding* left = found->last.best();
-    if (left != nullptr) { EXPECT_LT(left->evidence_nats, 6.0); }
+    ASSERT_NE(left, nullptr);
+    EXPECT_LT(left->evidence_nats, 6.0);
 }
 
 // A random walk takes up both; only together they are worth more.

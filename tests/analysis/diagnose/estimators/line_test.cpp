@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -140,12 +141,18 @@ TEST(Line, TakesNoBroadExcessForALine) {
     const SensorModel louder = with_effect(model, "arw_scale", {{"factor", 1.4}});
     const SensorModel knee = with_effect(model, "gauss_markov", {{"sigma_dps", 0.02}, {"tau_s", 0.5}});
     const SensorModel filtered = with_effect(model, "lowpass", {{"order", 2.0}, {"fc_hz", 10.0}});
+    const auto line_nats = [](const SensorModel& sensor, std::uint64_t seed, const SensorModel& known) {
+        return evidence(found(make_line_estimator, "tone", recorded(sensor, 60000, seed), known));
+    };
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        EXPECT_LT(evidence(found(make_line_estimator, "tone", recorded(louder, 60000, seed), model)), 5.0);
-        EXPECT_LT(evidence(found(make_line_estimator, "tone", recorded(knee, 60000, seed), model)), 5.0);
-        EXPECT_LT(evidence(found(make_line_estimator, "tone", recorded(filtered, 60000, seed), model)), 5.0);
-        // The other way about: noise is what the model's filter took away.
-        EXPECT_LT(evidence(found(make_line_estimator, "tone", recorded(model, 60000, seed), filtered)), 5.0);
+        // The last: noise is what the model's filter took away.
+        for (const auto& [sensor, known] : {std::pair(&louder, &model), std::pair(&knee, &model),
+                                            std::pair(&filtered, &model), std::pair(&model, &filtered)}) {
+            EXPECT_LT(line_nats(*sensor, seed, *known), 5.0) << seed;
+            const SensorModel with_line =
+                with_effect(*sensor, "tone", {{"amplitude_dps", 0.02}, {"f_hz", 4.7}, {"phase_rad", 1.0}});
+            EXPECT_GT(line_nats(with_line, seed, *known), 20.0) << seed;
+        }
     }
 }
 
@@ -171,14 +178,15 @@ TEST(Line, GivesALineThatWandersNoCredit) {
 
 TEST(Line, AnswersForOneDeadAxisAndFewSamples) {
     const SensorModel model = calibrated_sensor();
-    Recording recording = *recorded(model, 2048, 10);
-    auto& counts = std::get<std::vector<std::int16_t>>(recording.columns[1].data);
-    std::fill(counts.begin(), counts.end(), std::int16_t{3});
-    recording.columns.erase(recording.columns.begin());
-    const auto finding =
-        found(make_line_estimator, "tone", std::make_shared<const Recording>(recording), model);
-    if (finding) { EXPECT_TRUE(std::isfinite(finding->evidence_nats)); }
-    EXPECT_LT(evidence(finding), 3.0);
+    EXPECT_LT(evidence(found(make_line_estimator, "tone", few_samples_with_a_dead_axis(model, 10), model)),
+              3.0);
+    const SensorModel sensor =
+        with_effect(model, "tone", {{"amplitude_dps", 0.05}, {"f_hz", 17.3}, {"phase_rad", 1.0}}, {"z"});
+    const auto finding = found(make_line_estimator, "tone", few_samples_with_a_dead_axis(sensor, 10), model);
+    ASSERT_TRUE(finding);
+    EXPECT_TRUE(std::isfinite(finding->evidence_nats));
+    EXPECT_GT(finding->evidence_nats, 20.0);
+    EXPECT_EQ(finding->where.axes, std::vector<std::size_t>{2});
 }
 
 }  // namespace

@@ -67,6 +67,16 @@ const Finding* of(const Hypotheses& hypotheses, const std::string& effect) {
     return nullptr;
 }
 
+double evidence_of(const Hypotheses& hypotheses, const std::string& effect) {
+    const Finding* found = of(hypotheses, effect);
+    return found == nullptr ? 0.0 : found->evidence_nats;
+}
+
+double response_nats(const char* effect, const std::shared_ptr<const Recording>& recording,
+                     const SensorModel& model) {
+    return evidence(found(make_mean_response_estimator, effect, recording, model));
+}
+
 Hypotheses examined(const SensorModel& sensor, const SensorModel& model, std::uint64_t seed) {
     const auto recording = recorded(sensor, 48000, seed, world_with_rests());
     return examine(prediction_of(recording, model), recording, 1, 1);
@@ -80,9 +90,11 @@ TEST(MotionEvidence, OfGainsBehindAFilterIsWhatTheModelDoesNotState) {
     sensor.M[0][1] += 4e-4;  // two of the stated standard deviations
     const Hypotheses seen = examined(sensor, model, 36);
     const Finding* leak = of(seen, "misalignment");
-    if (leak != nullptr) { EXPECT_LT(leak->evidence_nats, 5.0); }
+    ASSERT_NE(leak, nullptr);
+    EXPECT_LT(leak->evidence_nats, 5.0);
     const Finding* size = of(seen, "scale_factor");
-    if (size != nullptr) { EXPECT_LT(size->evidence_nats, 5.0); }
+    ASSERT_NE(size, nullptr);
+    EXPECT_LT(size->evidence_nats, 5.0);
 }
 
 TEST(MotionEvidence, OfAScaleFactorIsWhatTheStatedGainsDoNotCover) {
@@ -123,10 +135,11 @@ TEST(MotionEvidence, OfALatencyInSlowMotionIsNoLowPass) {
     const auto recording =
         recorded(with_effect(model, "latency", {{"delay_s", 0.0009}}, {}), 48000, 39, slow);
     const Hypotheses seen = examine(prediction_of(recording, model), recording, 1, 1);
-    const Finding* low_pass = of(seen, "lowpass");
-    if (low_pass != nullptr) { EXPECT_LT(low_pass->evidence_nats, 0.0); }
+    EXPECT_LE(evidence_of(seen, "lowpass"), 0.0);
     ASSERT_NE(seen.best(), nullptr);
     EXPECT_EQ(seen.best()->effect, "latency");
+    const SensorModel filtered = with_effect(model, "lowpass", {{"fc_hz", 10.0}, {"order", 1.0}}, {});
+    EXPECT_GT(response_nats("lowpass", recorded(filtered, 48000, 39, slow), model), 20.0);
 }
 
 void expect_low_pass_alone(const std::shared_ptr<const World>& world) {
@@ -149,7 +162,8 @@ TEST(MotionEvidence, OfALatencyWithinItsUncertaintyIsNone) {
     sensor.latency_s += 2.4e-4;
     const Hypotheses seen = examined(sensor, model, 37);
     const Finding* found = of(seen, "latency");
-    if (found != nullptr) { EXPECT_LT(found->evidence_nats, 2.0); }
+    ASSERT_NE(found, nullptr);
+    EXPECT_LT(found->evidence_nats, 2.0);
 }
 
 // Its lag looks like latency, what it takes off the motion like noise; only with it nothing else is left.
@@ -233,9 +247,13 @@ TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNone) {
     sensor.M[1][2] -= 2e-4;
     sensor.latency_s += 1e-4;
     const Hypotheses seen = examined(sensor, moving_sensor(), 32);
+    sensor.M[0][0] += 2e-3;
+    sensor.M[1][2] -= 2e-3;
+    sensor.latency_s += 1e-3;
+    const auto beyond = recorded(sensor, 48000, 32, world_with_rests());
     for (const char* effect : {"scale_factor", "misalignment", "latency"}) {
-        const Finding* found = of(seen, effect);
-        if (found != nullptr) { EXPECT_LT(found->evidence_nats, 3.0) << effect; }
+        EXPECT_LT(evidence_of(seen, effect), 3.0) << effect;
+        EXPECT_GT(response_nats(effect, beyond, moving_sensor()), 10.0) << effect;
     }
 }
 
@@ -248,7 +266,8 @@ TEST(MotionEvidence, OfAGainWithinItsUncertaintyIsNoneWhateverTheClock) {
     const Hypotheses seen = examined(sensor, model, 35);
     for (const char* effect : {"scale_factor", "misalignment"}) {
         const Finding* found = of(seen, effect);
-        if (found != nullptr) { EXPECT_LT(found->evidence_nats, 3.0) << effect; }
+        ASSERT_NE(found, nullptr) << effect;
+        EXPECT_LT(found->evidence_nats, 3.0) << effect;
     }
 }
 
@@ -265,16 +284,20 @@ TEST(MotionEvidence, OfLittleNoiseWhateverTheClock) {
     const Hypotheses seen = examine(prediction_of(recording, model), recording, 1, 1);
     for (const char* effect : {"gauss_markov", "flicker_missing", "arw_scale"}) {
         const Finding* found = of(seen, effect);
-        if (found != nullptr) { EXPECT_LT(found->evidence_nats, 25.0) << effect; }
+        ASSERT_NE(found, nullptr) << effect;
+        EXPECT_LT(found->evidence_nats, 25.0) << effect;
     }
 }
 
 TEST(MotionEvidence, TakesTheReferencesNoiseForNoDeadZone) {
     const Hypotheses seen = examined(moving_sensor(), moving_sensor(), 33);
-    const Finding* found = of(seen, "dead_zone");
-    if (found != nullptr) { EXPECT_LT(found->evidence_nats, 3.0); }
+    EXPECT_LT(evidence_of(seen, "dead_zone"), 3.0);
+    const SensorModel dead = with_effect(moving_sensor(), "dead_zone", {{"width_dps", 0.3}, {"jump", 0.0}});
+    EXPECT_GT(response_nats("dead_zone", recorded(dead, 48000, 33, world_with_rests()), moving_sensor()),
+              20.0);
     const Finding* best = seen.best();
-    if (best != nullptr) { EXPECT_LT(best->evidence_nats, 6.0) << best->effect; }
+    ASSERT_NE(best, nullptr);
+    EXPECT_LT(best->evidence_nats, 6.0) << best->effect;
 }
 
 // One whose answer jumps to the full rate within the noise is not told from what is left of that: it is said
@@ -344,7 +367,8 @@ TEST(MotionEvidence, OfNothingElseIsLeftUnderAKnownCeiling) {
     const auto recording = moved(sensor, 38);
     const Hypotheses seen = examine(prediction_of(recording, model), recording, 1, 1);
     const Finding* best = seen.best();
-    if (best != nullptr) { EXPECT_LT(best->evidence_nats, 6.0) << best->effect; }
+    ASSERT_NE(best, nullptr);
+    EXPECT_LT(best->evidence_nats, 6.0) << best->effect;
 }
 
 TEST(MotionEvidence, OfACeilingIsNoneWhereTheMotionTurnsRound) {

@@ -78,19 +78,25 @@ TEST(OutlierEvidence, IsMoreThanThatOfTailsOrAChangingLevel) {
     const auto outliers = seen.find("spikes", make_outlier_estimator);
     ASSERT_TRUE(outliers);
     const auto tails = seen.find("heavy_tail", make_tail_estimator);
-    if (tails) { EXPECT_LT(tails->evidence_nats, outliers->evidence_nats - 100.0); }
-    const auto change = seen.find("variance_change", make_variance_change_point_estimator);
-    if (change) { EXPECT_LT(change->evidence_nats, 3.0); }
+    ASSERT_TRUE(tails);
+    EXPECT_LT(tails->evidence_nats, outliers->evidence_nats - 100.0);
+    EXPECT_LT(seen.evidence_nats("variance_change", make_variance_change_point_estimator), 3.0);
+    const EffectModel change =
+        effect_entry("variance_change", {{"factor", 1.3}, {"at_s", 700.0}, {"ramp_s", 0.0}});
+    const auto both =
+        seen_effects(known_sensor(), {spikes(100.0, 0.6, 2.0, {"x", "y"}), change}, half_hour, 24);
+    EXPECT_GT(both.evidence_nats("variance_change", make_variance_change_point_estimator), 20.0);
 }
 
 TEST(OutlierEvidence, IsGoneOnceTheModelHasThem) {
     SensorModel model = known_sensor();
     model.effects.push_back(spikes(100.0, 0.8, 2.0, {}));
     const auto seen = seen_effects(model, {}, half_hour, 25);
-    const auto found = seen.find("spikes", make_outlier_estimator);
-    if (found) { EXPECT_LT(found->evidence_nats, 3.0); }
-    const auto tails = seen.find("heavy_tail", make_tail_estimator);
-    if (tails) { EXPECT_LT(tails->evidence_nats, 3.0); }
+    EXPECT_LT(seen.evidence_nats("spikes", make_outlier_estimator), 3.0);
+    EXPECT_LT(seen.evidence_nats("heavy_tail", make_tail_estimator), 3.0);
+    const auto without = seen_with(known_sensor(), seen.recording);
+    EXPECT_GT(without.evidence_nats("spikes", make_outlier_estimator), 100.0);
+    EXPECT_GT(without.evidence_nats("heavy_tail", make_tail_estimator), 20.0);
 }
 
 }  // namespace

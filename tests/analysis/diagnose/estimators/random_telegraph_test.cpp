@@ -160,10 +160,17 @@ TEST(RandomTelegraph, IsWorthAsMuchWhereTheLevelsDrownInNoise) {
 
 TEST(RandomTelegraph, AnswersForOneDeadAxisAndFewSamples) {
     const SensorModel model = calibrated_sensor();
+    EXPECT_LT(evidence(found(make_random_telegraph_estimator, "rtn", few_samples_with_a_dead_axis(model, 10),
+                             model)),
+              3.0);
+    const SensorModel sensor = with_effect(
+        model, "rtn", {{"amplitude_dps", 0.2}, {"dwell_high_s", 2.0}, {"dwell_low_s", 2.0}}, {"z"});
     const auto finding =
-        found(make_random_telegraph_estimator, "rtn", few_samples_with_a_dead_axis(model, 10), model);
-    if (finding) { EXPECT_TRUE(std::isfinite(finding->evidence_nats)); }
-    EXPECT_LT(evidence(finding), 3.0);
+        found(make_random_telegraph_estimator, "rtn", few_samples_with_a_dead_axis(sensor, 10), model);
+    ASSERT_TRUE(finding);
+    EXPECT_TRUE(std::isfinite(finding->evidence_nats));
+    EXPECT_GT(finding->evidence_nats, 20.0);
+    EXPECT_EQ(finding->where.axes, std::vector<std::size_t>{2});
 }
 
 }  // namespace

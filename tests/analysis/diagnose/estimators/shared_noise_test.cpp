@@ -58,20 +58,22 @@ TEST(SharedNoiseEvidence, LeavesOutAnAxisThatHasNone) {
 }
 
 TEST(SharedNoiseEvidence, IsNoneForAxesThatAreLouderEachByItself) {
-    const auto seen =
-        seen_effects(known_sensor(), {effect_entry("arw_scale", {{"factor", 1.5}})}, half_hour, 54);
-    const auto found = seen.find("common_mode", make_shared_noise_estimator);
-    const auto louder = seen.find("arw_scale", make_noise_spectrum_estimator);
-    ASSERT_TRUE(louder);
-    if (found) { EXPECT_LT(found->evidence_nats, louder->evidence_nats - 20.0); }
+    const EffectModel louder = effect_entry("arw_scale", {{"factor", 1.5}});
+    const EffectModel shared = effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.003}});
+    const auto both = seen_effects(known_sensor(), {louder, shared}, half_hour, 54);
+    EXPECT_GT(both.evidence_nats("common_mode", make_shared_noise_estimator), 20.0);
+    const auto seen = seen_effects(known_sensor(), {louder}, half_hour, 54);
+    EXPECT_LT(seen.evidence_nats("common_mode", make_shared_noise_estimator), 2.0);
+    EXPECT_GT(seen.evidence_nats("arw_scale", make_noise_spectrum_estimator), 20.0);
 }
 
 TEST(SharedNoiseEvidence, IsGoneOnceTheModelHasIt) {
     SensorModel model = known_sensor();
     model.effects.push_back(effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.005}, {"gain_y", 0.5}}));
     const auto seen = seen_effects(model, {}, half_hour, 55);
-    const auto found = seen.find("common_mode", make_shared_noise_estimator);
-    if (found) { EXPECT_LT(found->evidence_nats, 2.0); }
+    EXPECT_LT(seen.evidence_nats("common_mode", make_shared_noise_estimator), 2.0);
+    const auto without = seen_with(known_sensor(), seen.recording);
+    EXPECT_GT(without.evidence_nats("common_mode", make_shared_noise_estimator), 20.0);
 }
 
 }  // namespace

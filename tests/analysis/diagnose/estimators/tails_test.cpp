@@ -69,19 +69,22 @@ TEST(TailEvidence, IsMoreThanThatOfOutliersOrAChangingLevel) {
     const auto outliers = seen.find("spikes", make_outlier_estimator);
     const auto change = seen.find("variance_change", make_variance_change_point_estimator);
     ASSERT_TRUE(tails);
-    if (outliers) { EXPECT_LT(outliers->evidence_nats, tails->evidence_nats - 100.0); }
+    ASSERT_TRUE(outliers);
+    EXPECT_LT(outliers->evidence_nats, tails->evidence_nats - 100.0);
     // The blocks' variances scatter four times as much as those of normal samples.
-    if (change) { EXPECT_LT(change->evidence_nats, 3.0); }
+    ASSERT_TRUE(change);
+    EXPECT_LT(change->evidence_nats, 3.0);
 }
 
 TEST(TailEvidence, IsGoneOnceTheModelHasThem) {
     SensorModel model = known_sensor();
     model.effects.push_back(effect_entry("heavy_tail", {{"nu", 5.0}}));
     const auto seen = seen_effects(model, {}, half_hour, 8);
-    const auto found = seen.find("heavy_tail", make_tail_estimator);
-    if (found) { EXPECT_LT(found->evidence_nats, 2.0); }
-    const auto outliers = seen.find("spikes", make_outlier_estimator);
-    if (outliers) { EXPECT_LT(outliers->evidence_nats, 2.0); }
+    EXPECT_LT(seen.evidence_nats("heavy_tail", make_tail_estimator), 2.0);
+    EXPECT_LT(seen.evidence_nats("spikes", make_outlier_estimator), 2.0);
+    const auto without = seen_with(known_sensor(), seen.recording);
+    EXPECT_GT(without.evidence_nats("heavy_tail", make_tail_estimator), 100.0);
+    EXPECT_GT(without.evidence_nats("spikes", make_outlier_estimator), 20.0);
 }
 
 TEST(TailEvidence, IsNotMadeByACoarseConverter) {
@@ -90,24 +93,24 @@ TEST(TailEvidence, IsNotMadeByACoarseConverter) {
     model.lsb_rad_s = model.axes[0].noise.N_rad_per_sqrt_s * std::sqrt(model.rate_hz);
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const auto seen = seen_effects(model, {}, half_hour, seed);
-        const auto found = seen.find("heavy_tail", make_tail_estimator);
-        if (found) { EXPECT_LT(found->evidence_nats, 1.0) << seed; }
+        EXPECT_LT(seen.evidence_nats("heavy_tail", make_tail_estimator), 1.0) << seed;
     }
+    const auto with_tails = seen_effects(model, {effect_entry("heavy_tail", {{"nu", 5.0}})}, half_hour, 1);
+    EXPECT_GT(with_tails.evidence_nats("heavy_tail", make_tail_estimator), 100.0);
 }
 
 TEST(TailEvidence, IsNoneOfADeadAxis) {
     SensorModel model = known_sensor();
-    const auto alive = seen_effects(model, {}, 4096, 9);
+    const auto alive = seen_effects(model, {effect_entry("heavy_tail", {{"nu", 3.0}})}, 4096, 9);
     Recording recording = *alive.recording;
     for (Column& column : recording.columns) {
         if (column.name == "gx") { std::get<std::vector<std::int16_t>>(column.data).assign(4096, 7); }
     }
     const auto seen = seen_with(model, std::make_shared<const Recording>(std::move(recording)));
     const auto found = seen.find("heavy_tail", make_tail_estimator);
-    if (found) {
-        EXPECT_TRUE(std::isfinite(found->gain_nats));
-        EXPECT_EQ(std::ranges::count(found->where.axes, std::size_t{0}), 0);
-    }
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(std::isfinite(found->gain_nats));
+    EXPECT_EQ(found->where.axes, (std::vector<std::size_t>{1, 2}));
 }
 
 }  // namespace

@@ -58,10 +58,11 @@ TEST(VarianceChangePoint, TellsARampFromAStep) {
 }
 
 TEST(VarianceChangePoint, IsNoneForALevelThatIsHigherThroughout) {
-    const auto seen =
-        seen_effects(known_sensor(), {effect_entry("arw_scale", {{"factor", 1.4}})}, half_hour, 33);
-    const auto found = seen.find("variance_change", make_variance_change_point_estimator);
-    if (found) { EXPECT_LT(found->evidence_nats, 2.0); }
+    const EffectModel louder = effect_entry("arw_scale", {{"factor", 1.4}});
+    const auto seen = seen_effects(known_sensor(), {louder}, half_hour, 33);
+    EXPECT_LT(seen.evidence_nats("variance_change", make_variance_change_point_estimator), 2.0);
+    const auto both = seen_effects(known_sensor(), {louder, change(1.2, 700.0, 0.0)}, half_hour, 33);
+    EXPECT_GT(both.evidence_nats("variance_change", make_variance_change_point_estimator), 100.0);
 }
 
 TEST(VarianceChangePoint, IsMoreThanThatOfTailsAndFollowsTheTemperatureLess) {
@@ -70,9 +71,11 @@ TEST(VarianceChangePoint, IsMoreThanThatOfTailsAndFollowsTheTemperatureLess) {
     const auto found = seen.find("variance_change", make_variance_change_point_estimator);
     ASSERT_TRUE(found);
     const auto tails = seen.find("heavy_tail", make_tail_estimator);
-    if (tails) { EXPECT_LT(tails->evidence_nats, 0.5 * found->evidence_nats); }
+    ASSERT_TRUE(tails);
+    EXPECT_LT(tails->evidence_nats, 0.5 * found->evidence_nats);
     const auto warmth = seen.find("temp_noise", make_variance_with_temperature_estimator);
-    if (warmth) { EXPECT_LT(warmth->evidence_nats, found->evidence_nats - 100.0); }
+    ASSERT_TRUE(warmth);
+    EXPECT_LT(warmth->evidence_nats, found->evidence_nats - 100.0);
 }
 
 TEST(VarianceChangePoint, IsSeenBesideTailsThatTheModelHas) {
@@ -95,10 +98,11 @@ TEST(VarianceChangePoint, IsGoneOnceTheModelHasIt) {
         const auto n = static_cast<double>(seen.prediction->length());
         EXPECT_NEAR(squares / n, 1.0, 5.0 * std::sqrt(2.0 / n));
     }
-    const auto found = seen.find("variance_change", make_variance_change_point_estimator);
-    if (found) { EXPECT_LT(found->evidence_nats, 3.0); }
-    const auto tails = seen.find("heavy_tail", make_tail_estimator);
-    if (tails) { EXPECT_LT(tails->evidence_nats, 3.0); }
+    EXPECT_LT(seen.evidence_nats("variance_change", make_variance_change_point_estimator), 3.0);
+    EXPECT_LT(seen.evidence_nats("heavy_tail", make_tail_estimator), 3.0);
+    const auto without = seen_with(known_sensor(), seen.recording);
+    EXPECT_GT(without.evidence_nats("variance_change", make_variance_change_point_estimator), 100.0);
+    EXPECT_GT(without.evidence_nats("heavy_tail", make_tail_estimator), 20.0);
 }
 
 }  // namespace

@@ -52,9 +52,14 @@ TEST(VarianceWithTemperature, IsMoreThanThatOfACourseInTimeAndOfTails) {
     ASSERT_TRUE(found);
     EXPECT_EQ(found->where.axes, std::vector<std::size_t>{2});
     const auto course = seen.find("variance_change", make_variance_change_point_estimator);
-    if (course) { EXPECT_LT(course->evidence_nats, found->evidence_nats - 20.0); }
-    const auto tails = seen.find("heavy_tail", make_tail_estimator);
-    if (tails) { EXPECT_LT(tails->evidence_nats, 0.5 * found->evidence_nats); }
+    ASSERT_TRUE(course);
+    EXPECT_LT(course->evidence_nats, found->evidence_nats - 20.0);
+    EXPECT_LT(seen.evidence_nats("heavy_tail", make_tail_estimator), 0.5 * found->evidence_nats);
+    const auto both = seen_effects(known_sensor(),
+                                   {effect_entry("temp_noise", {{"per_C", 0.01}}, {"z"}),
+                                    effect_entry("heavy_tail", {{"nu", 5.0}}, {"z"})},
+                                   hour, 43, swept_temperature());
+    EXPECT_GT(both.evidence_nats("heavy_tail", make_tail_estimator), 100.0);
 }
 
 TEST(VarianceWithTemperature, NeedsATemperatureThatChanges) {
@@ -69,8 +74,9 @@ TEST(VarianceWithTemperature, IsGoneOnceTheModelHasIt) {
     SensorModel model = known_sensor();
     model.effects.push_back(effect_entry("temp_noise", {{"per_C", 0.02}}));
     const auto seen = seen_effects(model, {}, hour, 45, swept_temperature());
-    const auto found = seen.find("temp_noise", make_variance_with_temperature_estimator);
-    if (found) { EXPECT_LT(found->evidence_nats, 3.0); }
+    EXPECT_LT(seen.evidence_nats("temp_noise", make_variance_with_temperature_estimator), 3.0);
+    const auto without = seen_with(known_sensor(), seen.recording);
+    EXPECT_GT(without.evidence_nats("temp_noise", make_variance_with_temperature_estimator), 20.0);
 }
 
 }  // namespace

@@ -28,6 +28,11 @@ struct WhiteNoiseCase {
         const MadeEstimator made = make(*find_effect(effect), prediction);
         return made.estimator ? made.estimator->find(*seen) : std::nullopt;
     }
+    // 0 without a finding. Next to a test that it is none stands one that the estimator answers.
+    double evidence_nats(const char* effect, EstimatorMaker make) const {
+        const std::optional<Finding> found = find(effect, make);
+        return found ? found->evidence_nats : 0.0;
+    }
     std::string untestable(const char* effect, EstimatorMaker make) const {
         return make(*find_effect(effect), prediction).untestable;
     }
