@@ -268,8 +268,6 @@ std::vector<LagStep> LagCourse::steps() const {
     // No course of rising lags stays within reach of the best one.
     if (!std::isfinite(*std::ranges::min_element(score))) { return {}; }
     std::vector<LagStep> steps;
-    // The course led where no losses lead.
-    if (*std::ranges::min_element(score) == infinity) { return steps; }
     int lag = centre - reach + static_cast<int>(std::ranges::min_element(score) - score.begin());
     for (std::size_t window = came_from.size(); window-- > 0;) {
         const int place = lag - centre_[window] + reach;
