@@ -1,6 +1,7 @@
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gyrolog {
 
@@ -16,5 +17,9 @@ std::vector<std::vector<std::size_t>> axis_subsets(std::span<const std::size_t> 
     std::ranges::stable_sort(subsets, {}, [](const auto& subset) { return subset.size(); });
     return subsets;
 }
+
+double axis_choice_nats(std::size_t axes) { return std::log(std::exp2(static_cast<double>(axes)) - 1.0); }
+
+double axis_membership_nats(std::size_t axes) { return axes > 1 ? std::log(2.0) : 0.0; }
 
 }  // namespace gyrolog

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/axis_subsets.hpp"
 #include "analysis/diagnose/estimators/step_scan.hpp"
 
 namespace gyrolog {
@@ -27,9 +28,6 @@ constexpr std::size_t edge_samples = 16;
 constexpr double places_min = 6.0;
 constexpr std::size_t finer = 8;
 constexpr std::size_t finest_used = 131072;
-// An axis has the jump or has it not.
-const double axis_cost_nats = std::log(2.0);
-
 class BiasStepEstimator final : public Estimator {
 public:
     BiasStepEstimator(const EffectDefinition& effect, std::shared_ptr<const Prediction> prediction)
@@ -267,7 +265,8 @@ private:
         fit.gain_nats = {seen.gain_nats[axis]};
         fit.params = {{"step_dps", seen.fits[axis].height(seen.place) * deg_per_rad}};
         fit.sd = {{"step_dps", sd_dps}};
-        fit.cost_nats = occam_cost_nats(height_, 0.0, sd_dps) + axis_cost_nats;
+        fit.cost_nats =
+            occam_cost_nats(height_, 0.0, sd_dps) + axis_membership_nats(prediction_->axes().size());
         return fit;
     }
 
@@ -289,7 +288,8 @@ private:
         }
         fit.params = {{"step_dps", height * deg_per_rad}};
         fit.sd = {{"step_dps", sd_dps}};
-        fit.cost_nats = occam_cost_nats(height_, 0.0, sd_dps) + axis_cost_nats;
+        fit.cost_nats =
+            occam_cost_nats(height_, 0.0, sd_dps) + axis_membership_nats(prediction_->axes().size());
         return fit;
     }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/axis_subsets.hpp"
 #include "analysis/diagnose/estimators/steady_line.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
@@ -33,9 +34,6 @@ constexpr std::size_t removed_reach = 4096;
 
 // Median of chi-square with 16 degrees of freedom over its mean (Wilson and Hilferty 1931).
 constexpr double median_of_group = 0.9589;
-
-// An axis has the line or has it not.
-const double axis_cost_nats = std::log(2.0);
 
 struct Candidate {
     std::size_t k = 0;  // first of the window
@@ -310,7 +308,8 @@ private:
         fit.sd = {{"amplitude_dps", amplitude_dps * sd_of_log}, {"phase_rad", 2.0 * sd_of_log}};
         fit.cost_nats =
             occam_cost_nats(param_of(effect_, "amplitude_dps"), amplitude_dps, amplitude_dps * sd_of_log) +
-            occam_cost_nats(param_of(effect_, "phase_rad"), phase_rad, sd_of_log) + axis_cost_nats;
+            occam_cost_nats(param_of(effect_, "phase_rad"), phase_rad, sd_of_log) +
+            axis_membership_nats(prediction_->axes().size());
         return fit;
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/estimators/axis_subsets.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/recording/grid_step.hpp"
 #include "analysis/simulate/effect_axes.hpp"
@@ -87,9 +88,9 @@ public:
         finding.where.structure = effect_->signature->structure;
         finding.parameters = static_cast<int>(finding.entries.size());
         const EffectParam& range = effect_->params.front();
-        // Steps are whole multiples of the finest; any of the axes may have one.
+        // Steps are whole multiples of the finest.
         finding.evidence_nats =
-            finding.gain_nats - std::log(7.0) -
+            finding.gain_nats - axis_choice_nats(prediction_->axes().size()) -
             finding.parameters * parameter_cost_nats(range.plausible_to, range.plausible_from);
         return finding;
     }

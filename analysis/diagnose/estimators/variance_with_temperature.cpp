@@ -80,8 +80,7 @@ public:
         }
         std::optional<Finding> finding = best_of(effect_, single, 0.0, shared);
         if (!finding) { return std::nullopt; }
-        // Of the freedom to choose the axes.
-        finding->evidence_nats -= std::log(std::exp2(static_cast<double>(prediction_->axes().size())) - 1.0);
+        finding->evidence_nats -= axis_choice_nats(prediction_->axes().size());
         finding->where.temperature = true;
         return finding;
     }

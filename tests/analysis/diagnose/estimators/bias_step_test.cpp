@@ -133,6 +133,23 @@ TEST(BiasStep, YieldsToARandomWalk) {
     }
 }
 
+// An axis of three has it or has it not; of one axis there is nothing to choose.
+TEST(BiasStep, PaysForTheChoiceOfAxesWhereThereIsOne) {
+    const SensorModel model = calibrated_sensor();
+    const SensorModel sensor = with_effect(model, "bias_step", {{"step_dps", 0.1}, {"at_s", 33.0}}, {"x"});
+    const Recording whole = *recorded(sensor, 8192, 12);
+    Recording alone = whole;
+    alone.columns.erase(alone.columns.begin() + 1, alone.columns.begin() + 3);
+    const auto of_three =
+        found(make_bias_step_estimator, "bias_step", std::make_shared<const Recording>(whole), model);
+    const auto of_one =
+        found(make_bias_step_estimator, "bias_step", std::make_shared<const Recording>(alone), model);
+    ASSERT_TRUE(of_three && of_one);
+    ASSERT_EQ(of_three->where.axes, std::vector<std::size_t>{0});
+    EXPECT_NEAR(of_one->gain_nats, of_three->gain_nats, 0.05);
+    EXPECT_NEAR(of_one->evidence_nats - of_three->evidence_nats, std::log(2.0), 0.1);
+}
+
 TEST(BiasStep, AnswersForOneDeadAxisAndFewSamples) {
     const SensorModel model = calibrated_sensor();
     EXPECT_LT(evidence(found(make_bias_step_estimator, "bias_step", few_samples_with_a_dead_axis(model, 10),

@@ -176,6 +176,22 @@ TEST(Line, GivesALineThatWandersNoCredit) {
     EXPECT_LT(evidence(finding), 0.02 * expected_gain_nats(model, amplitude_dps, samples));
 }
 
+// An axis of three has it or has it not; of one axis there is nothing to choose.
+TEST(Line, PaysForTheChoiceOfAxesWhereThereIsOne) {
+    const SensorModel model = calibrated_sensor();
+    const SensorModel sensor =
+        with_effect(model, "tone", {{"amplitude_dps", 0.02}, {"f_hz", 17.3}, {"phase_rad", 1.0}}, {"x"});
+    const Recording whole = *recorded(sensor, 8192, 12);
+    Recording alone = whole;
+    alone.columns.erase(alone.columns.begin() + 1, alone.columns.begin() + 3);
+    const auto of_three = found(make_line_estimator, "tone", std::make_shared<const Recording>(whole), model);
+    const auto of_one = found(make_line_estimator, "tone", std::make_shared<const Recording>(alone), model);
+    ASSERT_TRUE(of_three && of_one);
+    ASSERT_EQ(of_three->where.axes, std::vector<std::size_t>{0});
+    EXPECT_NEAR(of_one->gain_nats, of_three->gain_nats, 0.05);
+    EXPECT_NEAR(of_one->evidence_nats - of_three->evidence_nats, std::log(2.0), 0.1);
+}
+
 TEST(Line, AnswersForOneDeadAxisAndFewSamples) {
     const SensorModel model = calibrated_sensor();
     EXPECT_LT(evidence(found(make_line_estimator, "tone", few_samples_with_a_dead_axis(model, 10), model)),

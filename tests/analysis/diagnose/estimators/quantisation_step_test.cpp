@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
+#include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
@@ -53,6 +54,24 @@ TEST(QuantisationStep, OfACoarserConverterIsFoundAxisByAxis) {
             EXPECT_EQ(finding->where.structure, "code_grid");
             EXPECT_FALSE(steps(recording, with_cause(model, *finding)));
         }
+    }
+}
+
+// Of one axis there is nothing to choose.
+TEST(QuantisationStep, PaysForTheChoiceOfAxesWhereThereIsOne) {
+    const SensorModel model = sensor(lsb_dps);
+    const SensorModel coarse = with_effect(model, "quantization", {{"lsb_dps", 8 * lsb_dps}}, {"x"});
+    const Recording whole = *recorded(coarse, two_minutes, 4);
+    for (const std::size_t axes : {1U, 2U, 3U}) {
+        Recording recording = whole;
+        recording.columns.erase(recording.columns.begin() + static_cast<std::ptrdiff_t>(axes),
+                                recording.columns.begin() + 3);
+        const auto finding = steps(std::make_shared<const Recording>(recording), model);
+        ASSERT_TRUE(finding) << axes;
+        const EffectParam& range = find_effect("quantization")->params.front();
+        const double step_nats = parameter_cost_nats(range.plausible_to, range.plausible_from);
+        const double choices = std::exp2(axes) - 1.0;
+        EXPECT_NEAR(finding->evidence_nats, finding->gain_nats - step_nats - std::log(choices), 1e-9) << axes;
     }
 }
 
