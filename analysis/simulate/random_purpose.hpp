@@ -16,6 +16,7 @@ enum class RandomPurpose : std::uint32_t {
     sensor_parameters,   // the others
     stand_ins,           // for samples that are missing
     replicate_reference_noise,
+    replicate_clock,
     reference_measured_anew,
     // Numbered are simulations.
     compared_simulations,

@@ -26,4 +26,10 @@ SensorModel typical_mpu9250() {
     return model;
 }
 
+double clock_rate_sd_rel(const SensorModel& model) {
+    constexpr double crystal_sd_rel = 5e-5;
+    const auto stated = model.sd_abs.find("rate_rel");
+    return stated == model.sd_abs.end() ? crystal_sd_rel : stated->second;
+}
+
 }  // namespace gyrolog

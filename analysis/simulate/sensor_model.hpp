@@ -61,6 +61,9 @@ struct SensorModel {
                                // for none
 };
 
+// One sigma of the clock's rate, relative to it: as the model states it, otherwise a crystal's 50 ppm.
+double clock_rate_sd_rel(const SensorModel& model);
+
 // A typical MPU-9250 at 100 Hz and 500 dps: noise and range of its product specification (PS-MPU-9250A-01,
 // table 1), bias instability and random walk as commonly measured.
 SensorModel typical_mpu9250();

@@ -109,7 +109,7 @@ private:
         const auto recording = std::make_shared<const Recording>(std::move(simulated));
         const auto world = new_worlds_ ? std::make_shared<const RecordedWorld>(recording) : nullptr;
         const auto noise =
-            new_worlds_ ? Observation::ReferenceNoise::recorded : Observation::ReferenceNoise::drawn;
+            new_worlds_ ? Observation::ReferenceNoise::measured_anew : Observation::ReferenceNoise::drawn;
         std::vector<std::optional<Finding>> findings;
         for (std::size_t i = 0; i < causes_.size(); ++i) {
             const Sought there = new_worlds_

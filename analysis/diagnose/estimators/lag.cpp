@@ -14,8 +14,6 @@ namespace {
 constexpr std::string_view place = "growing_lag";
 // Gains below are not worth a closer scan.
 constexpr double trace_nats = 3.0;
-// A crystal's, where the model does not state it.
-constexpr double clock_sd_rel = 5e-5;
 
 const EffectParam& param(const EffectDefinition& effect, std::string_view name) {
     return *std::ranges::find(effect.params, name, &EffectParam::name);
@@ -81,7 +79,7 @@ private:
         // A sensor that runs fast by rel shows moments that fall behind its stamps.
         const double rel = -slope.rel / (1.0 + slope.rel);
         // What the model's own uncertainty covers has been taken off already.
-        const double known_sd = stated_uncertainty(prediction().model().sd_abs, "rate_rel", clock_sd_rel);
+        const double known_sd = clock_rate_sd_rel(prediction().model());
         if (std::fabs(rel) < 3.0 * known_sd) { return std::nullopt; }
         Finding finding = whole_sensor_finding(effect(), prediction(), {{"rel", rel}, {"in_stamps", 0.0}},
                                                {{"rel", slope.sd}});

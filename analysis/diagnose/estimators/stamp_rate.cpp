@@ -11,8 +11,6 @@ namespace gyrolog {
 
 namespace {
 
-// A crystal's, where the model does not state it.
-constexpr double clock_sd_rel = 5e-5;
 // No clock is known better, whatever a model says.
 constexpr double clock_sd_rel_least = 1e-9;
 // Beyond it, the sensor was set to another rate.
@@ -30,8 +28,7 @@ double expected_rate_hz(const Prediction& prediction, const EffectDefinition& ef
 Finding find_rate(const EffectDefinition& effect, const Prediction& prediction, double rel) {
     const Recording& recording = prediction.world().recording();
     const double stamps_sd = recording.rate_sd_hz.value_or(0.0) / recording.rate_hz;
-    const double known_sd =
-        std::max(clock_sd_rel_least, stated_uncertainty(prediction.model().sd_abs, "rate_rel", clock_sd_rel));
+    const double known_sd = std::max(clock_sd_rel_least, clock_rate_sd_rel(prediction.model()));
     const double sd = std::hypot(known_sd, stamps_sd);
     Finding finding =
         whole_sensor_finding(effect, prediction, {{"rel", rel}, {"in_stamps", 1.0}}, {{"rel", sd}});

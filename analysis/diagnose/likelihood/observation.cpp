@@ -223,6 +223,12 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
     }
 }
 
+double Observation::drawn_clock_rel(std::uint64_t seed) const {
+    if (reference_noise_ == ReferenceNoise::recorded || !prediction_->moves()) { return 0.0; }
+    return clock_rate_sd_rel(prediction_->model()) *
+           derived_stream(seed, RandomPurpose::replicate_clock).normal(0);
+}
+
 void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
                                     std::vector<float>& residual_rad_s) const {
     const bool drawn = reference_noise_ == ReferenceNoise::drawn;
@@ -230,10 +236,16 @@ void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
         drawn ? prediction_->denoised_response_rad_s(axis) : prediction_->response_rad_s(axis);
     const double drawn_sd_rad_s = drawn ? prediction_->reference_noise_rad_s(axis) : 0.0;
     const RandomStream noise = derived_stream(seed, RandomPurpose::replicate_reference_noise, axis);
+    const double clock_rel = drawn_clock_rel(seed);
+    const std::vector<float>& change_rad_s2 = prediction_->response_change_rad_s2(axis);
     const Column& column = *recording_->find(gyro_columns[axis]);
     const std::int64_t origin = prediction_->world().recording().segments.front().first_index;
     for_each_slot(segments_, origin, residual_rad_s.size(), [&](std::size_t slot, std::size_t row) {
         double residual = column.value(row) - static_cast<double>(expected[slot]);
+        if (clock_rel != 0.0) {
+            const double ahead_s = clock_rel * static_cast<double>(slot) / prediction_->rate_hz();
+            residual += ahead_s * static_cast<double>(change_rad_s2[slot]);
+        }
         if (drawn_sd_rad_s > 0.0) { residual -= drawn_sd_rad_s * noise.normal(slot); }
         residual_rad_s[slot] = static_cast<float>(residual);
     });

@@ -33,9 +33,11 @@ struct AxisObservation {
 
 class Observation {
 public:
-    // Every sample's expectation has the reference's noise in it: as it was recorded, or, of what was
-    // simulated in the denoised world, drawn from `seed`.
-    enum class ReferenceNoise { recorded, drawn };
+    // Every sample's expectation has the reference's noise in it: as it was recorded, or, of a replicate,
+    // which is simulated in the denoised world, drawn from `seed`, or as it was measured anew. A replicate
+    // that moves has a clock of its own, drawn from `seed` within the model's uncertainty: as the prediction
+    // has it, to first order.
+    enum class ReferenceNoise { recorded, drawn, measured_anew };
 
     // `recording` covers the prediction's grid: it is the prediction's own or a simulation like it. `seed`
     // draws what stands in holes.
@@ -52,6 +54,7 @@ public:
 private:
     void observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform);
     void fit_model(std::size_t axis, CosineTransform& transform);
+    double drawn_clock_rel(std::uint64_t seed) const;
     void take_expected_off(std::size_t axis, std::uint64_t seed, std::vector<float>& residual_rad_s) const;
 
     std::shared_ptr<const Prediction> prediction_;

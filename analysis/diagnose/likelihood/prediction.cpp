@@ -58,8 +58,6 @@ double stated(const std::map<std::string, double>& uncertainties, const char* na
     return found == uncertainties.end() ? otherwise : found->second;
 }
 
-// A crystal's, where the model does not state it.
-constexpr double clock_sd_rel = 5e-5;
 // Over which the motion's change is taken.
 constexpr double time_step_s = 1e-3;
 
@@ -184,7 +182,7 @@ void Prediction::read_motion() {
     // off alike pay together what one parameter pays.
     const double alike = std::sqrt(static_cast<double>(axes_.size()));
     const double latency_sd_s = alike * stated(model_.sd_abs, "latency_s", 0.0);
-    const double clock_sd = alike * stated(model_.sd_abs, "rate_rel", clock_sd_rel);
+    const double clock_sd = alike * clock_rate_sd_rel(model_);
     const bool is_shaped = gain_sd > 0.0 && shapes_the_motion(model_);
     std::array<std::array<std::vector<float>, 3>, 3> per_gain;  // by the rate's axis, then the answer's
     for (const std::size_t from : axes_) {

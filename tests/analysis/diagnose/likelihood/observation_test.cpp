@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/compare/model_draw.hpp"
+#include "analysis/diagnose/calibration/replicates.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -51,6 +52,32 @@ TEST(Observation, FindsTheNoiseWithinItsUncertainty) {
     for (const std::size_t axis : seen.prediction().axes()) {
         EXPECT_NEAR(seen.axis(axis).noise.z[0], 1.8, 1.2) << axis;
     }
+}
+
+// The stated uncertainty of the clock is what the fits of replicates show of it: the prior beside the fit is
+// the one that replicates are drawn from.
+TEST(Observation, OfReplicatesHasAClockWithinItsUncertainty) {
+    SensorModel model = calibrated_sensor();
+    model.ref_noise_rad_s = 0.02 * rad_per_deg;
+    model.sd_abs = {{"latency_s", 1e-4}, {"rate_rel", 5e-5}};
+    const auto recording = recorded(
+        model, 6000, 5, world_turning([](double t_s) {
+            return Vector3{1.5 * std::sin(3.1 * t_s), 1.2 * std::sin(2.3 * t_s), std::sin(1.7 * t_s)};
+        }));
+    const auto prediction = prediction_of(recording, model);
+    ASSERT_TRUE(prediction->moves());
+    constexpr int replicates = 40;
+    double squares = 0.0;
+    for (std::uint64_t seed = 1; seed <= replicates; ++seed) {
+        const auto simulated =
+            std::make_shared<const Recording>(replicate_recording(*prediction, model, seed));
+        const Observation seen(prediction, simulated, seed, Observation::ReferenceNoise::drawn);
+        // The last response is the clock's.
+        const double rel = seen.axis(0).uncertain_fit.back();
+        squares += rel * rel / (5e-5 * 5e-5);
+    }
+    EXPECT_NEAR(squares / replicates, 1.0, 4.0 * std::sqrt(2.0 / replicates));
+    EXPECT_GT(squares / replicates, 0.3);
 }
 
 TEST(Observation, FillsHolesWithoutLosingPower) {
