@@ -9,6 +9,7 @@
 #include <span>
 #include <thread>
 
+#include "analysis/diagnose/calibration/cause_shares.hpp"
 #include "analysis/diagnose/calibration/evidence_tail.hpp"
 #include "analysis/diagnose/calibration/gap_domains.hpp"
 #include "analysis/diagnose/calibration/gap_reference.hpp"
@@ -384,6 +385,7 @@ private:
             answer_.shrink = answer_.shrink_hi = std::clamp(shrink, 0.0, 1.0);
             answer_.shrink_lo = 0.0;
         }
+        share_among_causes(answer_);
         propose_recordings();
         answer_.where = explained ? answer_.causes.front().finding.where : before.where;
         if (!explained && after_ && !answer_.better_shape) { answer_.left = after.where; }
@@ -457,7 +459,7 @@ private:
     void close_by_causes() {
         double gain_nats = 0.0;
         double parameters = 0.0;
-        for (Cause& cause : answer_.causes) {
+        for (const Cause& cause : answer_.causes) {
             const double own = std::max(1, cause.finding.parameters);
             gain_nats += cause.finding.gain_nats;
             parameters += own;
@@ -469,9 +471,6 @@ private:
         answer_.shrink = left(parameters);
         answer_.shrink_lo = left(chi_squared_quantile(parameters, 0.975));
         answer_.shrink_hi = left(chi_squared_quantile(parameters, 0.025));
-        for (Cause& cause : answer_.causes) {
-            cause.shrink_alone = answer_.shrink * cause.finding.gain_nats / gain_nats;
-        }
         const double along = std::sqrt(1.0 + 2.0 * gain_nats / parameters);
         if (along > answer_.gap_before.value) {
             const double sd = std::sqrt((2.0 * along * along - 1.0) / (2.0 * parameters)) / along;
@@ -501,8 +500,9 @@ private:
     bool measure_on_holdout() {
         const auto world = std::make_shared<const RecordedWorld>(options_.holdout);
         const std::optional<GapSummary> before = gap_on_holdout(world, prediction_->model());
+        const SensorModel corrected = corrected_without_events();
         const std::optional<GapSummary> after =
-            answer_.causes.empty() ? before : gap_on_holdout(world, answer_.corrected);
+            answer_.causes.empty() ? before : gap_on_holdout(world, corrected);
         if (!before || !after) { return false; }
         answer_.held_out = options_.holdout->name;
         answer_.gap_before = before->gap;
@@ -515,12 +515,24 @@ private:
         answer_.shrink = closed(after->gap.value);
         answer_.shrink_lo = closed(after->gap.hi);
         answer_.shrink_hi = closed(after->gap.lo);
+        share_among_causes(answer_);
         return true;
+    }
+
+    // For another recording than that of the causes.
+    SensorModel corrected_without_events() {
+        for (const Cause& cause : answer_.causes) {
+            const std::string& effect = cause.finding.effect;
+            if (!is_event(effect)) { continue; }
+            append_new(answer_.warnings,
+                       {effect + " happened in the first recording: the second is judged without it"});
+        }
+        return without_events(answer_.corrected, prediction_->model().effects.size());
     }
 
     // The evidence of all effects as their probabilities, equal before the recording was seen.
     Cause cause_of(const FoundCause& found, bool explained) const {
-        Cause cause{found.finding, 0.0, {}, answer_.shrink, {}};
+        Cause cause{found.finding, 0.0, {}, 0.0, {}};
         double sum = 1.0;
         for (const Finding& rival : found.rivals) {
             if (rival.effect == found.finding.effect) { continue; }

@@ -87,6 +87,7 @@ struct EffectSignature {
     std::span<const std::string_view> linear{};
     bool changes_mean = false;  // beside the spectrum
     bool folds = false;         // what it leaves of fast noise depends on how it is sampled
+    bool event = false;         // at one time of a recording: another recording has it not, or elsewhere
     bool slow = false;          // the mean response is: nothing in it is faster than some ten seconds
     // Every group is a way to vary other parameters, as a product; one group is enough for most.
     std::span<const std::span<const TrialValues>> trials{};

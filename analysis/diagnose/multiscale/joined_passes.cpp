@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/diagnose/calibration/cause_shares.hpp"
 #include "analysis/diagnose/diagnosis.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 
@@ -138,7 +139,7 @@ private:
         whole_.shrink = joined(&Diagnosis::shrink);
         whole_.shrink_lo = joined(&Diagnosis::shrink_lo);
         whole_.shrink_hi = joined(&Diagnosis::shrink_hi);
-        share_among_causes();
+        share_among_causes(whole_);
         const bool of_beginning = !(weights[1] > 0.0) ||
                                   (weights[0] > 0.0 && beginning_.gap_before.value > means_.gap_before.value);
         whole_.gap_before = of_beginning ? beginning_.gap_before : means_.gap_before;
@@ -146,13 +147,6 @@ private:
             return std::sqrt(1.0 + (1.0 - shrink) * excess(whole_.gap_before));
         };
         whole_.gap_after = {after(whole_.shrink), 1.0, after(whole_.shrink_hi), after(whole_.shrink_lo)};
-    }
-
-    void share_among_causes() {
-        const double sum = gain_nats(whole_);
-        for (Cause& cause : whole_.causes) {
-            cause.shrink_alone = sum > 0.0 ? whole_.shrink * cause.finding.gain_nats / sum : 0.0;
-        }
     }
 
     void report_second_recording() {
@@ -166,7 +160,7 @@ private:
         whole_.shrink = pass.shrink;
         whole_.shrink_lo = pass.shrink_lo;
         whole_.shrink_hi = pass.shrink_hi;
-        share_among_causes();
+        share_among_causes(whole_);
     }
 
     void join_words() {

@@ -31,6 +31,7 @@ constexpr EffectParam bias_step_params[] = {
 constexpr EffectSignature bias_step_signature = {
     .method = EvidenceMethod::step,
     .place = PlaceKind::instant,
+    .event = true,
     .words = "The bias jumps once, {at_s} after the first sample, by {step_dps}.",
     .decided_by =
         "a second recording of the same length at rest: a jump that was one event is not in it, "

@@ -55,6 +55,7 @@ constexpr EffectParam variance_change_params[] = {
 constexpr EffectSignature variance_change_signature = {
     .method = EvidenceMethod::variance_change_point,
     .place = PlaceKind::time,
+    .event = true,
     .white_gain = variance_change_white_gain,
     .words =
         "From {at_s} after the start on the white noise changes within {ramp_s} to {factor} times its "

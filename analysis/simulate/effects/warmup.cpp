@@ -44,6 +44,7 @@ constexpr EffectSignature warmup_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::time,
     .linear = warmup_linear,
+    .event = true,
     .slow = true,
     .trials = warmup_trials,
     .words = "The bias settles after turn-on: {a_dps} at first, with a time constant of {tau_s}",

@@ -1,10 +1,15 @@
 #include "analysis/diagnose/diagnosis.hpp"
 
+#include <algorithm>
+#include <map>
+#include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/calibration/cause_shares.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -46,6 +51,67 @@ TEST(Diagnosis, CallsFiveEffectsUnexplained) {
     EXPECT_EQ(five.verdict, Verdict::unexplained);
     EXPECT_EQ(five.shrink_lo, 0.0);
     EXPECT_TRUE(five.split_half.judged.empty());
+    ASSERT_GT(five.shrink, 0.5);
+    double shares = 0.0;
+    for (const Cause& cause : five.causes) {
+        EXPECT_GT(cause.shrink_alone, 0.0)
+            << cause.finding.effect << " of " << cause.finding.gain_nats << " nats";
+        shares += cause.shrink_alone;
+    }
+    EXPECT_NEAR(shares, five.shrink, 1e-9);
+}
+
+// A jump of the first recording is none of the second, in which a correction by it would be a gap.
+TEST(Diagnosis, JudgesASecondRecordingWithoutTheEventsOfTheFirst) {
+    const SensorModel model = calibrated_sensor();
+    const SensorModel jumping = with_effect(model, "bias_step", {{"at_s", 60.0}, {"step_dps", 0.05}}, {"y"});
+    DiagnosisOptions options;
+    options.simulations = 20;
+    Recording second = *recorded(model, 12000, 92);
+    second.name = "second.csv";
+    options.holdout = std::make_shared<const Recording>(std::move(second));
+    const Diagnosis diagnosis = *diagnose(recorded(jumping, 12000, 91), model, "model", options);
+    ASSERT_EQ(effects_of(diagnosis), std::set<std::string>{"bias_step"});
+    ASSERT_EQ(diagnosis.held_out, "second.csv");
+    EXPECT_DOUBLE_EQ(diagnosis.gap_after.value, diagnosis.gap_before.value);
+    EXPECT_EQ(diagnosis.causes.front().shrink_alone, 0.0);
+    EXPECT_EQ(
+        std::ranges::count(diagnosis.warnings,
+                           "bias_step happened in the first recording: the second is judged without it"),
+        1);
+}
+
+TEST(Diagnosis, OfEventsKnowsThoseThatHappenOnce) {
+    std::set<std::string> events;
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect != nullptr && is_event(std::string(link.effect->name))) {
+            events.insert(std::string(link.effect->name));
+        }
+    }
+    EXPECT_EQ(events, (std::set<std::string>{"bias_step", "variance_change", "warmup"}));
+}
+
+// What a diagnosis does not look for may be in a model.
+TEST(Diagnosis, IsGivenOfAModelWithEffectsThatNothingLooksFor) {
+    SensorModel model = calibrated_sensor();
+    std::set<std::string> listed;
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect == nullptr || link.effect->signature != nullptr) { continue; }
+        std::map<std::string, double> params;
+        for (const EffectParam& param : link.effect->params) {
+            params[std::string(param.name)] = param.otherwise.value_or(
+                param.plausible_from + 0.1 * (param.plausible_to - param.plausible_from));
+        }
+        listed.insert(std::string(link.effect->name));
+        model = with_effect(model, std::string(link.effect->name), params);
+    }
+    EXPECT_EQ(listed, (std::set<std::string>{"angle_noise", "self_heating", "temp_scale",
+                                             "vibration_rectification"}));
+    DiagnosisOptions options;
+    options.simulations = 12;
+    const Diagnosis diagnosis = *diagnose(recorded(model, 4096, 93), model, "model", options);
+    EXPECT_EQ(diagnosis.verdict, Verdict::none);
+    EXPECT_EQ(diagnosis.corrected.effects.size(), listed.size());
 }
 
 }  // namespace
