@@ -21,6 +21,8 @@ using Kind = CurveTerm::Kind;
 constexpr double db_per_neper = 10.0 / std::numbers::ln10;  // of a variance
 constexpr double margin_to_enter = 10.0;
 constexpr double margin_to_stay = 2.0;
+// A size of which none at all lies within a standard deviation is none that the curve shows.
+constexpr double margin_to_be_seen = 1.0;
 constexpr std::size_t changes_max = 6;
 constexpr double first_smooth_sd_db = 0.3;
 constexpr int rounds = 3;        // of fit and scatter
@@ -75,8 +77,9 @@ struct Slot {
     bool in_model = true;
     bool changed = false;  // free without a prior; true for all that are not in the model
     CurveTerm now{};
+    bool unseen = false;  // changed to none of it
 
-    bool is_free() const { return changed || modelled.sd_rel > 0.0; }
+    bool is_free() const { return !unseen && (changed || modelled.sd_rel > 0.0); }
     bool frees_shape() const { return !in_model && has_shape(now.kind); }
 };
 
@@ -149,6 +152,7 @@ public:
 
     void run() {
         while (changes() < changes_max && make_best_change()) { take_back_idle_changes(); }
+        take_out_unseen();
     }
 
     const Judged& result() const { return now_; }
@@ -172,8 +176,10 @@ public:
 
     // Standard deviations of the logarithms, in the order of logarithms_of().
     std::vector<double> log_sd() const {
+        const std::vector<double> logs = logarithms_of(now_.slots);
+        if (logs.empty()) { return {}; }
         const LeastSquaresProblem problem = problem_of(target_, scatter_, now_.slots, now_.smooth_sd_db);
-        const Matrix derivatives = central_differences(problem, logarithms_of(now_.slots), 1e-10);
+        const Matrix derivatives = central_differences(problem, logs, 1e-10);
         const Matrix covariance = pseudo_inverse(transposed_product(derivatives, derivatives));
         std::vector<double> sd;
         for (std::size_t i = 0; i < covariance.rows(); ++i) {
@@ -189,7 +195,7 @@ private:
 
     static void take_back(std::vector<Slot>& slots, std::size_t slot) {
         if (slots[slot].in_model) {
-            slots[slot].changed = false;
+            slots[slot].changed = slots[slot].unseen = false;
             slots[slot].now = slots[slot].modelled.term;
         } else {
             slots.erase(slots.begin() + static_cast<std::ptrdiff_t>(slot));
@@ -309,6 +315,18 @@ private:
             } else {
                 ++i;
             }
+        }
+    }
+
+    // Terms of the model whose size the fit lets go to nothing.
+    void take_out_unseen() {
+        for (std::size_t i = 0; i < now_.slots.size(); ++i) {
+            if (!now_.slots[i].changed || !now_.slots[i].in_model) { continue; }
+            std::vector<Slot> slots = now_.slots;
+            slots[i].unseen = true;
+            slots[i].now.size = 0.0;
+            Judged without_it = fitted(std::move(slots), now_.smooth_sd_db, rounds);
+            if (without_it.criterion < now_.criterion + margin_to_be_seen) { now_ = std::move(without_it); }
         }
     }
 

@@ -32,7 +32,7 @@ struct CurveRival {
 };
 
 struct CurveCause {
-    CurveTerm term;  // as the curve has it
+    CurveTerm term;  // as the curve has it; of the size 0 where the curve shows none of the model's
     double size_sd_rel = 0.0;
     double shape_sd_rel = 0.0;
     std::optional<CurveTerm> in_model;  // what it replaces; none: the model lacks the term

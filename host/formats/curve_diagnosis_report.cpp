@@ -91,10 +91,11 @@ void put_cause(Diagnosis& diagnosis, const DiagnosedCurve& curve, const CurveCau
     finding.sd.push_back(effect.sd);
     finding.gain_nats += gain_nats;
     finding.evidence_nats += gain_nats;
-    finding.where.axes.push_back(curve.axis);
+    std::vector<std::size_t>& axes = finding.where.axes;
+    if (std::ranges::count(axes, curve.axis) == 0) { axes.push_back(curve.axis); }
     finding.where.tau_s = joined(finding.where.tau_s, found.from_tau_s, found.to_tau_s);
     const bool strongest = gain_nats >= *std::ranges::max_element(finding.axis_gain_nats);
-    finding.axis_gain_nats.at(curve.axis) = gain_nats;
+    finding.axis_gain_nats.at(curve.axis) += gain_nats;
     if (!strongest) { return; }
     cause->score = found.probability;
     cause->shrink_alone = found.shrink_alone;

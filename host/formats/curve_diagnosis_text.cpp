@@ -32,6 +32,10 @@ std::string stretch_text(const CurveGapStretch& stretch) {
 
 std::string cause_words(const CurveCause& cause, const RateUnit& unit) {
     if (!cause.in_model) { return fmt::format("the model lacks {}", term_text(cause.term, unit)); }
+    if (cause.term.size == 0.0) {
+        return fmt::format("no {} seen, where the model has {}", name_of(cause.term.kind),
+                           term_text(*cause.in_model, unit));
+    }
     return fmt::format("the sensor's {} is {} times the model's ({})", name_of(cause.term.kind),
                        with_uncertainty(cause.factor(), cause.factor() * cause.size_sd_rel),
                        term_text(*cause.in_model, unit));

@@ -94,6 +94,28 @@ TEST(CurveDiagnosis, NamesATermThatTheModelLacks) {
     EXPECT_LT(diagnosis.causes[0].to_tau_s, 0.2);
 }
 
+// A term of which the curve has nothing is fitted to a size without meaning.
+TEST(CurveDiagnosis, SaysThatACoefficientIsNotSeen) {
+    NoiseModel sensor = nbk();
+    sensor.coefficients.B_rad_per_s = 0.0;
+    NoiseModel model = nbk();
+    model.coefficients.B_rad_per_s *= 3.0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        const CurveDiagnosis diagnosis =
+            diagnose_curve(curve_of(sensor, {0.02, 0.1, seed}), model_of(model.coefficients));
+        ASSERT_EQ(diagnosis.causes.size(), 1U) << seed;
+        EXPECT_EQ(diagnosis.causes[0].term.kind, Kind::B);
+        EXPECT_EQ(diagnosis.causes[0].term.size, 0.0) << seed;
+        EXPECT_EQ(diagnosis.causes[0].factor(), 0.0);
+        EXPECT_GT(diagnosis.shrink, 0.9);
+    }
+    // Half of it is.
+    sensor.coefficients.B_rad_per_s = 0.5 * model.coefficients.B_rad_per_s;
+    const CurveDiagnosis less = diagnose_curve(curve_of(sensor, as_printed), model_of(model.coefficients));
+    ASSERT_EQ(less.causes.size(), 1U);
+    EXPECT_NEAR(less.causes[0].factor(), 0.5, 4.0 * 0.5 * less.causes[0].size_sd_rel);
+}
+
 TEST(CurveDiagnosis, TakesForNoGapWhatTheModelsUncertaintyCovers) {
     NoiseModel sensor = nbk();
     sensor.coefficients.N_rad_per_sqrt_s *= 1.1;

@@ -73,6 +73,40 @@ const json* cause_of(const json& answer, const std::string& effect) {
     return nullptr;
 }
 
+TEST(CurveDiagnosisReport, SaysWhatIsNotSeenInWords) {
+    SensorModel model = quiet_model();
+    CurveDiagnosisReport report;
+    report.unit = {"dps", deg_per_rad};
+    NoiseModel sensor;
+    sensor.coefficients = model.axes[0].noise;
+    sensor.coefficients.B_rad_per_s = 0.0;
+    model.axes[0].noise.B_rad_per_s *= 3.0;
+    const AllanCurve curve = exact_curve(sensor);
+    const std::vector<ModelledTerm> terms = curve_of_model(model, 0).terms;
+    report.curves.push_back({"sensor_x", 0, curve, terms, diagnose_curve(curve, terms)});
+    EXPECT_THAT(curve_diagnosis_text(report), HasSubstr("no B seen, where the model has"));
+    ASSERT_EQ(report.curves[0].diagnosis.causes.size(), 1U);
+    correct(model, 0, report.curves[0].diagnosis.causes[0]);
+    EXPECT_EQ(model.axes[0].noise.B_rad_per_s, 0.0);
+}
+
+TEST(CurveDiagnosisReport, NamesAnAxisOnceThatHasTwoOfAnEffect) {
+    CurveDiagnosisReport report = report_of(quiet_model());
+    std::vector<CurveCause>& causes = report.curves[0].diagnosis.causes;
+    const auto process = std::ranges::find(causes, Kind::gauss_markov,
+                                           [](const CurveCause& cause) { return cause.term.kind; });
+    ASSERT_NE(process, causes.end());
+    const double gain_nats = 0.5 * process->criterion_gain;
+    causes.push_back(*process);
+    const Diagnosis diagnosis = as_diagnosis(report);
+    const auto cause = std::ranges::find(diagnosis.causes, "gauss_markov",
+                                         [](const Cause& one) { return one.finding.effect; });
+    ASSERT_NE(cause, diagnosis.causes.end());
+    EXPECT_EQ(cause->finding.entries.size(), 2U);
+    EXPECT_EQ(cause->finding.where.axes, std::vector<std::size_t>{0});
+    EXPECT_NEAR(cause->finding.axis_gain_nats[0], 2.0 * gain_nats, 1e-9);
+}
+
 TEST(CurveDiagnosisReport, NamesFactorAndMissingTermUnderTheEffectsNames) {
     const json answer = json::parse(curve_diagnosis_json(quiet_report()));
     EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
