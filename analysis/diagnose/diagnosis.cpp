@@ -100,6 +100,7 @@ public:
             }
         }
         if (!simulate_before() || !search() || !simulate_after()) { return std::nullopt; }
+        withdraw_harmful_causes();
         if (found_) { compare_shapes(); }
         decide();
         if (!widen_uncertainties()) { return std::nullopt; }
@@ -282,6 +283,30 @@ private:
         answer_.p_left =
             EvidenceTail(simulated_surprises_nats(null->curves)).probability(surprise_left_nats_);
         return true;
+    }
+
+    // Causes with which the model is farther from the recording than it was explain nothing.
+    void withdraw_harmful_causes() {
+        if (!after_ || answer_.p_left >= unexplained_below_p()) { return; }
+        const double before = summarise(before_curves_, before_).gap.value;
+        const double after = summarise(after_curves_, *after_).gap.value;
+        if (after <= before) { return; }
+        std::vector<std::string> effects;
+        for (const FoundCause& cause : found_->causes) { append_new(effects, {cause.finding.effect}); }
+        std::string text = "left out, since the gap would be ";
+        std::array<char, 60> gaps{};
+        (void)std::snprintf(gaps.data(), gaps.size(), "%.3g instead of %.3g with", after, before);
+        text += gaps.data();
+        for (const std::string& effect : effects) {
+            text += (effect == effects.front() ? " " : ", ") + effect;
+        }
+        answer_.warnings.push_back(std::move(text));
+        found_->causes.clear();
+        found_->without_causes = answer_.corrected = prediction_->model();
+        answer_.noise_refits.clear();
+        answer_.p_left = 1.0;
+        after_.reset();
+        after_curves_.clear();
     }
 
     Observation without(std::span<const FoundCause> left_out) const {
