@@ -54,15 +54,6 @@ std::string ranges_text(const Comparison& comparison, const ComparedCurve& curve
     return text;
 }
 
-// Where chance does as much, places are noise, and a list of them would only mislead.
-bool places_say_something(const Comparison& comparison, const ComparedCurve& curve) {
-    if (curve.gap.stands_out) { return true; }
-    if (curve.simulations_outside_as_often) {
-        return *curve.simulations_outside_as_often * 20 < comparison.simulations;
-    }
-    return static_cast<double>(curve.points_outside()) > 2.0 * curve.points_by_chance;
-}
-
 std::string curve_text(const Comparison& comparison, const char* name, const ComparedCurve& curve,
                        PlaceText place) {
     if (curve.at.empty()) { return fmt::format("  {}: no values above zero to compare\n", name); }
@@ -73,7 +64,8 @@ std::string curve_text(const Comparison& comparison, const char* name, const Com
                             *curve.simulations_outside_as_often, comparison.simulations);
     }
     text += '\n';
-    return places_say_something(comparison, curve) ? text + ranges_text(comparison, curve, place) : text;
+    // Where chance does as much, places are noise: the last lines say that nothing differs.
+    return curve.gap.stands_out ? text + ranges_text(comparison, curve, place) : text;
 }
 
 TextRow number_row(const char* label, const char* unit, const ComparedNumber& number, double per_unit) {
