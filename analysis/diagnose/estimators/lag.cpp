@@ -44,7 +44,7 @@ public:
         if (!finding) { return std::nullopt; }
         SensorModel model = prediction_->model();
         model.effects.push_back(finding->entries.front());
-        const Observation with(prediction_->with(model), shared(observation), 1);
+        const Observation with = observation.under(model);
         finding->where.structure = place;
         finding->gain_nats = log_likelihood_nats(with) - log_likelihood_nats(observation);
         if (finding->gain_nats < trace_nats) { return std::nullopt; }
@@ -59,11 +59,6 @@ protected:
 
 private:
     virtual std::optional<Finding> proposed(const LagCourse& course) const = 0;
-
-    // Outlives its use here.
-    static std::shared_ptr<const Recording> shared(const Observation& observation) {
-        return {std::shared_ptr<const Recording>(), &observation.recording()};
-    }
 
     const EffectDefinition* effect_;
     std::shared_ptr<const Prediction> prediction_;

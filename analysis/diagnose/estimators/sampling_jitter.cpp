@@ -118,9 +118,7 @@ private:
     double checked_nats(const Observation& observation, double sd_s) const {
         SensorModel model = prediction_->model();
         model.effects.push_back({std::string(effect_->name), {}, {{"sd_s", sd_s}, {"in_stamps", 0.0}}, ""});
-        const std::shared_ptr<const Recording> recording(std::shared_ptr<const Recording>(),
-                                                         &observation.recording());
-        const Observation with(prediction_->with(model), recording, 1);
+        const Observation with = observation.under(model);
         double nats = log_likelihood_nats(with) - log_likelihood_nats(observation);
         for (const std::size_t axis : prediction_->axes()) { nats += course_nats(with, axis); }
         return nats;

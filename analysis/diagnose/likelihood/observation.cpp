@@ -205,6 +205,7 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
                          ReferenceNoise reference_noise)
     : prediction_(std::move(prediction)),
       recording_(std::move(recording)),
+      seed_(seed),
       reference_noise_(reference_noise),
       segments_(placed_rows(*prediction_, *recording_)) {
     const std::size_t length = prediction_->length();
@@ -214,7 +215,7 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
     for_each_slot(segments_, origin, length,
                   [&](std::size_t slot, std::size_t row) { present_[slot] = judged[row]; });
     const TransformPool::Lease transform = prediction_->transform();
-    for (const std::size_t axis : prediction_->axes()) { observe(axis, seed, *transform); }
+    for (const std::size_t axis : prediction_->axes()) { observe(axis, *transform); }
     // What moved before the recording began is not known, and a sensor that lags shows it.
     const double unknown_s = prediction_->moves() ? unknown_start_s : 0.0;
     for (std::size_t slot = 0; slot < length; ++slot) {
@@ -223,20 +224,19 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
     }
 }
 
-double Observation::drawn_clock_rel(std::uint64_t seed) const {
+double Observation::drawn_clock_rel() const {
     if (reference_noise_ == ReferenceNoise::recorded || !prediction_->moves()) { return 0.0; }
     return clock_rate_sd_rel(prediction_->model()) *
-           derived_stream(seed, RandomPurpose::replicate_clock).normal(0);
+           derived_stream(seed_, RandomPurpose::replicate_clock).normal(0);
 }
 
-void Observation::take_expected_off(std::size_t axis, std::uint64_t seed,
-                                    std::vector<float>& residual_rad_s) const {
+void Observation::take_expected_off(std::size_t axis, std::vector<float>& residual_rad_s) const {
     const bool drawn = reference_noise_ == ReferenceNoise::drawn;
     const std::vector<float>& expected =
         drawn ? prediction_->denoised_response_rad_s(axis) : prediction_->response_rad_s(axis);
     const double drawn_sd_rad_s = drawn ? prediction_->reference_noise_rad_s(axis) : 0.0;
-    const RandomStream noise = derived_stream(seed, RandomPurpose::replicate_reference_noise, axis);
-    const double clock_rel = drawn_clock_rel(seed);
+    const RandomStream noise = derived_stream(seed_, RandomPurpose::replicate_reference_noise, axis);
+    const double clock_rel = drawn_clock_rel();
     const std::vector<float>& change_rad_s2 = prediction_->response_change_rad_s2(axis);
     const Column& column = *recording_->find(gyro_columns[axis]);
     const std::int64_t origin = prediction_->world().recording().segments.front().first_index;
@@ -278,19 +278,19 @@ void Observation::fit_model(std::size_t axis, CosineTransform& transform) {
     }
 }
 
-void Observation::observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform) {
+void Observation::observe(std::size_t axis, CosineTransform& transform) {
     const Prediction& prediction = *prediction_;
     const std::size_t length = prediction.length();
     const double rate_hz = prediction.rate_hz();
     AxisObservation& seen = axes_[axis];
     std::vector<float>& residual = seen.residual_rad_s;
     residual.assign(length, 0.0F);
-    take_expected_off(axis, seed, residual);
+    take_expected_off(axis, residual);
     seen.mean_rad_s = take_mean_off(residual, present_);
     const double white = prediction.parts(axis).back().sum();
     const auto fill = [&] {
         fill_holes(residual, present_, std::sqrt(white * rate_hz),
-                   derived_stream(seed, RandomPurpose::stand_ins, axis));
+                   derived_stream(seed_, RandomPurpose::stand_ins, axis));
     };
     fill();
     fit_model(axis, transform);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -44,6 +45,11 @@ public:
     Observation(std::shared_ptr<const Prediction> prediction, std::shared_ptr<const Recording> recording,
                 std::uint64_t seed, ReferenceNoise reference_noise = ReferenceNoise::recorded);
 
+    // The same recording, with the same draws, under another model for the same world.
+    Observation under(const SensorModel& model) const {
+        return {prediction_->with(model), recording_, seed_, reference_noise_};
+    }
+
     const Prediction& prediction() const { return *prediction_; }
     const Recording& recording() const { return *recording_; }
     // `axis` is one that the prediction has.
@@ -52,13 +58,14 @@ public:
     const std::vector<bool>& present() const { return present_; }
 
 private:
-    void observe(std::size_t axis, std::uint64_t seed, CosineTransform& transform);
+    void observe(std::size_t axis, CosineTransform& transform);
     void fit_model(std::size_t axis, CosineTransform& transform);
-    double drawn_clock_rel(std::uint64_t seed) const;
-    void take_expected_off(std::size_t axis, std::uint64_t seed, std::vector<float>& residual_rad_s) const;
+    double drawn_clock_rel() const;
+    void take_expected_off(std::size_t axis, std::vector<float>& residual_rad_s) const;
 
     std::shared_ptr<const Prediction> prediction_;
     std::shared_ptr<const Recording> recording_;
+    std::uint64_t seed_;
     ReferenceNoise reference_noise_;
     std::vector<Segment> segments_;  // where its rows belong on the grid
     std::vector<bool> present_;

@@ -80,6 +80,20 @@ TEST(Observation, OfReplicatesHasAClockWithinItsUncertainty) {
     EXPECT_GT(squares / replicates, 0.3);
 }
 
+// Whatever was drawn for a replicate is the same under another model: only the models differ.
+TEST(Observation, OfAReplicateUnderItsOwnModelIsTheSame) {
+    SensorModel model = with_effect(calibrated_sensor(), "dropped", {{"per_hour", 600.0}, {"longest", 30.0}});
+    model.ref_noise_rad_s = 0.5 * rad_per_deg;
+    const auto recording =
+        recorded(model, 6000, 5, world_turning([](double t_s) {
+                     return Vector3{std::sin(3.1 * t_s), std::sin(2.3 * t_s), std::sin(1.7 * t_s)};
+                 }));
+    const auto prediction = prediction_of(recording, model);
+    const auto simulated = std::make_shared<const Recording>(replicate_recording(*prediction, model, 8));
+    const Observation seen(prediction, simulated, 8, Observation::ReferenceNoise::drawn);
+    EXPECT_DOUBLE_EQ(log_likelihood_nats(seen.under(model)), log_likelihood_nats(seen));
+}
+
 TEST(Observation, FillsHolesWithoutLosingPower) {
     const SensorModel model = calibrated_sensor();
     SensorModel dropping = model;
