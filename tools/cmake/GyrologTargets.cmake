@@ -11,12 +11,12 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 
 # A compiler cache wherever there is one. Paths below the project's folder count from there, so that another clone on
 # the same machine finds what the first one compiled. Precompiled headers need the sloppiness: the times of the headers
-# in them do not count, their texts do.
+# in them do not count, their texts do. Nor does the language of the compiler's messages.
 find_program(GYROLOG_CCACHE ccache)
 mark_as_advanced(GYROLOG_CCACHE)
 if(GYROLOG_CCACHE)
   set(gyrolog_launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1
-    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${GYROLOG_CCACHE})
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime,locale ${GYROLOG_CCACHE})
   foreach(language C CXX)
     if(NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
       set(CMAKE_${language}_COMPILER_LAUNCHER ${gyrolog_launcher})
@@ -121,11 +121,14 @@ function(gyrolog_precompile_test_headers)
     <gtest/gtest.h> <nlohmann/json.hpp>)
 endfunction()
 
-# gyrolog_test(NAME SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds] [NOT_INSTRUMENTED test...]): one GoogleTest
-# binary, one ctest entry. COMPUTES: its own loops take long, and are optimised. NOT_INSTRUMENTED: searches and
-# statistics of many seconds, which sanitizers make minutes, and whose code other tests run as well.
+# Programs that tests of the default tier run.
+add_custom_target(default_tests)
+
+# gyrolog_test(NAME SOURCES ... LINK ... [LABELS ...] [TIMEOUT seconds] [STATISTICS test...]): one GoogleTest binary, one
+# ctest entry. COMPUTES: its own loops take long, and are optimised. STATISTICS: searches and statistics of many seconds,
+# whose code the other tests run as well: an entry of their own, NAME_statistics, in the tier of that name.
 function(gyrolog_test name)
-  cmake_parse_arguments(arg "COMPUTES" "TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT;NOT_INSTRUMENTED" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTES" "TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT;STATISTICS" ${ARGN})
   if(NOT GYROLOG_TESTS)
     return()
   endif()
@@ -142,13 +145,11 @@ function(gyrolog_test name)
   if(NOT arg_LABELS)
     set(arg_LABELS default)
   endif()
-  # Instrumented, only the default tier without its statistics is run: the others are not built.
-  if(GYROLOG_SANITIZE AND NOT arg_LABELS STREQUAL "default")
+  # Instrumented, only the default tier is run: the others are not built.
+  if("default" IN_LIST arg_LABELS)
+    add_dependencies(default_tests ${name})
+  elseif(GYROLOG_SANITIZE)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
-  endif()
-  if(GYROLOG_SANITIZE AND arg_NOT_INSTRUMENTED)
-    list(JOIN arg_NOT_INSTRUMENTED ":" left_out)
-    list(APPEND arg_ENVIRONMENT "GTEST_FILTER=-${left_out}")
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
@@ -156,6 +157,12 @@ function(gyrolog_test name)
     if(GYROLOG_SANITIZE)
       set(arg_TIMEOUT 1200)
     endif()
+  endif()
+  if(arg_STATISTICS)
+    list(JOIN arg_STATISTICS ":" statistics)
+    add_test(NAME ${name}_statistics COMMAND ${name} --gtest_filter=${statistics})
+    gyrolog_test_settings(${name}_statistics statistics ${arg_TIMEOUT} "${arg_ENVIRONMENT}")
+    list(APPEND arg_ENVIRONMENT "GTEST_FILTER=-${statistics}")
   endif()
   gyrolog_test_settings(${name} "${arg_LABELS}" ${arg_TIMEOUT} "${arg_ENVIRONMENT}")
 endfunction()
@@ -199,6 +206,7 @@ function(gyrolog_fuzz name)
     target_link_libraries(${name} PRIVATE gyrolog_settings ${arg_LINK})
     add_test(NAME ${name} COMMAND ${name} ${CMAKE_SOURCE_DIR}/tests/fuzz/corpus/${name})
     set_tests_properties(${name} PROPERTIES LABELS "default;fuzz" TIMEOUT 120)
+    add_dependencies(default_tests ${name})
   endif()
 endfunction()
 
