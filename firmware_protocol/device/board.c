@@ -86,7 +86,8 @@ static void send_hello(glp_board* self) {
     for (size_t i = 0; (i < GLP_FIRMWARE_BYTES) && (firmware[i] != '\0'); ++i) {
         hello.firmware[i] = firmware[i];
     }
-    const char* sensor = (self->who_am_i == GLP_MPU_WHO_AM_I) ? "MPU-9250" : "not an MPU-9250";
+    const char* known = glp_mpu_name(self->who_am_i);
+    const char* sensor = (known != NULL) ? known : "not an MPU-9250";
     for (size_t i = 0; (i < GLP_SENSOR_BYTES) && (sensor[i] != '\0'); ++i) { hello.sensor[i] = sensor[i]; }
     uint8_t payload[128];
     const size_t size = glp_hello_write(&hello, payload, sizeof payload);

@@ -130,6 +130,19 @@ static uint8_t idle_user_ctrl(const glp_hal* hal) {
     return hal->sensor_on_spi ? (uint8_t)glp_mpu_user_ctrl_i2c_if_dis : 0U;
 }
 
+const char* glp_mpu_name(uint8_t who_am_i) {
+    switch (who_am_i) {
+        case GLP_MPU_9250_ID:
+            return "MPU-9250";
+        case GLP_MPU_9255_ID:
+            return "MPU-9255";
+        case GLP_MPU_9250_75_ID:
+            return "MPU-9250 (75)";
+        default:
+            return NULL;
+    }
+}
+
 glp_mpu_outcome glp_mpu_reset(const glp_hal* hal, uint8_t* who_am_i, glp_mpu_fault* fault) {
     const register_value reset = {glp_mpu_pwr_mgmt_1, glp_mpu_pwr_mgmt_1_h_reset};
     if (!write_all(hal, &reset, 1)) { return glp_mpu_bus_error; }
@@ -142,7 +155,7 @@ glp_mpu_outcome glp_mpu_reset(const glp_hal* hal, uint8_t* who_am_i, glp_mpu_fau
     // The gyro needs 35 ms to start, its PLL with it.
     hal->delay_ms(hal->context, 100);
     if (!hal->sensor_read(hal->context, glp_mpu_who_am_i, who_am_i, 1)) { return glp_mpu_bus_error; }
-    if (*who_am_i != GLP_MPU_WHO_AM_I) {
+    if (glp_mpu_name(*who_am_i) == NULL) {
         *fault = (glp_mpu_fault){glp_mpu_who_am_i, *who_am_i};
         return glp_mpu_fault_found;
     }

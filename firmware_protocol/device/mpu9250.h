@@ -60,7 +60,14 @@ enum {
         0x01  // PWR_MGMT_1: the best clock there is, the gyro's PLL once it is ready
 };
 
-#define GLP_MPU_WHO_AM_I 0x71U
+/// WHO_AM_I of the parts that have these registers: MPU-9250 (RM-MPU-9250A-00 rev. 1.4, register 117),
+/// MPU-9255 (RM-000008 rev. 1.0; Linux, drivers/iio/imu/inv_mpu6050, INV_MPU9255_WHOAMI_VALUE), and what has
+/// been sold as an MPU-9250 since that is no longer made. No document names 75: accelerometer and gyro of
+/// such parts work with an MPU-9250's driver, their magnetometer does not (github.com/kriswiner/MPU9250,
+/// issue 486).
+#define GLP_MPU_9250_ID 0x71U
+#define GLP_MPU_9255_ID 0x73U
+#define GLP_MPU_9250_75_ID 0x75U
 #define GLP_MPU_FIFO_BYTES 512U
 #define GLP_MPU_ALL_BYTES 14U  ///< ACCEL_XOUT_H to GYRO_ZOUT_L
 
@@ -107,7 +114,11 @@ bool glp_mpu_plan_for(const glp_mpu_settings* settings, glp_mpu_plan* plan);
 /// included.
 void glp_mpu_describe(const glp_mpu_settings* settings, const glp_mpu_plan* plan, glp_config* config);
 
-/// Hardware reset, clock choice, identity. Takes about 200 ms of the HAL's delay.
+/// What HELLO calls a sensor; NULL for one whose registers are not known to be these. At most
+/// GLP_SENSOR_BYTES characters.
+const char* glp_mpu_name(uint8_t who_am_i);
+
+/// Hardware reset, clock choice, identity: one of the three above. Takes about 200 ms of the HAL's delay.
 glp_mpu_outcome glp_mpu_reset(const glp_hal* hal, uint8_t* who_am_i, glp_mpu_fault* fault);
 /// Writes the plan and reads it back into `registers` (order of glp_config). The FIFO and the interrupt stay
 /// off.

@@ -264,7 +264,10 @@ Json info_json(const std::string& path, const LoadedCapture& capture) {
         board["tick_hz"] = hello->tick_hz;
     }
     Json sensor = Json::object();
-    if (const auto& hello = capture.decoder->hello()) { sensor["name"] = hello->sensor; }
+    if (const auto& hello = capture.decoder->hello()) {
+        sensor["name"] = hello->sensor;
+        sensor["who_am_i"] = fmt::format("{:02x}", hello->who_am_i);
+    }
     if (const auto& config = capture.decoder->config()) {
         sensor["rate_hz"] = config->rate_mHz * 1e-3;
         if (const auto rate_hz = capture.decoder->rate_hz()) { sensor["measured_rate_hz"] = *rate_hz; }

@@ -5,7 +5,9 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <gyrolog_protocol/version.h>
 
+#include "firmware_protocol/device/mpu9250.h"
 #include "host/conform/rule.hpp"
 
 namespace gyrolog {
@@ -15,7 +17,6 @@ using Kind = TranscriptEntry::Kind;
 
 constexpr double scale_tolerance = 0.02;
 constexpr double slack_s = 0.15;  // of a sample's way into a frame: 100 ms, and the main loop's pause
-constexpr std::uint8_t who_am_i_mpu9250 = 0x71;
 
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
@@ -299,7 +300,7 @@ Judgement config_rule(const Dialogue& dialogue) {
         } else if (config->samples_per_frame > glp_samples_per_frame_max(config->layout)) {
             findings.wrong("samples_per_frame that fit a frame", std::to_string(config->samples_per_frame),
                            &entry);
-        } else if (hello && hello->who_am_i == who_am_i_mpu9250) {
+        } else if (hello && glp_mpu_name(hello->who_am_i) != nullptr) {
             const std::string refusal = register_refusal(*config);
             if (!refusal.empty()) {
                 findings.wrong("registers that say what the fields say", refusal, &entry);

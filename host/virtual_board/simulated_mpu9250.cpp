@@ -52,15 +52,19 @@ double inside_rate_hz(std::uint8_t gyro_config, std::uint8_t config) {
 
 }  // namespace
 
-SimulatedMpu9250::SimulatedMpu9250(const SensorModel& model, std::uint64_t seed, double clock_error)
-    : model_(model), seed_(seed), clock_error_(std::clamp(clock_error, -clock_error_max, clock_error_max)) {
+SimulatedMpu9250::SimulatedMpu9250(const SensorModel& model, std::uint64_t seed, double clock_error,
+                                   std::uint8_t who_am_i)
+    : model_(model),
+      seed_(seed),
+      clock_error_(std::clamp(clock_error, -clock_error_max, clock_error_max)),
+      who_am_i_(who_am_i) {
     reset(0);
 }
 
 void SimulatedMpu9250::reset(std::int64_t now_ns) {
     registers_.fill(0);
     registers_[glp_mpu_pwr_mgmt_1] = glp_mpu_pwr_mgmt_1_clksel_pll;
-    registers_[glp_mpu_who_am_i] = GLP_MPU_WHO_AM_I;
+    registers_[glp_mpu_who_am_i] = who_am_i_;
     fields_.fill(0);
     fifo_begin_ = 0;
     fifo_bytes_ = 0;

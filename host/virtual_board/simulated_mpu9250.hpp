@@ -33,6 +33,7 @@
 
 #include "analysis/simulate/sensor_model.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
+#include "firmware_protocol/device/mpu9250.h"
 
 namespace gyrolog {
 
@@ -43,7 +44,8 @@ public:
 
     // `clock_error`: how much faster than nominal the chip's own clock runs, relative, within
     // clock_error_max.
-    SimulatedMpu9250(const SensorModel& model, std::uint64_t seed, double clock_error);
+    SimulatedMpu9250(const SensorModel& model, std::uint64_t seed, double clock_error,
+                     std::uint8_t who_am_i = GLP_MPU_9250_ID);
 
     void write(std::uint8_t address, std::uint8_t value, std::int64_t now_ns);
     // One burst: the address counts up, except at FIFO_R_W.
@@ -84,6 +86,7 @@ private:
     SensorModel model_;
     std::uint64_t seed_;
     double clock_error_;
+    std::uint8_t who_am_i_;
 
     std::array<std::uint8_t, 128> registers_{};
     Fields fields_{};

@@ -72,7 +72,7 @@ public:
         return !int_line_broken && (registers[glp_mpu_int_enable] & glp_mpu_int_raw_rdy) != 0;
     }
 
-    std::uint8_t who_am_i = GLP_MPU_WHO_AM_I;
+    std::uint8_t who_am_i = GLP_MPU_9250_ID;
     std::array<std::uint8_t, 128> registers{};
     std::array<std::uint8_t, 128> stuck_bits{};
     std::deque<std::uint8_t> fifo;

@@ -615,9 +615,36 @@ TEST(Board, AWrongIdentityIsToldAfterHelloAndTheBoardStillAnswers) {
     EXPECT_EQ(frames[2].event().value, 0x7568);
     bench.command(glp_frame_start);
     EXPECT_EQ(result_of(bench.take_frames().front()), glp_result_sensor_fault);
-    bench.sensor.who_am_i = GLP_MPU_WHO_AM_I;
+    bench.sensor.who_am_i = GLP_MPU_9250_ID;
     bench.command(glp_frame_start);
     EXPECT_EQ(result_of(bench.take_frames().front()), glp_result_ok);
+}
+
+TEST(Board, SensorsWithTheSameRegistersAreTakenAndNamed) {
+    const std::pair<unsigned, const char*> sensors[] = {
+        {0x71, "MPU-9250"}, {0x73, "MPU-9255"}, {0x75, "MPU-9250 (75)"}};
+    for (const auto& [who_am_i, name] : sensors) {
+        SCOPED_TRACE(name);
+        BenchBoard bench;
+        bench.sensor.who_am_i = static_cast<std::uint8_t>(who_am_i);
+        EXPECT_TRUE(glp_board_boot(&bench.board));
+        glp_board_on_line_state(&bench.board, true);
+        bench.run(8);
+        const std::vector<ReceivedFrame> frames = bench.take_frames();
+        ASSERT_EQ(types_of(frames),
+                  (std::vector<std::uint8_t>{glp_frame_hello, glp_frame_config, glp_frame_event,
+                                             glp_frame_samples, glp_frame_samples}));
+        glp_hello hello{};
+        const glp_frame first = frames[0].view();
+        ASSERT_EQ(glp_hello_read(&first, &hello), glp_status_ok);
+        EXPECT_EQ(hello.who_am_i, who_am_i);
+        EXPECT_STREQ(hello.sensor, name);
+        EXPECT_EQ(frames[2].event().code, glp_event_started);
+    }
+    // The neighbours: MPU-6500, MPU-6515, and none at all.
+    for (const unsigned who_am_i : {0x70U, 0x72U, 0x74U, 0x76U, 0x68U, 0x00U, 0xFFU}) {
+        EXPECT_EQ(glp_mpu_name(static_cast<std::uint8_t>(who_am_i)), nullptr) << who_am_i;
+    }
 }
 
 TEST(Board, ARegisterThatReadsBackWrongIsASensorFault) {

@@ -29,7 +29,7 @@ typedef struct glp_hello {
     uint8_t protocol_major;
     uint8_t protocol_minor;
     uint8_t tick_bits;  ///< Width of the device's tick counter, 32 to 64; ticks are modulo 2^tick_bits
-    uint8_t who_am_i;   ///< The sensor's WHO_AM_I register as read, 0x71 for an MPU-9250
+    uint8_t who_am_i;   ///< The sensor's WHO_AM_I register as read
     uint32_t tick_hz;
     uint32_t boot_id;     ///< Differs from boot to boot: tells a reset from a gap
     uint8_t reset_cause;  ///< glp_reset_cause

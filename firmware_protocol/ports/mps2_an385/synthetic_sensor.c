@@ -14,7 +14,7 @@ static int16_t step = TRIANGLE_STEP;
 
 void synthetic_sensor_reset(void) {
     memset(registers, 0, sizeof registers);
-    registers[glp_mpu_who_am_i] = GLP_MPU_WHO_AM_I;
+    registers[glp_mpu_who_am_i] = GLP_MPU_9250_ID;
     registers[glp_mpu_pwr_mgmt_1] = 0x01;
     fifo_in = fifo_out = 0;
 }
