@@ -57,11 +57,16 @@ Status begin(ByteSource& source, QueueingSink& sink, WriterThread& writer, Board
     return Error{ErrorCode::timeout, no_hello};
 }
 
-// What the bytes that did come say about a board that did not identify itself.
+// What the bytes that did come say about a board that did not identify itself, or left a command unanswered.
 Error explain(const Error& error, const ByteSource& source, const LinkReport& link) {
-    if (error.message != no_hello) { return error; }
+    const bool unknown = error.message == no_hello || link.frames.good == 0;
+    if (error.code != ErrorCode::timeout || !unknown) { return error; }
     const std::string& uri = source.identity().uri;
-    if (link.bytes.total == 0) { return {ErrorCode::timeout, uri + ": nothing came after the start"}; }
+    if (link.bytes.total == 0) {
+        return {ErrorCode::timeout, uri +
+                                        ": nothing came, no HELLO either: this is no gyrolog board, or it "
+                                        "hangs; it is let go"};
+    }
     if (link.frames.corrupted_by_reason[glp_status_bad_version] > 0) {
         return {ErrorCode::unsupported,
                 fmt::format(
@@ -71,7 +76,7 @@ Error explain(const Error& error, const ByteSource& source, const LinkReport& li
     return {ErrorCode::malformed,
             fmt::format(
                 "{}: {} bytes came, but no HELLO and CONFIG frame: this is no gyrolog board, or not its data "
-                "port",
+                "port; it is let go",
                 uri, link.bytes.total)};
 }
 
@@ -168,6 +173,7 @@ public:
         }
         control_.stop();
         wind_up();
+        source_.let_go();
         const std::optional<Error> refused = thread_.state().storage_error;
         Status closed = refused ? Status(*refused) : Status();
         outcome_.link = thread_.link();
@@ -331,6 +337,7 @@ private:
             return {};
         }
         wind_up();
+        source_.let_go();
         LinkReport link = thread_.link();
         link.bytes.total -= bytes_before;
         began = explain(began.error(), source_, link);

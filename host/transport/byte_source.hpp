@@ -73,6 +73,9 @@ public:
     // Sends bytes to the device, all of them, within 1 s.
     virtual Status write(ByteView bytes) = 0;
     virtual void stop() = 0;
+    // After stop(): gives the device back to the driver or program that had it before. Only reconnect() takes
+    // it up again.
+    virtual void let_go() {}
     // After a stop() that followed device_lost: gives up what is left of the device, and takes up the same
     // one, known by its serial number where it has one, if it is back. Then identity() is the present one's,
     // and start() may be called again. Errors: not_found, permission_denied or busy while another try may

@@ -5,7 +5,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::int64_t drain_ms = 50;
 constexpr std::int64_t write_timeout_ms = 1000;
 
 SourceIdentity identity_of(const UsbBoard& board) {
@@ -72,9 +71,13 @@ void UsbSource::use(std::unique_ptr<UsbDevice> device) {
 
 Error UsbSource::gone() const { return {ErrorCode::device_lost, identity_.uri + ": the board is gone"}; }
 
-UsbSource::~UsbSource() {
+UsbSource::~UsbSource() { UsbSource::let_go(); }
+
+void UsbSource::let_go() {
     UsbSource::stop();
     if (device_ && line_raised_ && !device_lost_) { static_cast<void>(UsbSource::set_line_state(false)); }
+    stream_.reset();
+    device_.reset();
 }
 
 double UsbSource::tolerated_stall_s(double bytes_per_s, double bytes_per_frame) const {
@@ -102,7 +105,10 @@ Status UsbSource::start(TransferSink& sink) {
         usb_->call([this] { sink_ = nullptr; });
         return begun;
     }
-    stream_->wait_for_end(drain_ms);
+    silence_.await([this](std::int64_t time_ns) {
+        constexpr std::int64_t ns_per_ms = 1'000'000;
+        return stream_->wait_for_end((time_ns + ns_per_ms - 1) / ns_per_ms);
+    });
     return {};
 }
 
@@ -124,9 +130,7 @@ void UsbSource::stop() {
 
 // The old handle goes before the new one comes: its interfaces are then free for whoever is next.
 Status UsbSource::reconnect() {
-    stop();
-    stream_.reset();
-    device_.reset();
+    let_go();
     // A context of its own: where no udev daemon runs, an old one does not hear of new devices.
     GYROLOG_TRY(std::shared_ptr<UsbContext> usb, UsbContext::create());
     GYROLOG_TRY(const UsbSurvey survey, survey_usb(*usb));
@@ -146,6 +150,7 @@ Status UsbSource::reconnect() {
 }
 
 void UsbSource::on_usb_transfer(const Transfer& transfer) {
+    if (transfer.carries_stream() && !transfer.data.empty()) { silence_.heard(); }
     // A full sink has counted what it refused. The bus does not wait, so there is no second try.
     if (sink_ != nullptr) { static_cast<void>(sink_->on_transfer(transfer)); }
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "host/transport/byte_source.hpp"
+#include "host/transport/line_silence.hpp"
 #include "host/usb/bulk_in_stream.hpp"
 #include "host/usb/usb_device.hpp"
 
@@ -16,7 +17,7 @@ namespace gyrolog {
 // state, writes and stream alike. A capture of them can therefore be served to the same program again by
 // umockdev.
 //
-// start() lowers DTR and lets what the board had still queued arrive before it returns; those stale bytes are
+// start() lowers DTR and returns when the line has fallen silent; the stale bytes that came meanwhile are
 // told like any others. Raising DTR is the caller's. A start that fails tells no end. write() and
 // set_line_state() must not be called from the sink. After stop() they still work but are told to nobody.
 class UsbSource final : public ByteSource, private TransferObserver {
@@ -41,6 +42,7 @@ public:
     Status write(ByteView bytes) override;
     void stop() override;
     Status reconnect() override;
+    void let_go() override;
 
 private:
     UsbSource(std::shared_ptr<UsbContext> usb, std::unique_ptr<UsbDevice> device, BulkInPlan plan);
@@ -51,10 +53,11 @@ private:
     std::shared_ptr<UsbContext> usb_;
     BulkInPlan plan_;
     SourceIdentity identity_;
-    // Both are null between the loss of a board and its return.
+    // Both are null between the loss of a board and its return, and once it was let go.
     std::unique_ptr<UsbDevice> device_;
     std::unique_ptr<BulkInStream> stream_;  // goes first
     TransferSink* sink_ = nullptr;          // the event thread's; null when nobody is to be told
+    LineSilence silence_;
     std::atomic<bool> device_lost_{false};
     std::atomic<bool> line_raised_{false};
 };

@@ -76,6 +76,7 @@ public:
     Status set_line_state(bool data_terminal_ready) override;
     Status write(ByteView bytes) override;
     void stop() override { board_->stop(); }
+    void let_go() override { board_->let_go(); }
 
 private:
     bool on_transfer(const Transfer& transfer) override;

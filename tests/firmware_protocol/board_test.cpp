@@ -513,6 +513,36 @@ TEST(Board, RepeatedStartAndStopChangeNothing) {
     EXPECT_EQ(expect_accounted(frames), 8U);
 }
 
+// SPEC.md, 9.6: a host whose REPLY was lost says it once more.
+TEST(Board, EveryCommandMayBeRepeatedButAConfigureBeginsAnotherGeneration) {
+    BenchBoard bench;
+    bench.boot_and_raise_dtr();
+    bench.run(4);
+    bench.take_frames();
+    for (const glp_frame_type type : {glp_frame_get_hello, glp_frame_start, glp_frame_get_status}) {
+        for (int time = 0; time < 2; ++time) {
+            bench.command(type);
+            EXPECT_EQ(result_of(bench.take_frames().front()), glp_result_ok);
+        }
+    }
+    bench.run(4);
+    EXPECT_EQ(bench.take_frames().back().samples().first_index, 4U) << "the stream went on";
+    glp_configure wanted{};
+    wanted.rate_mHz = 200'000;
+    for (std::uint16_t time = 1; time <= 2; ++time) {
+        bench.configure(wanted);
+        const std::vector<ReceivedFrame> frames = bench.take_frames();
+        const auto config = std::ranges::find(frames, glp_frame_config, &ReceivedFrame::type);
+        ASSERT_NE(config, frames.end());
+        EXPECT_EQ(config_of(*config).generation, time);
+        EXPECT_EQ(config_of(*config).rate_mHz, 200'000U);
+    }
+    for (int time = 0; time < 2; ++time) { bench.command(glp_frame_stop); }
+    bench.take_frames();
+    bench.run(4);
+    EXPECT_TRUE(bench.take_frames().empty());
+}
+
 TEST(Board, ConfigureWhileStreamingRestartsUnderTheNextGeneration) {
     BenchBoard bench;
     bench.boot_and_raise_dtr();

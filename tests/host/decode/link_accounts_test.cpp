@@ -269,6 +269,34 @@ TEST(LinkAccounts, JoiningARunningStreamMissesNothing) {
     EXPECT_EQ(report.samples.good, 80U);
 }
 
+// SPEC.md, 9.5: what came before the host raised DTR is an earlier listener's.
+TEST(LinkAccounts, WhatCameBeforeTheStartIsCountedApartAndNoSampleOfItTaken) {
+    Listening link;
+    link.begin();
+    link.hear_samples(3);
+    static_cast<void>(link.board.samples_frame());
+    link.hear_samples(1);
+    EXPECT_GT(link.decoder.report().samples.missing, 0U);
+    const std::uint64_t before = link.decoder.report().frames.good;
+    Transfer raised;
+    raised.event = Transfer::Event::submission;
+    raised.kind = TransferKind::control;
+    raised.setup = {0x21, 0x22, 1, 0, 0, 0, 0, 0};
+    EXPECT_TRUE(link.decoder.take(raised));
+    link.board.restart(1.0);
+    link.begin();
+    link.hear_samples(1);
+    const LinkReport report = link.decoder.report();
+    EXPECT_EQ(report.bytes.total, link.bytes);
+    EXPECT_EQ(report.frames_before_start, before);
+    EXPECT_EQ(report.samples.good, 2U * 16U);
+    EXPECT_EQ(report.samples.missing, 0U);
+    EXPECT_TRUE(report.complete());
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(recording->rows(), 32U);
+}
+
 TEST(LinkAccounts, AStatusProvesWhatIsMissingAtTheEnd) {
     Listening link;
     link.begin();

@@ -99,12 +99,17 @@ public:
         stop_wanted_ = true;
         if (thread_.joinable()) { thread_.join(); }
     }
+    void let_go() override {
+        EXPECT_FALSE(thread_.joinable()) << "before stop()";
+        was_let_go_ = true;
+    }
 
     // The following: after stop().
     const Bytes& delivered() const { return delivered_; }  // the stream as the sink took it
     std::uint64_t transfers_refused() const { return transfers_refused_; }
     std::uint64_t bytes_refused() const { return bytes_refused_; }
     bool line_raised() const { return line_raised_; }
+    bool was_let_go() const { return was_let_go_; }
     int writes() const { return writes_; }
     const VirtualBoard& board() const { return *board_; }
 
@@ -224,6 +229,7 @@ private:
     bool ended_ = false;
     bool line_raised_ = false;
     bool spoken_ = false;
+    bool was_let_go_ = false;
     bool restarted_ = false;
     int writes_ = 0;
     std::uint64_t last_id_ = 0;

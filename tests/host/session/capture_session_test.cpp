@@ -37,6 +37,11 @@ Bytes frame_of_major_version(std::uint8_t major) {
     return wire;
 }
 
+// The board of `manner`, with what it says tampered with on the way.
+std::unique_ptr<ByteSource> tampered(const SourceManner& manner, const Breach& breach) {
+    return std::make_unique<BreachedSource>(BoardSource::create(manner), breach);
+}
+
 class CaptureSession : public testing::Test {
 protected:
     CaptureSession() {
@@ -154,8 +159,54 @@ TEST_F(CaptureSession, SilentBoardIsAnErrorAndLeavesNoFile) {
     ASSERT_FALSE(outcome.ok());
     EXPECT_EQ(outcome.error().code, ErrorCode::timeout);
     EXPECT_NE(outcome.error().message.find("test:board"), std::string::npos) << outcome.error().message;
+    EXPECT_NE(outcome.error().message.find("no gyrolog board"), std::string::npos);
     EXPECT_FALSE(file_is_there());
     EXPECT_FALSE(source->line_raised()) << "what was started is stopped again";
+    EXPECT_TRUE(source->was_let_go()) << "before the source is gone";
+}
+
+// SPEC.md, 9.6: a REPLY may be lost, and is waited for 1 s.
+TEST_F(CaptureSession, UnansweredCommandIsGivenUpAfterASecond) {
+    const Breach deaf{"", "", "", nullptr, [](BreachedLine&, ByteView) { return Bytes{}; }, nullptr};
+    const auto source = tampered({}, deaf);
+    request_.configure.rate_mHz = 500'000;
+    const auto before = std::chrono::steady_clock::now();
+    const auto outcome = capture(*source);
+    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - before;
+    ASSERT_FALSE(outcome.ok());
+    EXPECT_EQ(outcome.error().code, ErrorCode::timeout) << outcome.error().message;
+    EXPECT_GT(waited.count(), 0.9);
+    EXPECT_LT(waited.count(), 2.0);
+}
+
+// SPEC.md, 9.7.
+TEST_F(CaptureSession, RepliesStandInTheCaptureInTheirPlace) {
+    const auto source = BoardSource::create({});
+    request_.configure.rate_mHz = 500'000;
+    ASSERT_TRUE(capture(*source).ok());
+    class Order final : public MessageHandler {
+    public:
+        std::vector<std::pair<std::uint32_t, std::uint8_t>> frames;
+
+    private:
+        void on_hello(const ReceivedFrame& f, const glp_hello&) override { note(f); }
+        void on_config(const ReceivedFrame& f, const glp_config&) override { note(f); }
+        void on_samples(const ReceivedFrame& f, const glp_samples&) override { note(f); }
+        void on_status(const ReceivedFrame& f, const glp_device_status&) override { note(f); }
+        void on_event(const ReceivedFrame& f, const glp_event&) override { note(f); }
+        void on_reply(const ReceivedFrame& f, const glp_reply&) override { note(f); }
+        void note(const ReceivedFrame& f) { frames.emplace_back(f.frame.sequence, f.frame.type); }
+    } order;
+    FrameDecoder decoder;
+    decoder.feed(stored_stream(request_.path), HostTime{}, order);
+    ASSERT_GT(order.frames.size(), 10U);
+    for (std::size_t i = 1; i < order.frames.size(); ++i) {
+        EXPECT_EQ(order.frames[i].first, order.frames[i - 1].first + 1);
+    }
+    ASSERT_GE(order.frames.size(), 3U);
+    EXPECT_EQ(order.frames[0].second, glp_frame_reply) << "to the CONFIGURE before the start";
+    EXPECT_EQ(order.frames[1].second, glp_frame_config);
+    EXPECT_EQ(order.frames[2].second, glp_frame_hello);
 }
 
 TEST_F(CaptureSession, StrangersBytesAreAnErrorAndAreKept) {
@@ -167,6 +218,8 @@ TEST_F(CaptureSession, StrangersBytesAreAnErrorAndAreKept) {
     EXPECT_EQ(outcome.error().code, ErrorCode::malformed);
     EXPECT_NE(outcome.error().message.find("test:board: 700 bytes"), std::string::npos)
         << outcome.error().message;
+    EXPECT_NE(outcome.error().message.find("no gyrolog board"), std::string::npos);
+    EXPECT_TRUE(source->was_let_go());
     EXPECT_EQ(stored_stream(request_.path), strange);
     EXPECT_FALSE(source->line_raised()) << "what was started is stopped again";
 }
@@ -360,11 +413,6 @@ TEST_F(CaptureSession, FullQueueHoldsUpASourceThatCanWait) {
 }
 
 // ------------------------------------------------------------------------------------------ hostile devices
-
-// The board of `manner`, with what it says tampered with on the way.
-std::unique_ptr<ByteSource> tampered(const SourceManner& manner, const Breach& breach) {
-    return std::make_unique<BreachedSource>(BoardSource::create(manner), breach);
-}
 
 constexpr Breach frames_by(void (*hook)(BreachedLine&, RawFrame&)) {
     return {"", "", "", hook, nullptr, nullptr};
