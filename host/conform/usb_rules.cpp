@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -54,10 +55,14 @@ Judgement identity(const Dialogue& dialogue) {
     return findings.judgement({});
 }
 
+constexpr unsigned endpoint_in = 0x80;  // USB 2.0, table 9-13, as are the kinds
+constexpr unsigned kind_bulk = 2;
+constexpr unsigned kind_interrupt = 3;
+
 struct Endpoint {
     unsigned interface;
     unsigned address;
-    unsigned transfer;  // 2 bulk, 3 interrupt
+    unsigned kind;
     unsigned packet_bytes;
 };
 
@@ -79,28 +84,28 @@ Judgement endpoints(const Dialogue& dialogue) {
                 {interface, bytes[at + 2], bytes[at + 3] & 3U, bytes[at + 4] | bytes[at + 5] * 256U});
         }
     }
-    const auto has = [&](unsigned of, unsigned address, unsigned transfer, unsigned least, unsigned most) {
-        for (const Endpoint& endpoint : found) {
-            if (endpoint.interface == of && endpoint.address == address && endpoint.transfer == transfer &&
-                endpoint.packet_bytes >= least && endpoint.packet_bytes <= most) {
-                return true;
-            }
-        }
-        return false;
+    const auto count = [&](unsigned of, unsigned kind, unsigned direction, unsigned least, unsigned most) {
+        return std::ranges::count_if(found, [&](const Endpoint& endpoint) {
+            return endpoint.interface == of && endpoint.kind == kind &&
+                   (endpoint.address & endpoint_in) == direction && endpoint.packet_bytes >= least &&
+                   endpoint.packet_bytes <= most;
+        });
     };
     const TranscriptEntry descriptor = entry_of(bytes);
     std::string told;
     for (const Endpoint& endpoint : found) {
         told += fmt::format("{}:{:02x} kind {} {} bytes ", endpoint.interface, endpoint.address,
-                            endpoint.transfer, endpoint.packet_bytes);
+                            endpoint.kind, endpoint.packet_bytes);
     }
     if (classes.find("0:02/02") == std::string::npos || classes.find("1:0a/00") == std::string::npos) {
         findings.wrong("interface 0 of class 02/02 and interface 1 of class 0a/00", classes, &descriptor);
-    } else if (!has(0, GLP_USB_ENDPOINT_NOTIFY, 3, 8, 64) || !has(1, GLP_USB_ENDPOINT_IN, 2, 64, 64) ||
-               !has(1, GLP_USB_ENDPOINT_OUT, 2, 64, 64)) {
+    } else if (count(GLP_USB_INTERFACE_CONTROL, kind_interrupt, endpoint_in, 8, 64) != 1 ||
+               count(GLP_USB_INTERFACE_DATA, kind_bulk, endpoint_in, 64, 64) != 1 ||
+               count(GLP_USB_INTERFACE_DATA, kind_bulk, 0, 64, 64) != 1) {
         findings.wrong(
-            "82 interrupt IN at interface 0, 81 bulk IN and 01 bulk OUT of 64 bytes at interface 1", told,
-            &descriptor);
+            "one interrupt IN (kind 3) at interface 0, one bulk IN and one bulk OUT (kind 2) of 64 bytes at "
+            "interface 1",
+            told, &descriptor);
     }
     return findings.judgement({});
 }

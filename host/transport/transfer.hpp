@@ -11,6 +11,10 @@ namespace gyrolog {
 
 enum class TransferKind : std::uint8_t { control = 2, bulk = 3 };  // numbered as usbmon does
 
+// The endpoints by which the transfers of a line that is not USB are told.
+constexpr std::uint8_t line_endpoint_in = 0x81;
+constexpr std::uint8_t line_endpoint_out = 0x01;
+
 // A transfer is told twice, as usbmon does: when it is submitted and when it completes, with the same id.
 //   submission: requested_bytes; data of an OUT transfer; setup of a control transfer
 //   completion: status; data of an IN transfer, which may come with an error status and is then still kept

@@ -24,7 +24,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr auto drain_time = std::chrono::milliseconds(50);
 constexpr std::int64_t write_timeout_ns = 1'000'000'000;
 constexpr std::size_t read_bytes = 4096;
 constexpr double kernel_buffer_bytes =
@@ -89,6 +88,11 @@ SourceIdentity identity_of(const std::string& path) {
     identity.manufacturer = read_sysfs_text(device, "manufacturer");
     identity.product = read_sysfs_text(device, "product");
     identity.serial = read_sysfs_text(device, "serial");
+    // A bridge to a UART is no CDC-ACM device, and its endpoints are not the board's.
+    if (auto descriptors = read_usb_descriptors(device); descriptors.ok()) {
+        identity.device_descriptor = std::move(descriptors->device);
+        identity.configuration_descriptor = std::move(descriptors->configuration);
+    }
     return identity;
 }
 
@@ -153,36 +157,45 @@ Result<std::unique_ptr<TtySource>> TtySource::open(const std::string& path) {
     GYROLOG_TRY(const int terminal, open_terminal(path));
     const int wake = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
     // From here on the source closes both.
-    std::unique_ptr<TtySource> source(new TtySource(terminal, wake, identity_of(path)));
+    std::unique_ptr<TtySource> source(new TtySource(terminal, wake, path));
     if (wake < 0) { return open_error(path, errno); }
     return source;
 }
 
 Status TtySource::reconnect() {
-    stop();
     // A port that is held open keeps its name from the board that comes back.
-    if (terminal_ >= 0) { ::close(std::exchange(terminal_, -1)); }
+    let_go();
     const std::string path = port_of(identity_);
     if (path.empty()) {
         return Error{ErrorCode::not_found,
                      "open '" + identity_.uri + "': no port has the board's serial number"};
     }
     GYROLOG_TRY(terminal_, open_terminal(path));
-    identity_ = identity_of(path);
+    identify(path);
     return {};
 }
 
-TtySource::TtySource(int terminal, int wake, SourceIdentity identity)
-    : terminal_(terminal),
-      wake_(wake),
-      identity_(std::move(identity)),
-      calls_([this] { this->wake(); }),
-      buffer_(read_bytes) {}
+TtySource::TtySource(int terminal, int wake, const std::string& path)
+    : terminal_(terminal), wake_(wake), calls_([this] { this->wake(); }), buffer_(read_bytes) {
+    identify(path);
+}
 
-TtySource::~TtySource() {
+void TtySource::identify(const std::string& path) {
+    identity_ = identity_of(path);
+    endpoints_ = {};
+    if (const auto layout = parse_cdc_configuration(identity_.configuration_descriptor); layout.ok()) {
+        endpoints_ = {layout->endpoint_in, layout->endpoint_out};
+    }
+}
+
+void TtySource::let_go() {
     TtySource::stop();
     // Closing lowers DTR (HUPCL).
-    if (terminal_ >= 0) { ::close(terminal_); }
+    if (terminal_ >= 0) { ::close(std::exchange(terminal_, -1)); }
+}
+
+TtySource::~TtySource() {
+    TtySource::let_go();
     if (wake_ >= 0) { ::close(wake_); }
 }
 
@@ -208,7 +221,10 @@ Status TtySource::start(TransferSink& sink) {
         stop();
         return quieted.error();
     }
-    std::this_thread::sleep_for(drain_time);
+    silence_.await([](std::int64_t time_ns) {
+        std::this_thread::sleep_for(std::chrono::nanoseconds(time_ns));
+        return false;
+    });
     return {};
 }
 
@@ -236,7 +252,7 @@ Status TtySource::write(ByteView bytes) {
         accepted = true;
         Transfer told;
         told.event = Transfer::Event::submission;
-        told.endpoint = GLP_USB_ENDPOINT_OUT;
+        told.endpoint = endpoints_.out;
         told.id = write.id = ++last_id_;
         told.requested_bytes = static_cast<std::uint32_t>(bytes.size());
         told.time = host_now();
@@ -300,6 +316,7 @@ void TtySource::wait_for_events() {
 void TtySource::read_available(bool hung_up) {
     const ssize_t count = ::read(terminal_, buffer_.data(), buffer_.size());
     if (count > 0) {
+        silence_.heard();
         tell_read_completion(0, ByteView(buffer_).first(static_cast<std::size_t>(count)));
         tell_read_submission();
         return;
@@ -326,7 +343,7 @@ void TtySource::write_pending() {
 void TtySource::finish_write(int kernel_status, Status status) {
     PendingWrite& write = *std::exchange(pending_write_, nullptr);
     Transfer told;
-    told.endpoint = GLP_USB_ENDPOINT_OUT;
+    told.endpoint = endpoints_.out;
     told.id = write.id;
     told.status = kernel_status;
     told.requested_bytes = static_cast<std::uint32_t>(write.all.size());
@@ -341,7 +358,7 @@ void TtySource::finish_write(int kernel_status, Status status) {
 void TtySource::tell_read_submission() {
     Transfer told;
     told.event = Transfer::Event::submission;
-    told.endpoint = GLP_USB_ENDPOINT_IN;
+    told.endpoint = endpoints_.in;
     told.id = read_id_ = ++last_id_;
     told.requested_bytes = static_cast<std::uint32_t>(buffer_.size());
     told.time = host_now();
@@ -350,7 +367,7 @@ void TtySource::tell_read_submission() {
 
 void TtySource::tell_read_completion(int status, ByteView data) {
     Transfer told;
-    told.endpoint = GLP_USB_ENDPOINT_IN;
+    told.endpoint = endpoints_.in;
     told.id = read_id_;
     told.status = status;
     told.requested_bytes = static_cast<std::uint32_t>(buffer_.size());

@@ -10,6 +10,7 @@
 
 #include "host/base/call_queue.hpp"
 #include "host/transport/byte_source.hpp"
+#include "host/transport/line_silence.hpp"
 
 namespace gyrolog {
 
@@ -37,11 +38,18 @@ public:
     void stop() override;
     // A port on USB may come back under another name: it is known by its serial number.
     Status reconnect() override;
+    void let_go() override;
 
 private:
     struct PendingWrite;
+    // By which the transfers are told.
+    struct Endpoints {
+        std::uint8_t in = line_endpoint_in;
+        std::uint8_t out = line_endpoint_out;
+    };
 
-    TtySource(int terminal, int wake, SourceIdentity identity);
+    TtySource(int terminal, int wake, const std::string& path);
+    void identify(const std::string& path);
 
     void run();
     void wait_for_events();
@@ -57,6 +65,7 @@ private:
     int terminal_;
     int wake_;  // an eventfd: makes the thread look at its calls
     SourceIdentity identity_;
+    Endpoints endpoints_;
     CallQueue calls_;
     std::thread thread_;
     std::atomic<bool> stop_asked_{false};
@@ -66,6 +75,7 @@ private:
     std::vector<std::uint8_t> buffer_;
     std::uint64_t last_id_ = 0;
     std::uint64_t read_id_ = 0;
+    LineSilence silence_;
     PendingWrite* pending_write_ = nullptr;
     bool lost_ = false;
     std::string lost_why_;

@@ -64,16 +64,10 @@ UsbBoard identify(libusb_device* device, const libusb_device_descriptor& descrip
 }
 
 Status read_descriptors(UsbBoard& board, const std::string& directory) {
-    const Bytes all = read_sysfs_bytes(directory, "descriptors");
-    const auto active = static_cast<std::uint8_t>(read_sysfs_number(directory, "bConfigurationValue", 10));
-    if (active == 0) {
-        return Error{ErrorCode::unsupported,
-                     "the kernel has not configured the device (is there power for it?)"};
-    }
-    GYROLOG_TRY(const ByteView configuration, find_configuration(all, active));
-    board.device_descriptor.assign(all.begin(), all.begin() + device_descriptor_bytes);
-    board.configuration_descriptor.assign(configuration.begin(), configuration.end());
-    GYROLOG_TRY(board.layout, parse_cdc_configuration(configuration));
+    GYROLOG_TRY(UsbDescriptors descriptors, read_usb_descriptors(directory));
+    board.device_descriptor = std::move(descriptors.device);
+    board.configuration_descriptor = std::move(descriptors.configuration);
+    board.layout = descriptors.layout;
     return {};
 }
 

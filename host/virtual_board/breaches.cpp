@@ -584,11 +584,11 @@ void another_vendor(SourceIdentity& identity) {
     identity.product = "STM32 Virtual COM Port";
 }
 
-// The interrupt endpoint has another address than the table says.
-void another_endpoint(SourceIdentity& identity) {
+// The endpoint for notifications is a bulk endpoint (USB 2.0, table 9-13).
+void another_kind(SourceIdentity& identity) {
     Bytes& bytes = identity.configuration_descriptor;
-    for (std::size_t i = 0; i + 2 < bytes.size() && bytes[i] >= 2; i += bytes[i]) {
-        if (bytes[i + 1] == 5 && bytes[i + 2] == 0x82) { bytes[i + 2] = 0x83; }
+    for (std::size_t i = 0; i + 3 < bytes.size() && bytes[i] >= 2; i += bytes[i]) {
+        if (bytes[i + 1] == 5 && bytes[i + 3] == 3) { bytes[i + 3] = 2; }
     }
 }
 
@@ -673,7 +673,7 @@ constexpr std::array all_breaches{
     in_writes("whole_writes", "9.2", "a command that comes byte by byte is not seen", wants_whole_writes),
     in_writes("late_resync", "9.4", "noise spoils the command behind it", resynchronises_late),
     in_identity("vendor", "10.1", "another vendor's id and product string", another_vendor),
-    in_identity("endpoint", "10.2", "the interrupt endpoint has another address", another_endpoint),
+    in_identity("endpoint", "10.2", "the interrupt endpoint is a bulk endpoint", another_kind),
     in_frames("unasked", "10.5", "a STATUS that nobody asked for before the first start", speaks_unasked),
 };
 

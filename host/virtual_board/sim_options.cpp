@@ -37,6 +37,15 @@ constexpr std::array<FaultName, 11> fault_names = {{
     {"sensor_frozen", BoardFault::Kind::sensor_frozen},
 }};
 
+struct SensorName {
+    std::string_view name;
+    std::uint8_t who_am_i;
+};
+
+constexpr std::array sensor_names = {SensorName{"mpu9250", GLP_MPU_9250_ID},
+                                     SensorName{"mpu9255", GLP_MPU_9255_ID},
+                                     SensorName{"mpu9250_75", GLP_MPU_9250_75_ID}};
+
 // Of these a fault may be given with its end.
 constexpr std::array lasting_faults = {BoardFault::Kind::link_stall, BoardFault::Kind::unplug,
                                        BoardFault::Kind::int_lost, BoardFault::Kind::sensor_frozen};
@@ -129,6 +138,15 @@ Status set_breach(SimOptions& to, std::string_view key, std::string_view value) 
     return {};
 }
 
+Status set_sensor(SimOptions& to, std::string_view key, std::string_view value) {
+    for (const SensorName& known : sensor_names) {
+        if (known.name != value) { continue; }
+        to.who_am_i = known.who_am_i;
+        return {};
+    }
+    return refused(key, value, "wants mpu9250, mpu9255 or mpu9250_75");
+}
+
 Status set_option(SimOptions& to, std::string_view key, std::string_view value) {
     constexpr std::uint32_t any_32 = std::numeric_limits<std::uint32_t>::max();
     constexpr std::uint64_t any_64 = std::numeric_limits<std::uint64_t>::max();
@@ -196,10 +214,19 @@ Status set_option(SimOptions& to, std::string_view key, std::string_view value) 
         to.self_powered = value == "1";
         return {};
     }
+    if (key == "endpoints") {
+        if (value != "free" && value != "fixed_kind") {
+            return refused(key, value, "wants free or fixed_kind");
+        }
+        to.endpoints = value == "free" ? UsbEndpoints{} : fixed_kind_endpoints;
+        return {};
+    }
+    if (key == "sensor") { return set_sensor(to, key, value); }
     return refused(
         key, value,
         "there is no such option; there are model rate full_scale dlpf seed boards board realtime clock_ppm "
-        "first_tick first_sequence boot_id ring fault unplug replug reset self_powered breach");
+        "first_tick first_sequence boot_id ring fault unplug replug reset self_powered breach endpoints "
+        "sensor");
 }
 
 // Of the last cable that is pulled for good.

@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "firmware_protocol/device/mpu9250.h"
 #include "host/base/result.hpp"
 #include "host/virtual_board/board_fault.hpp"
+#include "host/virtual_board/usb_descriptors.hpp"
 
 namespace gyrolog {
 
@@ -34,6 +36,8 @@ namespace gyrolog {
 //   unplug=SECONDS, reset=SECONDS          the same as fault=unplug@SECONDS, fault=reset@SECONDS
 //   replug=SECONDS   when the cable that unplug= pulled is back; without it the board is gone for good
 //   self_powered=1   the board keeps its memory while it is unplugged; otherwise it boots anew
+//   endpoints=fixed_kind   the endpoint addresses of controllers whose numbers fix the kind; without it free
+//   sensor=NAME      mpu9250, mpu9255 or mpu9250_75 (sold as MPU-9250, WHO_AM_I 75): what WHO_AM_I says
 struct SimOptions {
     std::string model_path;  // empty: typical_mpu9250()
     std::optional<double> rate_hz;
@@ -51,6 +55,8 @@ struct SimOptions {
     std::vector<BoardFault> faults;
     std::optional<double> replug_s;  // as typed; already in `faults`
     bool self_powered = false;
+    UsbEndpoints endpoints;
+    std::uint8_t who_am_i = GLP_MPU_9250_ID;
     std::string breach;  // of breaches(); empty for an honest board
     std::string text;    // as typed, without boards= and board=
 };

@@ -97,6 +97,8 @@ Result<std::unique_ptr<SimSource>> SimSource::create(const SimOptions& options, 
     board_options.ring_bytes = options.ring_bytes;
     board_options.faults = options.faults;
     board_options.self_powered = options.self_powered;
+    board_options.endpoints = options.endpoints;
+    board_options.who_am_i = options.who_am_i;
     GYROLOG_TRY(std::unique_ptr<VirtualBoard> board, VirtualBoard::create(std::move(board_options)));
     return std::unique_ptr<SimSource>(new SimSource(options, limit, std::move(board)));
 }
@@ -116,7 +118,7 @@ SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::uniq
     identity_.product = virtual_board_product;
     identity_.serial = board_->serial();
     identity_.device_descriptor = device_descriptor();
-    identity_.configuration_descriptor = configuration_descriptor();
+    identity_.configuration_descriptor = configuration_descriptor(board_->endpoints());
     board_->set_sample_limit(limit.samples);
     board_->set_duration_limit(limit.duration_s);
     // Real time: one transfer posted, beside the endpoint's own two packets. Otherwise there is always room.
@@ -288,7 +290,7 @@ void SimSource::make(const Call& call) {
         board_->on_line_state(*call.line_state);
         return;
     }
-    deliver_pair(TransferKind::bulk, GLP_USB_ENDPOINT_OUT, {}, call.bytes);
+    deliver_pair(TransferKind::bulk, board_->endpoints().out, {}, call.bytes);
     board_->on_receive(call.bytes);
 }
 
@@ -329,7 +331,7 @@ bool SimSource::deliver_packets() {
 bool SimSource::deliver_in(ByteView data, int status) {
     Transfer transfer;
     transfer.kind = TransferKind::bulk;
-    transfer.endpoint = GLP_USB_ENDPOINT_IN;
+    transfer.endpoint = board_->endpoints().in;
     transfer.id = next_id_++;
     transfer.requested_bytes = transfer_bytes;
     transfer.event = Transfer::Event::submission;

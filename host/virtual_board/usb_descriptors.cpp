@@ -56,7 +56,7 @@ Bytes device_descriptor() {
     return bytes;
 }
 
-Bytes configuration_descriptor() {
+Bytes configuration_descriptor(const UsbEndpoints& endpoints) {
     constexpr unsigned cdc_version = 0x0110;
     constexpr std::uint8_t bus_powered = 0x80;
     constexpr std::uint8_t max_power_2mA = 50;
@@ -68,10 +68,10 @@ Bytes configuration_descriptor() {
     append(parts, {type_cs_interface, 0x01, 0x00, GLP_USB_INTERFACE_DATA});         // call management: none
     append(parts, {type_cs_interface, 0x02, line_coding_and_state});                // abstract control
     append(parts, {type_cs_interface, 0x06, GLP_USB_INTERFACE_CONTROL, GLP_USB_INTERFACE_DATA});  // union
-    append_endpoint(parts, GLP_USB_ENDPOINT_NOTIFY, interrupt, 8, 16);
+    append_endpoint(parts, endpoints.notify, interrupt, 8, 16);
     append(parts, {type_interface, GLP_USB_INTERFACE_DATA, 0, 2, class_data, 0, 0, no_string});
-    append_endpoint(parts, GLP_USB_ENDPOINT_IN, bulk, GLP_USB_PACKET_BYTES, 0);
-    append_endpoint(parts, GLP_USB_ENDPOINT_OUT, bulk, GLP_USB_PACKET_BYTES, 0);
+    append_endpoint(parts, endpoints.in, bulk, GLP_USB_PACKET_BYTES, 0);
+    append_endpoint(parts, endpoints.out, bulk, GLP_USB_PACKET_BYTES, 0);
 
     constexpr unsigned header_bytes = 9;
     const auto total = static_cast<unsigned>(parts.size()) + header_bytes;

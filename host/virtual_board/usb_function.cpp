@@ -65,7 +65,9 @@ UsbFunction::ControlResponse UsbFunction::standard_request(const std::array<std:
     switch (setup[1]) {
         case get_descriptor:
             if (setup[3] == device) { return {false, device_descriptor()}; }
-            if (setup[3] == configuration && setup[2] == 0) { return {false, configuration_descriptor()}; }
+            if (setup[3] == configuration && setup[2] == 0) {
+                return {false, configuration_descriptor(board_.endpoints())};
+            }
             if (setup[3] == string) {
                 if (auto text = string_descriptor(setup[2], board_.serial())) {
                     return {false, std::move(*text)};

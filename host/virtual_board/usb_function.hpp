@@ -35,6 +35,7 @@ public:
     std::optional<std::size_t> bulk_in(std::span<std::uint8_t> buffer);
     void bulk_out(ByteView data);
 
+    const UsbEndpoints& endpoints() const { return board_.endpoints(); }
     // The device has left the bus: every transfer is now to fail.
     bool unplugged() const { return board_.unplugged(); }
     // The bus was reset or the cable pulled: the device falls back to its unconfigured state.

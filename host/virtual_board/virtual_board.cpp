@@ -51,7 +51,8 @@ VirtualBoard::VirtualBoard(VirtualBoardOptions options)
                                tick_clock_sd * RandomStream(options_.seed, clock_stream).normal(0)))),
       sensor_(options_.model, options_.seed,
               options_.sensor_clock_error.value_or(relative_sd_of_rate(options_.model) *
-                                                   RandomStream(options_.seed, clock_stream).normal(1))),
+                                                   RandomStream(options_.seed, clock_stream).normal(1)),
+              options_.who_am_i),
       in_endpoint_(endpoint_bytes),
       hal_(make_hal(this)),
       ring_(options_.ring_bytes),

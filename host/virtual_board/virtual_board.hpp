@@ -16,6 +16,7 @@
 #include "host/virtual_board/board_fault.hpp"
 #include "host/virtual_board/in_endpoint.hpp"
 #include "host/virtual_board/simulated_mpu9250.hpp"
+#include "host/virtual_board/usb_descriptors.hpp"
 
 namespace gyrolog {
 
@@ -41,6 +42,8 @@ struct VirtualBoardOptions {
     std::size_t ring_bytes = 4096;
     std::vector<BoardFault> faults;
     bool self_powered = false;  // keeps its memory while it is unplugged
+    UsbEndpoints endpoints;
+    std::uint8_t who_am_i = GLP_MPU_9250_ID;  // of the sensor
 };
 
 class VirtualBoard {
@@ -91,6 +94,7 @@ public:
     const SimulatedMpu9250& sensor() const { return sensor_; }
     const glp_board& firmware() const { return board_; }
     const std::string& serial() const { return options_.serial; }
+    const UsbEndpoints& endpoints() const { return options_.endpoints; }
 
 private:
     explicit VirtualBoard(VirtualBoardOptions options);

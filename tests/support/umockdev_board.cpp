@@ -121,7 +121,8 @@ std::string MockUsbIdentity::description() const {
     return text;
 }
 
-Bytes cdc_acm_configuration(std::uint8_t endpoint_in, std::uint8_t endpoint_out) {
+Bytes cdc_acm_configuration(std::uint8_t endpoint_in, std::uint8_t endpoint_out,
+                            std::uint8_t endpoint_notify) {
     return {9,    2,    67,
             0,    2,    1,
             0,    0x80, 50,  // configuration 1
@@ -136,7 +137,7 @@ Bytes cdc_acm_configuration(std::uint8_t endpoint_in, std::uint8_t endpoint_out)
             2,  // abstract control management: line state
             5,    0x24, 6,
             0,    1,  // union
-            7,    5,    0x82,
+            7,    5,    endpoint_notify,
             3,    10,   0,
             9,  // notifications
             9,    4,    1,
@@ -163,6 +164,18 @@ void UmockdevBus::add_bystander(const MockUsbIdentity& identity) {
     GError* error = nullptr;
     umockdev_testbed_add_from_string(testbed_->handle.get(), identity.description().c_str(), &error);
     if (error != nullptr) { fail("add a device", error); }
+}
+
+void UmockdevBus::add_serial_port(const MockUsbIdentity& identity, const std::string& port) {
+    const std::string address = std::to_string(identity.device_address);
+    const std::string interface = identity.sysfs_path() + "/1-" + address + ":1.0";
+    const std::string text = "P: " + interface + "/tty/" + port +
+                             "\nE: SUBSYSTEM=tty\nL: device=../../../1-" + address +
+                             ":1.0\n\nP: " + interface + "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\n\n" +
+                             identity.description();
+    GError* error = nullptr;
+    umockdev_testbed_add_from_string(testbed_->handle.get(), text.c_str(), &error);
+    if (error != nullptr) { fail("add a serial port", error); }
 }
 
 std::string UmockdevBus::root_directory() const {
@@ -322,7 +335,7 @@ int UmockdevBoard::Usbfs::submit(UMockdevIoctlData* argument) {
         fields.status = function.on_control(setup, urb.bytes().subspan(setup.size()));
         fields.actual_length = fields.status == 0 ? fields.buffer_length - static_cast<int>(setup.size()) : 0;
         done.push_back(std::move(urb));
-    } else if (claimed.count((fields.endpoint & ~in_direction) == 2 ? 0U : 1U) == 0) {
+    } else if (claimed.count(fields.type == USBDEVFS_URB_TYPE_INTERRUPT ? 0U : 1U) == 0) {
         return -EINVAL;  // nobody may use an interface that is not claimed
     } else if ((fields.endpoint & in_direction) == 0) {
         function.on_bulk_out(urb.bytes());

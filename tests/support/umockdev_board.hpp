@@ -49,7 +49,8 @@ struct MockUsbIdentity {
     std::string description() const;
 };
 
-Bytes cdc_acm_configuration(std::uint8_t endpoint_in, std::uint8_t endpoint_out);
+Bytes cdc_acm_configuration(std::uint8_t endpoint_in, std::uint8_t endpoint_out,
+                            std::uint8_t endpoint_notify = 0x82);
 
 // The mocked machine. At most one at a time, since umockdev redirects the process as a whole.
 class UmockdevBus {
@@ -64,6 +65,8 @@ public:
 
     // A device that is there but never opened.
     void add_bystander(const MockUsbIdentity& identity);
+    // The serial port of such a device, as the kernel's cdc_acm makes one: /sys/class/tty/PORT.
+    void add_serial_port(const MockUsbIdentity& identity, const std::string& port);
     // Where the mocked /sys and /dev really are.
     std::string root_directory() const;
 

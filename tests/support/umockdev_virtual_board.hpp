@@ -19,12 +19,12 @@ public:
         function_.control(set_configuration_1, {});
     }
 
-    static MockUsbIdentity identity(const std::string& serial) {
+    static MockUsbIdentity identity(const std::string& serial, const UsbEndpoints& endpoints = {}) {
         MockUsbIdentity identity;
         identity.manufacturer = virtual_board_manufacturer;
         identity.product = virtual_board_product;
         identity.serial = serial;
-        identity.configuration_descriptor = gyrolog::configuration_descriptor();
+        identity.configuration_descriptor = gyrolog::configuration_descriptor(endpoints);
         return identity;
     }
 

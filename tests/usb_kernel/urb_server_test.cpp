@@ -21,7 +21,6 @@ constexpr SetupPacket get_device_descriptor = {0x80, 6, 0, 1, 0, 0, 18, 0};
 constexpr SetupPacket set_configuration = {0x00, 9, 1, 0, 0, 0, 0, 0};
 constexpr SetupPacket dtr_on = {0x21, 0x22, 1, 0, 0, 0, 0, 0};
 constexpr SetupPacket dtr_off = {0x21, 0x22, 0, 0, 0, 0, 0, 0};
-constexpr SetupPacket clear_halt = {0x02, 1, 0, 0, 0x81, 0, 0, 0};
 
 struct Reply {
     std::uint32_t code = 0;  // 3: to a submit, 4: to an unlink
@@ -32,9 +31,10 @@ struct Reply {
 // The kernel's side of the link, with time in its own hands.
 class Bus : public testing::Test {
 protected:
-    void plug(std::vector<LinkFault> faults = {}) {
+    void plug(std::vector<LinkFault> faults = {}, const UsbEndpoints& endpoints = {}) {
         VirtualBoardOptions options;
         options.rate_hz = 1000.0;
+        options.endpoints = endpoints;
         auto board = VirtualBoard::create(std::move(options));
         ASSERT_TRUE(board.ok()) << board.error().message;
         board_ = std::move(*board);
@@ -59,7 +59,10 @@ protected:
         return submit.sequence;
     }
 
-    std::uint32_t submit_bulk_in() { return submit(true, 1, 512); }
+    std::uint32_t submit_bulk_in() {
+        return submit(true, static_cast<std::uint8_t>(board_->endpoints().in & 0x0FU), 512);
+    }
+    SetupPacket clear_halt() const { return {0x02, 1, 0, 0, board_->endpoints().in, 0, 0, 0}; }
 
     Reply control(const SetupPacket& setup) {
         const auto length = static_cast<std::uint32_t>(setup[6] | setup[7] << 8);
@@ -182,6 +185,25 @@ TEST_F(Bus, TheStreamHoldsEverySampleThatTheBoardReports) {
     EXPECT_EQ(report.bytes.skipped, 0U);
 }
 
+TEST_F(Bus, EndpointsAreThoseOfTheBoardsDescriptor) {
+    plug({{LinkFaultKind::stall, 1.0}}, fixed_kind_endpoints);
+    control(dtr_on);
+    stream_until(1.1);
+    EXPECT_EQ(statuses_.back(), -EPIPE);
+    EXPECT_EQ(control({0x02, 1, 0, 0, 0x81, 0, 0, 0}).status, 0) << "the halt of another endpoint";
+    stream_until(1.2);
+    EXPECT_EQ(statuses_.back(), -EPIPE);
+    EXPECT_EQ(control(clear_halt()).status, 0);
+    stream_until(2.0);
+    EXPECT_EQ(statuses_.back(), 0);
+    const std::uint32_t notification = submit(true, 1, 8);
+    submit(false, 2, 0);
+    stop_stream();
+    EXPECT_FALSE(replied(notification)) << "the board never sends one";
+    EXPECT_GT(decoder_.report().samples.good, 1800U);
+    EXPECT_EQ(decoder_.report().samples.missing, 0U);
+}
+
 TEST_F(Bus, SamplesThatTheHostLeavesAreReportedLost) {
     plug();
     control(dtr_on);
@@ -249,7 +271,7 @@ TEST_F(Bus, AStallLastsUntilTheHostClearsIt) {
     control(dtr_on);
     stream_until(0.6);
     ASSERT_EQ(statuses_.back(), -EPIPE);
-    EXPECT_EQ(control(clear_halt).status, 0);
+    EXPECT_EQ(control(clear_halt()).status, 0);
     queue_.clear();
     statuses_.clear();
     stream_until(1.0);

@@ -21,6 +21,7 @@ Result<std::unique_ptr<VirtualBoard>> BoardCommand::power_on(std::uint32_t boot,
     options.seed = seed + boot - 1;
     options.rate_hz = rate_hz;
     options.boot_id = boot;
+    if (fixed_kind_endpoints) { options.endpoints = gyrolog::fixed_kind_endpoints; }
     options.faults = std::move(faults);
     return VirtualBoard::create(std::move(options));
 }

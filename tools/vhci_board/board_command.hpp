@@ -20,6 +20,7 @@ struct BoardCommand {
     std::string serial = "SIM0001";
     std::uint64_t seed = 1;
     double rate_hz = 0.0;  // 0: the firmware's default, until the host configures it
+    bool fixed_kind_endpoints = false;
     std::string report_path;
 
     void declare(CLI::App& app);

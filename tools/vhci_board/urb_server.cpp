@@ -10,12 +10,11 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::uint8_t endpoint_number_mask = 0x0F;
-constexpr std::uint8_t data_endpoint = GLP_USB_ENDPOINT_IN & endpoint_number_mask;
+constexpr std::uint8_t direction_in = 0x80;
 
-// CLEAR_FEATURE(ENDPOINT_HALT) for the bulk IN endpoint (USB 2.0, 9.4.1).
-bool clears_bulk_in_halt(const std::array<std::uint8_t, 8>& setup) {
-    return setup[0] == 0x02 && setup[1] == 0x01 && setup[2] == 0 && setup[4] == GLP_USB_ENDPOINT_IN;
+// CLEAR_FEATURE(ENDPOINT_HALT) (USB 2.0, 9.4.1).
+bool clears_halt(const std::array<std::uint8_t, 8>& setup, std::uint8_t endpoint) {
+    return setup[0] == 0x02 && setup[1] == 0x01 && setup[2] == 0 && setup[4] == endpoint;
 }
 
 }  // namespace
@@ -32,11 +31,13 @@ void UrbServer::carry_out(const usbip::Command& command) {
         return;
     }
     const auto& submit = std::get<usbip::Submit>(command);
+    const UsbEndpoints& board = function_.endpoints();
+    const std::uint32_t address = submit.endpoint | (submit.in ? direction_in : 0U);
     if (submit.endpoint == 0) {
         control(submit);
-    } else if (submit.endpoint == data_endpoint && submit.in) {
+    } else if (address == board.in) {
         bulk_in_.push_back({submit.sequence, submit.requested_bytes});
-    } else if (submit.endpoint == data_endpoint) {
+    } else if (address == board.out) {
         function_.bulk_out(submit.data);
         usbip::append_submit_reply(replies_, submit.sequence, 0, submit.requested_bytes, {});
     } else {
@@ -45,7 +46,7 @@ void UrbServer::carry_out(const usbip::Command& command) {
 }
 
 void UrbServer::control(const usbip::Submit& submit) {
-    if (clears_bulk_in_halt(submit.setup)) { halted_ = false; }
+    if (clears_halt(submit.setup, function_.endpoints().in)) { halted_ = false; }
     const UsbFunction::ControlResponse response = function_.control(submit.setup, submit.data);
     if (response.stall) {
         usbip::append_submit_reply(replies_, submit.sequence, -EPIPE, 0, {});

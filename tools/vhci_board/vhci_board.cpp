@@ -61,6 +61,8 @@ int vhci_board(int argc, char** argv) {
                  "vhci_board"};
     Options options;
     options.board.declare(app);
+    app.add_flag("--fixed-kind-endpoints", options.board.fixed_kind_endpoints,
+                 "the endpoint numbers of controllers where the number fixes the kind");
     app.add_option("--port", options.port, "port of the controller; the first free one unless given");
     app.add_option("--fault", options.faults,
                    "stall@S, babble@S or crc@S: one bulk transfer fails S seconds after the stream's start; "

@@ -1,5 +1,6 @@
 #include "host/app/capture_report.hpp"
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -155,6 +156,20 @@ TEST_F(CaptureReport, DamagedFileIsCalledDamagedAndTheMendIsNamed) {
     const LoadedCapture capture = load();
     EXPECT_EQ(check_json(path_, capture)["end"], "damaged");
     EXPECT_NE(check_text(path_, capture).find("gyrolog recover " + path_), std::string::npos);
+}
+
+TEST_F(CaptureReport, NamesTheSensorOfEveryKnownIdentity) {
+    const std::array<const char*, 3> known[] = {
+        {"mpu9250", "MPU-9250", "71"}, {"mpu9255", "MPU-9255", "73"}, {"mpu9250_75", "MPU-9250 (75)", "75"}};
+    for (const auto& [option, name, who_am_i] : known) {
+        const LoadedCapture capture = captured(std::string(",endpoints=fixed_kind,sensor=") + option);
+        const Json info = info_json(path_, capture);
+        EXPECT_EQ(info["sensor"]["name"], name);
+        EXPECT_EQ(info["sensor"]["who_am_i"], who_am_i);
+        EXPECT_EQ(info["samples"], instants);
+        EXPECT_NE(info_text(path_, capture).find(std::string(name) + ", 1000 Hz"), std::string::npos);
+        std::filesystem::remove(path_);
+    }
 }
 
 TEST_F(CaptureReport, InfoTellsWhatTheCaptureIsACaptureOf) {

@@ -66,10 +66,11 @@ TEST(Conform, TheHonestBoardBreaksNoRule) {
 
 TEST(Conform, OtherRatesAndTicksAreNoBreach) {
     std::vector<std::future<Result<Dialogue>>> talks;
-    talks.reserve(5);
+    talks.reserve(8);
     for (const char* uri :
          {"sim:rate=1000,full_scale=2000,seed=3", "sim:first_tick=4290000000,clock_ppm=9000",
-          "sim:first_sequence=4294967200", "sim:rate=8000,dlpf=3600", "sim:rate=32000,dlpf=off"}) {
+          "sim:first_sequence=4294967200", "sim:rate=8000,dlpf=3600", "sim:rate=32000,dlpf=off",
+          "sim:endpoints=fixed_kind", "sim:sensor=mpu9255", "sim:sensor=mpu9250_75"}) {
         talks.push_back(std::async(std::launch::async, [uri] { return talk_to(uri); }));
     }
     for (auto& talk : talks) {
@@ -157,7 +158,7 @@ public:
             while (!stopped_) {
                 const Bytes bytes = speak_();
                 Transfer transfer;
-                transfer.endpoint = GLP_USB_ENDPOINT_IN;
+                transfer.endpoint = line_endpoint_in;
                 transfer.time = host_now();
                 transfer.data = bytes;
                 sink.on_transfer(transfer);

@@ -84,7 +84,7 @@ public:
         if (ended_) { return Error{ErrorCode::device_lost, "write: the board is gone"}; }
         ++writes_;
         Transfer sent;
-        sent.endpoint = GLP_USB_ENDPOINT_OUT;
+        sent.endpoint = line_endpoint_out;
         sent.requested_bytes = static_cast<std::uint32_t>(bytes.size());
         tell(sent, bytes, {});
         if (manner_.lost_when_written_to) {
@@ -173,7 +173,7 @@ private:
 
     void deliver(ByteView data) {
         Transfer transfer;
-        transfer.endpoint = GLP_USB_ENDPOINT_IN;
+        transfer.endpoint = line_endpoint_in;
         transfer.requested_bytes = static_cast<std::uint32_t>(manner_.transfer_bytes);
         tell(transfer, {}, data);
     }

@@ -92,6 +92,25 @@ TEST_F(TtySourceTest, WhatWasWaitingBeforeTheStartIsTold) {
     EXPECT_EQ(as_text(sink_.stream()), "stale");
 }
 
+// SPEC.md, 9.5.
+TEST_F(TtySourceTest, StartWaitsUntilTheLineIsSilent) {
+    using std::chrono::milliseconds;
+    const auto begin = std::chrono::steady_clock::now();
+    std::thread earlier([this] {
+        for (int i = 0; i < 20; ++i) {
+            send(as_bytes("stale"));
+            std::this_thread::sleep_for(milliseconds(10));
+        }
+    });
+    ASSERT_TRUE(source_->start(sink_).ok());
+    const auto waited = std::chrono::steady_clock::now() - begin;
+    const std::size_t told = sink_.stream().size();
+    earlier.join();
+    EXPECT_GE(waited, milliseconds(240));
+    EXPECT_LT(waited, milliseconds(1500));
+    EXPECT_EQ(told, 100U);
+}
+
 TEST_F(TtySourceTest, EachReadIsToldAsABulkTransfer) {
     ASSERT_TRUE(source_->start(sink_).ok());
     send(as_bytes("frame"));
@@ -100,7 +119,7 @@ TEST_F(TtySourceTest, EachReadIsToldAsABulkTransfer) {
     const auto told = sink_.told();
     ASSERT_GE(told.size(), 4U);
     EXPECT_EQ(told[0].transfer.event, Transfer::Event::submission);
-    EXPECT_EQ(told[0].transfer.endpoint, GLP_USB_ENDPOINT_IN);
+    EXPECT_EQ(told[0].transfer.endpoint, line_endpoint_in);
     EXPECT_EQ(told[1].transfer.event, Transfer::Event::completion);
     EXPECT_EQ(told[1].transfer.id, told[0].transfer.id);
     EXPECT_EQ(told[1].transfer.status, 0);
@@ -121,7 +140,7 @@ TEST_F(TtySourceTest, CommandsReachTheBoardUntouched) {
     source_->stop();
     std::size_t told_bytes = 0;
     for (const auto& one : sink_.told()) {
-        const bool out = one.transfer.endpoint == GLP_USB_ENDPOINT_OUT;
+        const bool out = one.transfer.endpoint == line_endpoint_out;
         if (out && one.transfer.event == Transfer::Event::submission) { told_bytes += one.data.size(); }
     }
     EXPECT_EQ(told_bytes, command.size());

@@ -144,8 +144,7 @@ TEST_F(UsbSourceTest, TheIdentityIsThatOfTheBoard) {
     EXPECT_EQ(identity.manufacturer, "NXP");
     EXPECT_EQ(identity.product, "gyrolog MPU-9250");
     EXPECT_EQ(identity.device_descriptor.size(), 18U);
-    EXPECT_EQ(identity.configuration_descriptor,
-              test::cdc_acm_configuration(GLP_USB_ENDPOINT_IN, GLP_USB_ENDPOINT_OUT));
+    EXPECT_EQ(identity.configuration_descriptor, test::cdc_acm_configuration(0x81, 0x01));
 }
 
 TEST_F(UsbSourceTest, EveryTransferIsToldOnceAndInTheKernelsOrder) {
@@ -167,16 +166,13 @@ TEST_F(UsbSourceTest, EveryTransferIsToldOnceAndInTheKernelsOrder) {
     EXPECT_EQ(told[1].transfer.kind, TransferKind::control);
     for (std::size_t i = 2; i < 10; ++i) {
         EXPECT_EQ(told[i].transfer.event, Transfer::Event::submission);
-        EXPECT_EQ(told[i].transfer.endpoint, GLP_USB_ENDPOINT_IN);
+        EXPECT_EQ(told[i].transfer.endpoint, 0x81);
         EXPECT_EQ(told[i].transfer.requested_bytes, 512U);
     }
     EXPECT_EQ(told[10].transfer.setup, (std::array<std::uint8_t, 8>{0x21, 0x22, 1, 0, 0, 0, 0, 0}));
     std::size_t written = 0;
     for (const auto& one : told) {
-        if (one.transfer.endpoint != GLP_USB_ENDPOINT_OUT ||
-            one.transfer.event != Transfer::Event::submission) {
-            continue;
-        }
+        if (one.transfer.endpoint != 0x01 || one.transfer.event != Transfer::Event::submission) { continue; }
         ++written;
         EXPECT_EQ(one.data, (Bytes{1, 2, 3}));
     }

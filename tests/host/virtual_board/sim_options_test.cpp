@@ -20,7 +20,9 @@ TEST(SimOptions, EveryOptionIsRead) {
                                                  {"realtime", "1"},
                                                  {"clock_ppm", "-250"},
                                                  {"fault", "fifo_overflow@12.5+link_stall@20..22.5"},
-                                                 {"unplug", "90"}});
+                                                 {"unplug", "90"},
+                                                 {"endpoints", "fixed_kind"},
+                                                 {"sensor", "mpu9255"}});
     ASSERT_TRUE(options.ok()) << options.error().message;
     EXPECT_EQ(options->model_path, "a.json");
     EXPECT_EQ(options->rate_hz, 333.333);
@@ -36,6 +38,8 @@ TEST(SimOptions, EveryOptionIsRead) {
     EXPECT_EQ(options->faults[0].at_s, 12.5);
     EXPECT_EQ(options->faults[1].duration_s, 2.5);
     EXPECT_EQ(options->faults[2].kind, BoardFault::Kind::unplug);
+    EXPECT_EQ(options->endpoints.in, 0x82);
+    EXPECT_EQ(options->who_am_i, 0x73);
     EXPECT_EQ(options->text.find("board"), std::string::npos);
 }
 
@@ -72,6 +76,8 @@ TEST(SimOptions, AnUnknownOptionOrABadValueIsRefusedByName) {
                                           {"fault", "link_stall@3..1"},
                                           {"fault", "unplug@3..1"},
                                           {"self_powered", "yes"},
+                                          {"endpoints", "any"},
+                                          {"sensor", "icm20948"},
                                           {"unplug", "soon"}}) {
         const auto options = parse_sim_options(Pairs{{key, value}});
         ASSERT_FALSE(options.ok()) << key << "=" << value;

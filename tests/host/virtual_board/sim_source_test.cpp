@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -24,6 +25,7 @@ public:
         }
         if (transfer.kind == TransferKind::control) { ++control_events; }
         if (transfer.kind == TransferKind::bulk && transfer.endpoint == 0x01) { ++out_events; }
+        if (transfer.kind == TransferKind::bulk) { endpoints.insert(transfer.endpoint); }
         EXPECT_GE(transfer.time.monotonic_ns, last_ns - 1);
         if (transfer.event == Transfer::Event::completion) { last_ns = transfer.time.monotonic_ns; }
         return true;
@@ -48,6 +50,7 @@ public:
     std::vector<int> statuses;
     int control_events = 0;
     int out_events = 0;
+    std::set<std::uint8_t> endpoints;  // of bulk transfers
     std::int64_t last_ns = 0;
     std::optional<SourceEnd> end;
 };
@@ -120,6 +123,22 @@ TEST(SimSource, ACommandBeforeTheStartIsAnsweredAndObeyed) {
     EXPECT_EQ(sink.stream.config.gyro_full_scale_dps, 1000U);
     EXPECT_EQ(sink.stream.indices.size(), 500U);
     EXPECT_EQ(sink.out_events, 2);
+}
+
+TEST(SimSource, SpeaksByTheEndpointsOfItsDescriptor) {
+    for (const UsbEndpoints& endpoints : {UsbEndpoints{}, fixed_kind_endpoints}) {
+        Collector sink;
+        SimOptions options = at_rate(100.0);
+        options.endpoints = endpoints;
+        const auto source = source_of(options, {.samples = 100, .duration_s = {}});
+        EXPECT_EQ(source->identity().configuration_descriptor, configuration_descriptor(endpoints));
+        ASSERT_TRUE(source->start(sink).ok());
+        ASSERT_TRUE(source->write(configure_bytes(500.0, 1000)).ok());
+        ASSERT_TRUE(source->set_line_state(true).ok());
+        EXPECT_EQ(sink.wait_for_end(), SourceEnd::exhausted);
+        source->stop();
+        EXPECT_EQ(sink.endpoints, (std::set<std::uint8_t>{endpoints.in, endpoints.out}));
+    }
 }
 
 TEST(SimSource, StopsWhenToldWhileItStreamsWithoutEnd) {
