@@ -2,8 +2,9 @@
 --
 --   tshark -X lua_script:gyrolog.lua -r capture.pcapng -Y gyrolog
 --
--- or copy it into the folder that Help > About > Folders calls "Personal Lua Plugins". Binds itself to 1fc9:0083 when
--- the capture holds the device descriptor; otherwise use "Decode As" on the USB device or product.
+-- or copy it into the folder that Help > About > Folders calls "Personal Lua Plugins". Binds itself to 1209:6779 and
+-- to 1fc9:0083, the id of older firmware, when the capture holds the device descriptor; otherwise use "Decode As" on the
+-- USB device or product.
 
 local gyrolog = Proto("gyrolog", "gyrolog sensor stream")
 
@@ -289,7 +290,7 @@ function gyrolog.dissector(buffer, pinfo, tree)
 end
 
 local products = DissectorTable.get("usb.product")
-products:add(0x1fc90083, gyrolog)
+for _, id in ipairs({ 0x12096779, 0x1fc90083 }) do products:add(id, gyrolog) end
 for _, name in ipairs({ "usb.product", "usb.device" }) do
     local found, table_of = pcall(DissectorTable.get, name)
     if found and table_of then pcall(table_of.add_for_decode_as, table_of, gyrolog) end

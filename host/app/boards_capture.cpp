@@ -14,6 +14,7 @@
 #include "host/app/capture_run.hpp"
 #include "host/app/command.hpp"
 #include "host/app/device_choice.hpp"
+#include "host/app/former_id.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/stop_signal.hpp"
 
@@ -175,6 +176,7 @@ ExitCode capture_boards(Console& console, const char* command, const CaptureOpti
     const Boards boards = std::move(opened).value();
     for (const auto& board : boards) {
         console.err << "capturing from " << board->source().identity().uri << " to " << board->path() << '\n';
+        warn_of_former_id(console, command, board->source().identity());
     }
     const TidyEnd tidy;
     for (const auto& board : boards) { board->start(); }

@@ -7,6 +7,7 @@
 
 #include "host/app/capture_notices.hpp"
 #include "host/app/command.hpp"
+#include "host/app/former_id.hpp"
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/stop_signal.hpp"
@@ -210,6 +211,7 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
     ByteSource& source = *opened.source;
     console.err << "capturing from " << source.identity().uri << " to " << request.path
                 << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n" : "\n");
+    warn_of_former_id(console, command, source.identity());
     if (denoise != nullptr) { console.err << "  " << denoise->announcement() << '\n'; }
     const auto outcome = watch_capture(console, source, request, denoise);
     CaptureResult result = tell_outcome(console, command, outcome, request.path, limited);

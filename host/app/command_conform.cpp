@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/app/command.hpp"
+#include "host/app/former_id.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/stop_signal.hpp"
 #include "host/conform/conformance.hpp"
@@ -29,6 +30,7 @@ ExitCode conform(Console& console, const ConformOptions& options) {
     if (!opened.ok()) { return fail_to_open(console, opened.error()); }
     console.err << "gyrolog conform: talking to " << opened->source->identity().uri
                 << " for about ten seconds\n";
+    warn_of_former_id(console, "conform", opened->source->identity());
     const auto dialogue = [&] {
         const TidyEnd tidy;  // the board is left as it was found
         return converse(*opened->source, [&] { return !console.stop_wanted(); });

@@ -1,11 +1,13 @@
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include "host/app/command.hpp"
+#include "host/app/former_id.hpp"
 #include "host/app/result_output.hpp"
 #include "host/usb/usb_board.hpp"
 
@@ -16,9 +18,16 @@ struct ListOptions {
     std::string json;
 };
 
+// Boards, and behind them the strangers, with what tells them from one.
+std::vector<UsbBoard> listed(const UsbSurvey& survey) {
+    std::vector<UsbBoard> devices = survey.boards;
+    devices.insert(devices.end(), survey.strangers.begin(), survey.strangers.end());
+    return devices;
+}
+
 nlohmann::ordered_json list_json(const UsbSurvey& survey) {
     auto devices = nlohmann::ordered_json::array();
-    for (const UsbBoard& board : survey.boards) {
+    for (const UsbBoard& board : listed(survey)) {
         devices.push_back({{"uri", board.uri()},
                            {"vid", fmt::format("{:04x}", board.vendor_id)},
                            {"pid", fmt::format("{:04x}", board.product_id)},
@@ -31,7 +40,7 @@ nlohmann::ordered_json list_json(const UsbSurvey& survey) {
 
 std::string list_text(const UsbSurvey& survey) {
     std::string text;
-    for (const UsbBoard& board : survey.boards) {
+    for (const UsbBoard& board : listed(survey)) {
         text += fmt::format("{:<20} {:04x}:{:04x}  {:<28} {}\n", board.uri(), board.vendor_id,
                             board.product_id, board.product.empty() ? "(name not readable)" : board.product,
                             board_state_name(board.state));
@@ -50,6 +59,9 @@ ExitCode list(Console& console, const ListOptions& options) {
     results.json(options.json, [&] { return list_json(*survey); });
     if (const Status written = results.finish(); !written.ok()) {
         return report_error(console, "list", written.error());
+    }
+    for (const UsbBoard& board : survey->boards) {
+        warn_of_former_id(console, "list", board.uri(), board.vendor_id, board.product_id);
     }
     if (survey->boards.empty()) {
         const auto none = choose_board(*survey, "");

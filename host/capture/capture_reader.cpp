@@ -4,9 +4,7 @@
 #include <map>
 #include <utility>
 
-extern "C" {
 #include <gyrolog_protocol/usb_identity.h>
-}
 
 #include "host/capture/byte_order.hpp"
 #include "host/capture/head_records.hpp"
@@ -22,14 +20,13 @@ bool is_device_descriptor(const Transfer& transfer) {
            transfer.data.size() == 18 && transfer.data[0] == 18 && transfer.data[1] == 1;
 }
 
-bool is_board(ByteView device_descriptor) {
-    return get<std::uint16_t>(device_descriptor, 8) == GLP_USB_VENDOR_ID &&
-           get<std::uint16_t>(device_descriptor, 10) == GLP_USB_PRODUCT_ID;
+glp_usb_id id_in(ByteView device_descriptor) {
+    return glp_usb_id_of(get<std::uint16_t>(device_descriptor, 8), get<std::uint16_t>(device_descriptor, 10));
 }
 
 // What a foreign capture shows of one device.
 struct Candidate {
-    bool is_board = false;
+    glp_usb_id id = glp_usb_id_other;
     std::map<std::uint8_t, std::uint64_t> bulk_in_bytes;  // by endpoint
 
     std::pair<std::uint8_t, std::uint64_t> busiest() const {
@@ -70,15 +67,15 @@ Status CaptureReader::pick_device() {
         if (!record) { continue; }
         Candidate& candidate = candidates[{record->address.bus, record->address.device}];
         const Transfer& transfer = record->transfer;
-        if (is_device_descriptor(transfer)) { candidate.is_board = is_board(transfer.data); }
+        if (is_device_descriptor(transfer)) { candidate.id = id_in(transfer.data); }
         if (transfer.carries_stream()) { candidate.bulk_in_bytes[transfer.endpoint] += transfer.data.size(); }
     }
     scanner_.rewind();
 
-    std::pair<bool, std::uint64_t> best{};
+    std::pair<glp_usb_id, std::uint64_t> best{glp_usb_id_other, 0};
     for (const auto& [address, candidate] : candidates) {
         const auto [endpoint, bytes] = candidate.busiest();
-        const std::pair<bool, std::uint64_t> rank{candidate.is_board, bytes};
+        const std::pair rank{candidate.id, bytes};
         if (bytes > 0 && rank > best) {
             best = rank;
             picked_ = UsbAddress{address.first, address.second};

@@ -37,10 +37,11 @@ Judgement identity(const Dialogue& dialogue) {
     if (board.vendor_id == 0) { return not_tested("the line is not USB"); }
     Findings findings;
     findings.looked();
-    const bool known = board.vendor_id == GLP_USB_VENDOR_ID && board.product_id == GLP_USB_PRODUCT_ID;
+    const bool known = glp_usb_id_of(board.vendor_id, board.product_id) != glp_usb_id_other;
     const TranscriptEntry descriptor = entry_of(board.device_descriptor);
-    if (!known && !board.product.starts_with(GLP_USB_PRODUCT_PREFIX)) {
-        findings.wrong("1fc9:0083, or a product string that begins with gyrolog",
+    if (!known || !board.product.starts_with(GLP_USB_PRODUCT_PREFIX)) {
+        findings.wrong(fmt::format("{:04x}:{:04x} and a product string that begins with {}",
+                                   GLP_USB_VENDOR_ID, GLP_USB_PRODUCT_ID, GLP_USB_PRODUCT_PREFIX),
                        fmt::format("{:04x}:{:04x} '{}'", board.vendor_id, board.product_id, board.product),
                        &descriptor);
     }
@@ -111,8 +112,8 @@ Judgement endpoints(const Dialogue& dialogue) {
 }
 
 constexpr std::array all_usb_rules{
-    Rule{"10.1", "The device is known by its id or product, and its serial is its uid", identity},
-    Rule{"10.2", "Interfaces and endpoints are those of the table", endpoints},
+    Rule{"10.1", "The device is known by its id and product, and its serial is its uid", identity},
+    Rule{"10.2", "Interfaces and the kinds of endpoints are those of the table", endpoints},
 };
 
 }  // namespace

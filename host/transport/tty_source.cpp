@@ -41,8 +41,10 @@ std::string hint_of_a_taken_port() {
         const std::string name = entry.path().filename().string();
         if (!name.ends_with(":1.0") || fs::exists(entry.path() / "driver", none)) { continue; }
         const std::string device = "/sys/bus/usb/devices/" + name.substr(0, name.find(':'));
-        if (read_sysfs_number(device, "idVendor", 16) == GLP_USB_VENDOR_ID &&
-            read_sysfs_number(device, "idProduct", 16) == GLP_USB_PRODUCT_ID) {
+        const auto vendor_id = static_cast<std::uint16_t>(read_sysfs_number(device, "idVendor", 16));
+        const auto product_id = static_cast<std::uint16_t>(read_sysfs_number(device, "idProduct", 16));
+        if (glp_usb_id_of(vendor_id, product_id) != glp_usb_id_other &&
+            read_sysfs_text(device, "product").starts_with(GLP_USB_PRODUCT_PREFIX)) {
             return "; a board is there whose port a killed program has taken along: plug it in again, or run "
                    "`echo " +
                    name + " | sudo tee /sys/bus/usb/drivers/cdc_acm/bind`";

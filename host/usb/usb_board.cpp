@@ -35,20 +35,27 @@ std::string sysfs_directory(libusb_device* device) {
     return directory;
 }
 
+std::string id_text(unsigned vendor_id, unsigned product_id) {
+    std::array<char, 10> text{};
+    static_cast<void>(std::snprintf(text.data(), text.size(), "%04x:%04x", vendor_id, product_id));
+    return text.data();
+}
+
 std::string describe(const UsbBoard& board) {
-    std::array<char, 16> identifiers{};
-    static_cast<void>(std::snprintf(identifiers.data(), identifiers.size(), "%04x:%04x",
-                                    unsigned{board.vendor_id}, unsigned{board.product_id}));
-    std::string text = identifiers.data();
+    std::string text = id_text(board.vendor_id, board.product_id);
     if (!board.manufacturer.empty()) { text += " " + board.manufacturer; }
     if (!board.product.empty()) { text += " " + board.product; }
     return text;
 }
 
-bool is_board(const UsbBoard& device) {
-    return (device.vendor_id == GLP_USB_VENDOR_ID && device.product_id == GLP_USB_PRODUCT_ID) ||
-           device.product.rfind(GLP_USB_PRODUCT_PREFIX, 0) == 0;
+std::string own_id() { return id_text(GLP_USB_VENDOR_ID, GLP_USB_PRODUCT_ID); }
+std::string former_id() { return id_text(GLP_USB_FORMER_VENDOR_ID, GLP_USB_FORMER_PRODUCT_ID); }
+
+bool has_boards_id(const UsbBoard& device) {
+    return glp_usb_id_of(device.vendor_id, device.product_id) != glp_usb_id_other;
 }
+
+bool has_boards_name(const UsbBoard& device) { return device.product.starts_with(GLP_USB_PRODUCT_PREFIX); }
 
 UsbBoard identify(libusb_device* device, const libusb_device_descriptor& descriptor,
                   const std::string& directory) {
@@ -74,6 +81,17 @@ Status read_descriptors(UsbBoard& board, const std::string& directory) {
 void refuse(UsbBoard& board, BoardState state, std::string why) {
     board.state = state;
     board.why = std::move(why);
+}
+
+std::string why_a_stranger(const UsbBoard& device) {
+    if (has_boards_name(device)) {
+        return "not a board by its id, which is neither " + own_id() + " nor " + former_id() + ": left alone";
+    }
+    if (device.product.empty()) {
+        return "not a board by its product name, which it does not tell: left alone";
+    }
+    return "not a board by its product name, '" + device.product +
+           "', which does not begin with '" GLP_USB_PRODUCT_PREFIX "': left alone";
 }
 
 // Whether somebody holds the interface. One that a kernel driver holds is free for us: the driver can be
@@ -115,8 +133,13 @@ void add_device(UsbSurvey& survey, libusb_device* device) {
     const std::string directory = sysfs_directory(device);
     if (directory.empty() || descriptor.bDeviceClass == LIBUSB_CLASS_HUB) { return; }
     UsbBoard board = identify(device, descriptor, directory);
-    if (!is_board(board)) {
+    if (!has_boards_id(board) && !has_boards_name(board)) {
         survey.others.push_back(describe(board));
+        return;
+    }
+    if (!has_boards_id(board) || !has_boards_name(board)) {
+        refuse(board, BoardState::wrong_protocol, why_a_stranger(board));
+        survey.strangers.push_back(std::move(board));
         return;
     }
     if (const Status readable = read_descriptors(board, directory); !readable.ok()) {
@@ -129,14 +152,8 @@ void add_device(UsbSurvey& survey, libusb_device* device) {
 
 // How a board is known, as the user may compare it with lsusb.
 std::string board_marks() {
-    constexpr std::array digits{'0', '1', '2', '3', '4', '5', '6', '7',
-                                '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'};
-    std::string id;
-    for (const unsigned number : {GLP_USB_VENDOR_ID, GLP_USB_PRODUCT_ID}) {
-        id += id.empty() ? "" : ":";
-        for (unsigned shift = 16; shift > 0; shift -= 4) { id += digits[(number >> (shift - 4)) & 15U]; }
-    }
-    return id + " and products whose name begins with '" GLP_USB_PRODUCT_PREFIX "'";
+    return own_id() + ", or formerly " + former_id() +
+           ", with a product name that begins with '" GLP_USB_PRODUCT_PREFIX "'";
 }
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -181,8 +198,9 @@ Result<UsbSurvey> survey_usb(UsbContext& usb) {
     const DeviceList list(raw);
     UsbSurvey survey;
     for (ssize_t i = 0; i < count; ++i) { add_device(survey, list[static_cast<std::size_t>(i)]); }
-    std::sort(survey.boards.begin(), survey.boards.end(),
-              [](const UsbBoard& a, const UsbBoard& b) { return a.serial < b.serial; });
+    for (auto* devices : {&survey.boards, &survey.strangers}) {
+        std::ranges::sort(*devices, {}, &UsbBoard::serial);
+    }
     return survey;
 }
 
@@ -195,6 +213,9 @@ Result<UsbBoard> choose_board(const UsbSurvey& survey, std::string_view serial) 
     }
     if (fitting.empty()) {
         std::vector<std::string> instead = uris;
+        for (const UsbBoard& stranger : survey.strangers) {
+            instead.push_back(describe(stranger) + " (" + stranger.why + ")");
+        }
         instead.insert(instead.end(), survey.others.begin(), survey.others.end());
         const std::string wanted =
             serial.empty() ? std::string("no board") : "no board 'usb:" + std::string(serial) + "'";

@@ -16,7 +16,7 @@ enum class BoardState {
     ready,
     no_permission,   // `why` holds the mend
     busy,            // another program has claimed it
-    wrong_protocol,  // named like a board, but its descriptors are not those of one
+    wrong_protocol,  // no board, or no board's descriptors
 };
 
 // "ready", "no_permission", "busy", "wrong_protocol": as `gyrolog list --json` spells them.
@@ -40,13 +40,16 @@ struct UsbBoard {
     std::string uri() const;  // "usb:SERIAL", or "usb:" for a board without a serial number
 };
 
+// A board is known by its id and by a product string that begins with GLP_USB_PRODUCT_PREFIX: by both.
 struct UsbSurvey {
     std::vector<UsbBoard> boards;
+    // Somebody else's that have one of the two. They are wrong_protocol, `why` says which is missing, and
+    // nothing but the kernel's files about them is ever opened.
+    std::vector<UsbBoard> strangers;
     std::vector<std::string> others;  // what else is there, hubs left out: "046d:c52b Logitech USB Receiver"
 };
 
-// A board is known by its VID:PID or by a product string that begins with GLP_USB_PRODUCT_PREFIX. Boards are
-// opened for a moment to see whether that is allowed; a kernel driver that is bound stays bound.
+// Boards are opened for a moment to see whether that is allowed; a kernel driver that is bound stays bound.
 Result<UsbSurvey> survey_usb(UsbContext& usb);
 
 // The ready board with this serial number; with an empty serial the only board there is. Otherwise the error

@@ -584,6 +584,9 @@ void another_vendor(SourceIdentity& identity) {
     identity.product = "STM32 Virtual COM Port";
 }
 
+// NXP's example of a serial port, by its product string.
+void another_product(SourceIdentity& identity) { identity.product = "VCOM Port"; }
+
 // The endpoint for notifications is a bulk endpoint (USB 2.0, table 9-13).
 void another_kind(SourceIdentity& identity) {
     Bytes& bytes = identity.configuration_descriptor;
@@ -673,6 +676,7 @@ constexpr std::array all_breaches{
     in_writes("whole_writes", "9.2", "a command that comes byte by byte is not seen", wants_whole_writes),
     in_writes("late_resync", "9.4", "noise spoils the command behind it", resynchronises_late),
     in_identity("vendor", "10.1", "another vendor's id and product string", another_vendor),
+    in_identity("product", "10.1", "another product string", another_product),
     in_identity("endpoint", "10.2", "the interrupt endpoint is a bulk endpoint", another_kind),
     in_frames("unasked", "10.5", "a STATUS that nobody asked for before the first start", speaks_unasked),
 };

@@ -101,7 +101,7 @@ TEST(CommandLine, WithoutABoardItSaysWhatWasSoughtAndOffersTheVirtualOne) {
     const ProgramResult result = run_gyrolog({"-o", folder.path("x.pcapng")});
     if (result.exit_code == 0) { GTEST_SKIP() << "needs that no board is plugged in"; }
     EXPECT_EQ(result.exit_code, 3) << result.err;
-    EXPECT_NE(result.err.find("1fc9:0083"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("1209:6779"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("gyrolog --device sim:"), std::string::npos) << result.err;
     EXPECT_FALSE(std::filesystem::exists(folder.path("x.pcapng")));
 }

@@ -13,7 +13,8 @@ sys.path.insert(0, str(ROOT / "tools/protocol_vectors"))
 from codec import wire  # noqa: E402
 from make_vectors import CONFIG, EVENT, HELLO, SAMPLES, payload, samples_payload  # noqa: E402
 
-DEVICE_DESCRIPTOR = struct.pack("<BBHBBBBHHHBBBB", 18, 1, 0x0200, 2, 0, 0, 64, 0x1FC9, 0x0083, 0x0100, 1, 2, 3, 1)
+# The board's id, and that of older firmware; each with other endpoints.
+BOARDS = [(0x1209, 0x6779, 0x82), (0x1FC9, 0x0083, 0x81)]
 GET_DEVICE_DESCRIPTOR = bytes.fromhex("8006000100001200")
 
 
@@ -32,15 +33,16 @@ class Capture:
                              0) + data
         self.bytes += struct.pack("<IIII", self.time_s, 0, len(packet), len(packet)) + packet
 
-    def descriptor(self):
+    def descriptor(self, vendor_id, product_id):
+        device = struct.pack("<BBHBBBBHHHBBBB", 18, 1, 0x0200, 2, 0, 0, 64, vendor_id, product_id, 0x0100, 1, 2, 3, 1)
         self.urb += 1
         self.record("S", 2, 0x80, GET_DEVICE_DESCRIPTOR, 18, b"", -115)
-        self.record("C", 2, 0x80, None, 18, DEVICE_DESCRIPTOR, 0)
+        self.record("C", 2, 0x80, None, 18, device, 0)
 
-    def bulk_in(self, data):
+    def bulk_in(self, endpoint, data):
         self.urb += 1
-        self.record("S", 3, 0x81, None, 512, b"", -115)
-        self.record("C", 3, 0x81, None, len(data), data, 0)
+        self.record("S", 3, endpoint, None, 512, b"", -115)
+        self.record("C", 3, endpoint, None, len(data), data, 0)
 
 
 def main():
@@ -48,15 +50,20 @@ def main():
     if not tshark:
         print("skipped: needs tshark")
         sys.exit(77)
+    for board in BOARDS:
+        dissect(tshark, *board)
+
+
+def dissect(tshark, vendor_id, product_id, endpoint):
     torn = bytearray(wire(CONFIG, payload(CONFIG), 12))
     torn[20] ^= 4
     stream = (wire(HELLO, payload(HELLO), 10) + wire(CONFIG, payload(CONFIG), 11) + torn +
               wire(SAMPLES, samples_payload(4, 3), 13) +
               wire(EVENT, payload(EVENT, b"hello", code=7, text_bytes=5), 14))
     capture = Capture()
-    capture.descriptor()
+    capture.descriptor(vendor_id, product_id)
     for at in range(0, len(stream), 64):  # frames run across transfers
-        capture.bulk_in(stream[at : at + 64])
+        capture.bulk_in(endpoint, stream[at : at + 64])
 
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "board.pcap"
@@ -80,7 +87,7 @@ def main():
     if "rror" in result.stderr.replace("Running as user", ""):
         problems.append(result.stderr)
     if problems:
-        sys.exit(f"missing: {problems}\n{result.stdout}\n{result.stderr}")
+        sys.exit(f"{vendor_id:04x}:{product_id:04x}: missing: {problems}\n{result.stdout}\n{result.stderr}")
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ FILES = {
     "usr/share/doc/gyrolog/README.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/analysis/METHODS.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/firmware_protocol/SPEC.md": "-rw-r--r--",
+    "usr/share/doc/gyrolog/firmware_protocol/USB_ID.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/host/capture/FORMAT.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/changelog.Debian.gz": "-rw-r--r--",
     "usr/share/doc/gyrolog/copyright": "-rw-r--r--",

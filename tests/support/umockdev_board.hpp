@@ -35,8 +35,8 @@ public:
 };
 
 struct MockUsbIdentity {
-    std::uint16_t vendor_id = 0x1FC9;
-    std::uint16_t product_id = 0x0083;
+    std::uint16_t vendor_id = 0x1209;
+    std::uint16_t product_id = 0x6779;
     std::uint8_t device_address = 2;  // on bus 1; also its port
     std::string manufacturer = "NXP";
     std::string product = "gyrolog MPU-9250";

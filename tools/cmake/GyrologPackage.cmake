@@ -50,7 +50,7 @@ set(documents ${CMAKE_INSTALL_DATADIR}/doc/gyrolog)
 install(FILES README.md tools/debian/copyright ${made}/changelog.Debian.gz DESTINATION ${documents})
 # In their folders, as README.md refers to them.
 install(FILES analysis/METHODS.md DESTINATION ${documents}/analysis)
-install(FILES firmware_protocol/SPEC.md DESTINATION ${documents}/firmware_protocol)
+install(FILES firmware_protocol/SPEC.md firmware_protocol/USB_ID.md DESTINATION ${documents}/firmware_protocol)
 install(FILES host/capture/FORMAT.md DESTINATION ${documents}/host/capture)
 
 include(CPack)

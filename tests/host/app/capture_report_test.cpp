@@ -177,7 +177,10 @@ TEST_F(CaptureReport, InfoTellsWhatTheCaptureIsACaptureOf) {
     const Json info = info_json(path_, capture);
     EXPECT_EQ(info["schema"], "gyrolog-info/1");
     EXPECT_EQ(info["board"]["serial"], "SIM0001");
-    EXPECT_EQ(info["board"]["vid"], "1fc9");
+    EXPECT_EQ(info["board"]["vid"], "1209");
+    EXPECT_EQ(info["board"]["pid"], "6779");
+    EXPECT_EQ(info["sensor"]["name"], "MPU-9250");
+    EXPECT_EQ(info["sensor"]["who_am_i"], "71");
     EXPECT_EQ(info["sensor"]["rate_hz"], 1000.0);
     EXPECT_EQ(info["sensor"]["full_scale_dps"], 1000);
     EXPECT_EQ(info["sensor"]["dlpf"], 92);

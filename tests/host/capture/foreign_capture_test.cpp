@@ -29,12 +29,24 @@ ForeignPacket packet(std::int64_t time_us, UsbAddress address, const Transfer& t
     return made;
 }
 
+struct UsbId {
+    std::uint16_t vendor;
+    std::uint16_t product;
+};
+constexpr UsbId own_id{0x1209, 0x6779};
+constexpr UsbId former_id{0x1FC9, 0x0083};
+constexpr UsbId disks_id{0x1234, 0x0083};
+
 // A bus with a disk that moves more data than the board, both told by their descriptors unless `anonymous`.
-std::vector<ForeignPacket> made_bus(const std::vector<KeptTransfer>& board, bool anonymous) {
+std::vector<ForeignPacket> made_bus(const std::vector<KeptTransfer>& board, bool anonymous,
+                                    UsbId board_id = own_id, UsbId disk_id = disks_id) {
     std::vector<ForeignPacket> packets;
     std::int64_t time_us = 1'700'000'000'000'000;
-    const auto describe = [&](UsbAddress address, std::uint8_t vendor_low, std::uint8_t vendor_high) {
-        const Bytes descriptor{18, 1, 0, 2, 2, 0, 0, 64, vendor_low, vendor_high, 0x83, 0, 0, 1, 1, 2, 3, 1};
+    const auto describe = [&](UsbAddress address, UsbId id) {
+        Bytes descriptor{18, 1, 0, 2, 2, 0, 0, 64};
+        put<std::uint16_t>(descriptor, id.vendor);
+        put<std::uint16_t>(descriptor, id.product);
+        for (const std::uint8_t byte : Bytes{0, 1, 1, 2, 3, 1}) { descriptor.push_back(byte); }
         Transfer transfer;
         transfer.kind = TransferKind::control;
         transfer.endpoint = 0x80;
@@ -42,8 +54,8 @@ std::vector<ForeignPacket> made_bus(const std::vector<KeptTransfer>& board, bool
         packets.push_back(packet(++time_us, address, transfer));
     };
     if (!anonymous) {
-        describe(disk_address, 0x34, 0x12);
-        describe(board_address, 0xC9, 0x1F);
+        describe(disk_address, disk_id);
+        describe(board_address, board_id);
     }
     const Bytes block(anonymous ? 10 : 4096, 0xEE);
     for (const KeptTransfer& kept : board) {
@@ -136,6 +148,17 @@ TEST(ForeignCapture, GivesTheBoardsTransfersAmongThoseOfOtherDevices) {
         EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
         EXPECT_TRUE(read->accounts.blocks.balanced());
         EXPECT_FALSE(read->metadata);
+    }
+}
+
+TEST(ForeignCapture, KnowsABoardByItsIdNowAndFormerly) {
+    const std::vector<KeptTransfer> board = made_transfers(20, 300);
+    for (const auto& bus : {made_bus(board, false, own_id), made_bus(board, false, former_id),
+                            // NXP's example of a serial port beside it
+                            made_bus(board, false, own_id, former_id)}) {
+        const auto read = read_capture(foreign_pcapng(bus));
+        ASSERT_TRUE(read.ok()) << read.error().message;
+        EXPECT_EQ(stream_of(read->transfers), stream_of(board));
     }
 }
 

@@ -102,6 +102,34 @@ TEST(Conform, EachBrokenBoardIsCaughtByItsOwnRuleAndByNoOther) {
     }
 }
 
+// Of each known sensor the registers are looked at, not only of the one that says 71.
+TEST(Conform, RegistersOfEveryKnownSensorAreHeldAgainstTheFields) {
+    const Breach* breach = breach_named("register");
+    ASSERT_NE(breach, nullptr);
+    for (const char* sensor : {"mpu9250", "mpu9255", "mpu9250_75"}) {
+        const auto dialogue = talk_to(std::string("sim:breach=register,sensor=") + sensor);
+        ASSERT_TRUE(dialogue.ok()) << dialogue.error().message;
+        EXPECT_THAT(rules_that(judge(*dialogue), JudgementState::fail), ElementsAre(breach->rule)) << sensor;
+    }
+}
+
+TEST(Conform, AnIdWithoutTheNameAndANameWithoutTheIdAreNoBoards) {
+    auto dialogue = talk_to("sim:");
+    ASSERT_TRUE(dialogue.ok()) << dialogue.error().message;
+    const auto breaks_10_1 = [&](std::uint16_t vendor_id, std::uint16_t product_id, const char* product) {
+        dialogue->identity.vendor_id = vendor_id;
+        dialogue->identity.product_id = product_id;
+        dialogue->identity.product = product;
+        return !judge(*dialogue).conforms();
+    };
+    EXPECT_FALSE(breaks_10_1(0x1209, 0x6779, "gyrolog"));
+    EXPECT_FALSE(breaks_10_1(0x1FC9, 0x0083, "gyrolog")) << "of older firmware";
+    EXPECT_TRUE(breaks_10_1(0x1209, 0x6779, "LPC VCOM"));
+    EXPECT_TRUE(breaks_10_1(0x1FC9, 0x0083, "LPC VCOM"));
+    EXPECT_TRUE(breaks_10_1(0x0483, 0x5740, "gyrolog"));
+    EXPECT_TRUE(breaks_10_1(0x1209, 0x0083, "gyrolog"));
+}
+
 // A rule that no board breaks may be a check that cannot fail. These four need what no virtual board gives
 // from outside (SPEC.md says what): a frame cut off at the end, a host that does not read, a broken sensor, a
 // boot.

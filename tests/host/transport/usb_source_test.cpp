@@ -41,7 +41,7 @@ public:
     void on_bulk_out(ByteView data) override { received.insert(received.end(), data.begin(), data.end()); }
     std::optional<In> on_bulk_in(std::size_t requested_bytes) override {
         if (stale_bytes > 0) { return In{0, count(std::exchange(stale_bytes, 0))}; }
-        if (!dtr) { return std::nullopt; }
+        if (!dtr && !(talks_on && talks_on())) { return std::nullopt; }
         if (script) { return script(*this, requested_bytes); }
         return In{0, count(40)};
     }
@@ -56,6 +56,7 @@ public:
     bool refuses_line_state = false;
     std::size_t stale_bytes = 0;
     std::function<std::optional<In>(CountingFunction&, std::size_t)> script;
+    std::function<bool()> talks_on;  // with DTR low
     Bytes received;
 
 private:
@@ -367,13 +368,138 @@ TEST_F(UsbSourceTest, TwoBoardsAreToldApartAndStreamSideBySide) {
     expect_running_count(beside_sink.stream());
 }
 
-TEST_F(UsbSourceTest, AnotherVendorsBoardIsKnownByItsProductString) {
+MockUsbIdentity with_former_id() {
     MockUsbIdentity identity;
-    identity.vendor_id = 0x1209;
-    identity.product_id = 0x0001;
+    identity.vendor_id = GLP_USB_FORMER_VENDOR_ID;
+    identity.product_id = GLP_USB_FORMER_PRODUCT_ID;
+    return identity;
+}
+
+MockUsbIdentity nxp_example() {
+    MockUsbIdentity identity = with_former_id();
+    identity.product = "LPC VCOM";
+    return identity;
+}
+
+MockUsbIdentity named_like_a_board() {
+    MockUsbIdentity identity;
+    identity.vendor_id = 0x0483;
+    identity.product_id = 0x5740;
+    return identity;
+}
+
+TEST_F(UsbSourceTest, ABoardWithTheFormerIdAndTheRightNameIsTaken) {
+    plug_in(with_former_id());
+    open();
+    EXPECT_EQ(source_->identity().vendor_id, 0x1FC9);
+}
+
+// By the id alone, and by the name alone.
+TEST_F(UsbSourceTest, AStrangersDeviceIsNeverTouched) {
+    MockUsbIdentity own_id;
+    own_id.product = "Somebody's keyboard";
+    MockUsbIdentity nameless = with_former_id();
+    nameless.product.clear();
+    for (const MockUsbIdentity& identity : {nxp_example(), named_like_a_board(), own_id, nameless}) {
+        SCOPED_TRACE(identity.product);
+        const UmockdevBoard& stranger = plug_in(identity);
+        start_libusb();
+        const auto survey = survey_usb(*usb_);
+        ASSERT_TRUE(survey.ok());
+        EXPECT_TRUE(survey->boards.empty());
+        ASSERT_EQ(survey->strangers.size(), 1U);
+        EXPECT_EQ(survey->strangers[0].state, BoardState::wrong_protocol);
+        EXPECT_THAT(survey->strangers[0].why, HasSubstr("left alone"));
+        EXPECT_EQ(refusal("").code, ErrorCode::not_found);
+        EXPECT_EQ(refusal("S1").code, ErrorCode::not_found) << "also by its serial number";
+        EXPECT_TRUE(stranger.kernel_driver_bound());
+        EXPECT_EQ(stranger.ioctls(), 0U) << "not even opened";
+        usb_.reset();
+        boards_.clear();
+    }
+}
+
+TEST_F(UsbSourceTest, AStrangerIsNoneOfSeveralBoards) {
+    const UmockdevBoard& stranger = plug_in(nxp_example());
+    MockUsbIdentity board;
+    board.device_address = 3;
+    board.serial = "S2";
+    plug_in(board, second_function_);
+    open();
+    EXPECT_EQ(source_->identity().serial, "S2");
+    EXPECT_EQ(stranger.ioctls(), 0U);
+}
+
+TEST_F(UsbSourceTest, WhatAStrangerLacksIsSaid) {
+    plug_in(nxp_example());
+    start_libusb();
+    EXPECT_THAT(refusal("").message,
+                ::testing::AllOf(HasSubstr("looked for 1209:6779"), HasSubstr("1fc9:0083 NXP LPC VCOM"),
+                                 HasSubstr("'LPC VCOM', which does not begin with 'gyrolog'")));
+}
+
+TEST_F(UsbSourceTest, EndpointsAreThoseOfTheDescriptor) {
+    MockUsbIdentity identity;
+    identity.configuration_descriptor = test::cdc_acm_configuration(0x82, 0x02, 0x81);
     plug_in(identity);
     open();
-    EXPECT_EQ(source_->identity().vendor_id, 0x1209);
+    start();
+    raise_line();
+    EXPECT_TRUE(sink_.wait_for_bytes(4000));
+    ASSERT_TRUE(source_->write(as_bytes("command")).ok());
+    source_->stop();
+    expect_running_count(sink_.stream());
+    EXPECT_EQ(as_text(function_.received), "command");
+    for (const auto& one : sink_.told()) {
+        if (one.transfer.kind != TransferKind::bulk) { continue; }
+        EXPECT_EQ(one.transfer.endpoint & 0x7F, 2);
+    }
+}
+
+TEST_F(UsbSourceTest, WhatIsLetGoIsTheDriversAgain) {
+    const UmockdevBoard& board = plug_in();
+    open();
+    start();
+    raise_line();
+    source_->stop();
+    source_->let_go();
+    EXPECT_FALSE(function_.dtr);
+    EXPECT_FALSE(board.interface_claimed(1));
+    EXPECT_TRUE(board.kernel_driver_bound());
+    EXPECT_EQ(source_->write(as_bytes("x")).error().code, ErrorCode::device_lost);
+    ASSERT_TRUE(source_->reconnect().ok());
+    EXPECT_FALSE(board.kernel_driver_bound());
+}
+
+// SPEC.md, 9.5.
+TEST_F(UsbSourceTest, StartWaitsUntilABoardThatWasLeftStreamingIsSilent) {
+    using Clock = std::chrono::steady_clock;
+    constexpr auto talks_on = std::chrono::milliseconds(200);
+    std::optional<Clock::time_point> lowered;
+    function_.talks_on = [&]() {
+        if (!lowered) { lowered = Clock::now(); }
+        return Clock::now() - *lowered < talks_on;
+    };
+    plug_in();
+    open();
+    start();
+    ASSERT_TRUE(lowered.has_value());
+    EXPECT_GE(Clock::now() - *lowered, talks_on + std::chrono::milliseconds(49));
+    const std::size_t stale = sink_.stream().size();
+    EXPECT_GT(stale, 0U);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(sink_.stream().size(), stale);
+}
+
+TEST_F(UsbSourceTest, StartDoesNotWaitForeverForABoardThatTalksOn) {
+    using Clock = std::chrono::steady_clock;
+    function_.talks_on = [] { return true; };
+    plug_in();
+    open();
+    const auto before = Clock::now();
+    start();
+    EXPECT_GE(Clock::now() - before, std::chrono::milliseconds(990));
+    EXPECT_LT(Clock::now() - before, std::chrono::seconds(2));
 }
 
 TEST_F(UsbSourceTest, WhatIsFoundInsteadIsNamed) {

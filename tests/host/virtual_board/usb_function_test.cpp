@@ -28,8 +28,8 @@ TEST_F(UsbBoard, EnumeratesAsACdcAcmDevice) {
     ASSERT_EQ(device.size(), 18U);
     EXPECT_EQ(device[0], 18);
     EXPECT_EQ(device[4], 0x02);  // communications
-    EXPECT_EQ(device[8] + 256 * device[9], 0x1FC9);
-    EXPECT_EQ(device[10] + 256 * device[11], 0x0083);
+    EXPECT_EQ(device[8] + 256 * device[9], 0x1209);
+    EXPECT_EQ(device[10] + 256 * device[11], 0x6779);
 
     const Bytes configuration = get({0x80, 6, 0, 2, 0, 0, 255, 0});
     EXPECT_EQ(configuration[2] + 256U * configuration[3], configuration.size());

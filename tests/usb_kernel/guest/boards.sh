@@ -16,8 +16,8 @@ plug_acm_gadget() {
     gadget_serial=$1
     shift
     mkdir -p $gadget/strings/0x409 $gadget/configs/c.1 $gadget/functions/acm.0
-    echo 0x1fc9 > $gadget/idVendor
-    echo 0x0083 > $gadget/idProduct
+    echo 0x1209 > $gadget/idVendor
+    echo 0x6779 > $gadget/idProduct
     echo gyrolog > $gadget/strings/0x409/manufacturer
     echo "gyrolog MPU-9250 on an ACM gadget" > $gadget/strings/0x409/product
     echo "$gadget_serial" > $gadget/strings/0x409/serialnumber
