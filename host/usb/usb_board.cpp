@@ -112,7 +112,8 @@ bool try_access(UsbBoard& board, libusb_device* device) {
         refuse(board, BoardState::no_permission,
                "no permission to open it; install tools/60-gyrolog.rules as "
                "/usr/lib/udev/rules.d/60-gyrolog.rules, "
-               "run `udevadm control --reload`, and plug the board in again");
+               "run `udevadm control --reload`, and plug the board in again; over ssh also join the group "
+               "plugdev");
         return true;
     }
     if (code != LIBUSB_SUCCESS) {
