@@ -270,6 +270,33 @@ TEST(DecodedRecording, LearnsTheScaleOfEarlierSamplesWhenItJoinsAStream) {
     EXPECT_EQ(recording->rows(), 320U);
 }
 
+// SPEC.md, 9.5.
+TEST(DecodedRecording, SamplesWhoseConfigurationNeverCameAreLeftOutAndCounted) {
+    Listening link;
+    link.hear_samples(3);
+    ++link.board.config.generation;
+    link.hear(link.board.hello_frame());
+    link.hear(link.board.config_frame());
+    link.hear_samples(10);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_EQ(recording->rows(), 160U);
+    ASSERT_EQ(recording->warnings.size(), 1U);
+    EXPECT_EQ(recording->warnings[0], "48 samples whose configuration was never told are left out");
+}
+
+TEST(DecodedRecording, WithoutAHelloTheRateIsTheNominalOne) {
+    Listening link;
+    link.hear(link.board.config_frame());
+    link.hear_samples(20);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_EQ(recording->rows(), 320U);
+    EXPECT_EQ(recording->rate_hz, 1000.0);
+    ASSERT_EQ(recording->warnings.size(), 1U);
+    EXPECT_NE(recording->warnings[0].find("no HELLO"), std::string::npos) << recording->warnings[0];
+}
+
 TEST(DecodedRecording, RefusesToGuessAScale) {
     Listening link;
     link.hear_samples(10);
