@@ -289,27 +289,31 @@ void LinkAccounts::join(const LinkJoin& next) {
     }
 }
 
-LinkReport LinkAccounts::report(const FrameDecoder& decoder) const {
-    LinkReport report;
-    report.bytes = decoder.bytes();
-    report.bytes_skipped_at_head = decoder.bytes_skipped_at_head();
-    report.frames = frames_;
-    report.frames.missing += frames_before_hello_;
+LinkCounts LinkAccounts::counts(const FrameDecoder& decoder) const {
+    LinkCounts counts;
+    counts.bytes = decoder.bytes();
+    counts.bytes_skipped_at_head = decoder.bytes_skipped_at_head();
+    counts.frames = frames_;
+    counts.frames.missing += frames_before_hello_;
     for (std::size_t reason = 0; reason < glp_status_count; ++reason) {
-        report.frames.corrupted_by_reason[reason] = decoder.rejected(reason) + decoder.malformed()[reason];
-        report.frames.corrupted += report.frames.corrupted_by_reason[reason];
+        counts.frames.corrupted_by_reason[reason] = decoder.rejected(reason) + decoder.malformed()[reason];
+        counts.frames.corrupted += counts.frames.corrupted_by_reason[reason];
     }
-    report.frames.good = intact_ - frames_.duplicated - malformed_;
-    report.samples = samples_;
-    report.dropouts = dropouts_;
-    report.dropouts_unlisted = dropouts_unlisted_;
-    report.joins = joins_;
+    counts.frames.good = intact_ - frames_.duplicated - malformed_;
+    counts.samples = samples_;
+    counts.dropouts_counted = dropouts_.size() + joins_.size() + dropouts_unlisted_;
     for (const LinkDropout& part : tail_gap()) {
-        report.samples.missing += part.samples;
-        report.dropouts.push_back(part);
+        counts.samples.missing += part.samples;
+        ++counts.dropouts_counted;
     }
-    report.boots = intact_ == 0 ? 0 : boot_ + 1U;
-    report.runs = in_run_ ? run_ + 1U : 0U;
+    counts.boots = intact_ == 0 ? 0 : boot_ + 1U;
+    counts.runs = in_run_ ? run_ + 1U : 0U;
+    return counts;
+}
+
+LinkReport LinkAccounts::report(const FrameDecoder& decoder) const {
+    LinkReport report{counts(decoder), dropouts_, dropouts_unlisted_, joins_};
+    for (const LinkDropout& part : tail_gap()) { report.dropouts.push_back(part); }
     return report;
 }
 

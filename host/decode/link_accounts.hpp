@@ -73,14 +73,13 @@ struct SampleAccounts {
     std::uint64_t lost_on_device = 0;  // as the board counts them: a cross-check on `missing`
 };
 
-struct LinkReport {
+// The numbers of a report. They cost the same however many dropouts there were.
+struct LinkCounts {
     ByteAccounts bytes;
     std::uint64_t bytes_skipped_at_head = 0;
     FrameAccounts frames;
     SampleAccounts samples;
-    std::vector<LinkDropout> dropouts;  // in order of arrival
-    std::uint64_t dropouts_unlisted = 0;
-    std::vector<LinkJoin> joins;  // each is a dropout, too, as soon as the clocks say of how many samples
+    std::uint64_t dropouts_counted = 0;     // listed or not, joins among them
     std::uint64_t samples_in_joins = 0;     // of the missing ones
     std::uint64_t frames_before_start = 0;  // intact, of a stream that ran before this host raised DTR
     // HELLO frames that say other than the one before them within one boot. They are counted as corrupted,
@@ -89,6 +88,12 @@ struct LinkReport {
     std::uint64_t boots = 0;  // of the board, as far as the stream shows
     std::uint64_t runs = 0;
     std::uint64_t samples_frozen = 0;  // of the good ones: one reading again and again
+};
+
+struct LinkReport : LinkCounts {
+    std::vector<LinkDropout> dropouts;  // in order of arrival
+    std::uint64_t dropouts_unlisted = 0;
+    std::vector<LinkJoin> joins;  // each is a dropout, too, as soon as the clocks say of how many samples
 
     bool complete() const {
         return frames.missing == 0 && samples.missing == 0 && joins.empty() && samples_frozen == 0;
@@ -122,6 +127,8 @@ public:
     std::uint32_t boot() const { return boot_; }
     // What is known now. Samples that a STATUS or EVENT proves missing at the end are in it.
     LinkReport report(const FrameDecoder& decoder) const;
+    LinkCounts counts(const FrameDecoder& decoder) const;
+    const std::vector<LinkJoin>& joins() const { return joins_; }
 
 private:
     // The end of the run as the board last told it: `next_index` instants have passed, of which up to

@@ -61,6 +61,7 @@ std::int64_t SampleTimeline::ticks_since_last(const glp_samples& samples, std::i
 }
 
 void SampleTimeline::take_samples(const SamplePlace& place, const glp_samples& samples, HostTime arrival) {
+    present_ = place;
     // A damaged file may claim any time; far from the ends of the type, differences cannot overflow.
     constexpr std::int64_t far_ns = std::numeric_limits<std::int64_t>::max() / 4;
     const std::int64_t arrival_ns = std::clamp(arrival.monotonic_ns, -far_ns, far_ns);
@@ -298,6 +299,16 @@ std::optional<double> SampleTimeline::device_time_s(std::uint32_t run_number, st
     }
     return start_of(*run) + static_cast<double>(nearest.ticks) / *tick_hz_ +
            static_cast<double>(from_first - nearest.index) / rate_hz;
+}
+
+// A run's own stamps change while it lasts, and the place of its boot with that boot's first frames. A run
+// that found no room stays unknown.
+bool SampleTimeline::settled(std::uint32_t run_number) const {
+    const Run* run = find(run_number);
+    if (run == nullptr) { return true; }
+    const bool over = run->number != present_.run;
+    const bool placed = run->boot != present_.boot || boots_.back().frames >= Boot::delays_kept;
+    return over && placed;
 }
 
 std::vector<Dropout> SampleTimeline::time_dropouts(const LinkReport& report, double nominal_rate_hz) const {

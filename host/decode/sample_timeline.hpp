@@ -54,6 +54,9 @@ public:
     // rate. No value for a run that is not known, or without tick_hz.
     std::optional<double> device_time_s(std::uint32_t run, std::uint64_t index, double rate_hz) const;
 
+    // Whether the first device time of a run is known for good, whatever comes.
+    bool settled(std::uint32_t run) const;
+
     // The report's dropouts with their device time. Where that is not known (no HELLO told the unit of the
     // stamps), the time is 0. `nominal_rate_hz` serves runs too short for a rate of their own.
     std::vector<Dropout> time_dropouts(const LinkReport& report, double nominal_rate_hz) const;
@@ -99,6 +102,7 @@ private:
 
     std::vector<Boot> boots_;
     std::vector<Run> runs_;
+    SamplePlace present_;  // kept or not
     std::optional<std::uint32_t> tick_hz_;
     std::uint64_t tick_mask_ = ~std::uint64_t{0};
     std::optional<std::uint64_t> raw_ticks_;  // at the last SAMPLES

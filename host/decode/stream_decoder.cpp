@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include <gyrolog_protocol/usb_identity.h>
 
@@ -35,8 +36,11 @@ bool StreamDecoder::take(const Transfer& transfer) {
     if (line_raised_ || !raises_line(transfer)) { return false; }
     line_raised_ = true;
     if (before_start_ || connections_ > 1) { return true; }
-    before_start_ = report();
+    before_start_ = counts();
     accounts_ = {};
+    join_nominal_hz_.clear();
+    settled_join_samples_.clear();
+    samples_in_settled_joins_ = 0;
     timeline_ = {};
     liveness_ = SampleLiveness();
     builder_ = RecordingBuilder(options_.stream_bytes, options_.samples_per_row);
@@ -57,42 +61,73 @@ void StreamDecoder::begin_connection() {
 
 // Nothing numbers the instants between two runs; the grid on which a recording is laid has so many places
 // there.
-void StreamDecoder::enter_joins(LinkReport& report) const {
+std::uint64_t StreamDecoder::samples_in(std::size_t join) const {
     constexpr double longest_s = 1e9;
-    for (const LinkJoin& join : report.joins) {
-        const auto estimate = timeline_.rate(join.run_before, join.run_before);
-        const double nominal_hz = config_ ? config_->rate_mHz * 1e-3 : 0.0;
-        const double rate_hz = estimate ? estimate->rate_hz : nominal_hz;
-        const auto from_s = timeline_.device_time_s(join.run_before, join.end_index, rate_hz);
-        const auto to_s = timeline_.device_time_s(join.run_after, join.first_index, rate_hz);
-        LinkDropout dropout{join.run_before, join.end_index, 0, join.cause};
-        if (from_s && to_s) {
-            dropout.samples = static_cast<std::uint64_t>(
-                std::llround(std::clamp(*to_s - *from_s, 0.0, longest_s) * rate_hz));
-        }
-        report.samples.missing += dropout.samples;
-        report.samples_in_joins += dropout.samples;
-        const auto behind = std::find_if(report.dropouts.begin(), report.dropouts.end(),
-                                         [&](const LinkDropout& d) { return d.run > join.run_before; });
-        report.dropouts.insert(behind, dropout);
+    constexpr double most_instants = 1e14;  // the same at 100 kHz: a broken clock may give any rate
+    if (join < settled_join_samples_.size()) { return settled_join_samples_[join]; }
+    const LinkJoin& ends = accounts_.joins()[join];
+    const auto estimate = timeline_.rate(ends.run_before, ends.run_before);
+    const double rate_hz = estimate ? estimate->rate_hz : join_nominal_hz_[join];
+    const auto from_s = timeline_.device_time_s(ends.run_before, ends.end_index, rate_hz);
+    const auto to_s = timeline_.device_time_s(ends.run_after, ends.first_index, rate_hz);
+    if (!from_s || !to_s) { return 0; }
+    const double pause_s = std::clamp(*to_s - *from_s, 0.0, longest_s);
+    return static_cast<std::uint64_t>(std::llround(std::min(pause_s * rate_hz, most_instants)));
+}
+
+// A join is worked out once: a board may be reset, or pretend to be, any number of times.
+void StreamDecoder::settle_joins() {
+    const std::vector<LinkJoin>& joins = accounts_.joins();
+    join_nominal_hz_.resize(joins.size(), config_ ? config_->rate_mHz * 1e-3 : 0.0);
+    while (settled_join_samples_.size() < joins.size() &&
+           timeline_.settled(joins[settled_join_samples_.size()].run_after)) {
+        settled_join_samples_.push_back(samples_in(settled_join_samples_.size()));
+        samples_in_settled_joins_ += settled_join_samples_.back();
     }
+}
+
+void StreamDecoder::complete(LinkCounts& counts) const {
+    counts.samples_in_joins = samples_in_settled_joins_;
+    for (std::size_t join = settled_join_samples_.size(); join < accounts_.joins().size(); ++join) {
+        counts.samples_in_joins += samples_in(join);
+    }
+    counts.samples.missing += counts.samples_in_joins;
+    counts.samples_frozen = liveness_.frozen_samples();
+    counts.hellos_contradicting = hellos_contradicting_;
+    counts.frames.corrupted += hellos_contradicting_;
+    counts.frames.corrupted_by_reason[glp_status_bad_value] += hellos_contradicting_;
+    if (before_start_) {
+        counts.hellos_contradicting -= before_start_->hellos_contradicting;
+        counts.frames_before_start = before_start_->frames.good;
+        counts.frames.corrupted -= before_start_->frames.corrupted;
+        for (std::size_t reason = 0; reason < counts.frames.corrupted_by_reason.size(); ++reason) {
+            counts.frames.corrupted_by_reason[reason] -= before_start_->frames.corrupted_by_reason[reason];
+        }
+    }
+}
+
+LinkCounts StreamDecoder::counts() const {
+    LinkCounts counts = accounts_.counts(frames_);
+    complete(counts);
+    return counts;
 }
 
 LinkReport StreamDecoder::report() const {
     LinkReport report = accounts_.report(frames_);
-    enter_joins(report);
-    report.samples_frozen = liveness_.frozen_samples();
-    report.hellos_contradicting = hellos_contradicting_;
-    report.frames.corrupted += hellos_contradicting_;
-    report.frames.corrupted_by_reason[glp_status_bad_value] += hellos_contradicting_;
-    if (before_start_) {
-        report.hellos_contradicting -= before_start_->hellos_contradicting;
-        report.frames_before_start = before_start_->frames.good;
-        report.frames.corrupted -= before_start_->frames.corrupted;
-        for (std::size_t reason = 0; reason < report.frames.corrupted_by_reason.size(); ++reason) {
-            report.frames.corrupted_by_reason[reason] -= before_start_->frames.corrupted_by_reason[reason];
+    complete(report);
+    // Both are in the order of their runs; a join comes behind what is missing in the run before it.
+    std::vector<LinkDropout> merged;
+    merged.reserve(report.dropouts.size() + report.joins.size());
+    auto dropout = report.dropouts.begin();
+    for (std::size_t i = 0; i < report.joins.size(); ++i) {
+        const LinkJoin& join = report.joins[i];
+        while (dropout != report.dropouts.end() && dropout->run <= join.run_before) {
+            merged.push_back(*dropout++);
         }
+        merged.push_back({join.run_before, join.end_index, samples_in(i), join.cause});
     }
+    merged.insert(merged.end(), dropout, report.dropouts.end());
+    report.dropouts = std::move(merged);
     return report;
 }
 
@@ -121,6 +156,7 @@ void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& sa
     if (!place) { return; }
     run_ = place->run;
     timeline_.take_samples(*place, samples, frame.arrival);
+    settle_joins();
     liveness_.take_samples(samples, config_ ? config_->rate_mHz * 1e-3 : 0.0);
     if (options_.keep_samples) { builder_.take_samples(*place, samples); }
     if (options_.observer != nullptr) { options_.observer->on_samples(frame, samples); }

@@ -45,6 +45,10 @@ public:
     void feed(ByteView bytes, HostTime arrival) { frames_.feed(bytes, arrival, *this); }
 
     LinkReport report() const;
+    // The report's numbers, at a cost that does not grow with the stream.
+    LinkCounts counts() const;
+    // Joins that counts() works out anew: a few, however many there were.
+    std::size_t open_joins() const { return accounts_.joins().size() - settled_join_samples_.size(); }
     const SampleTimeline& timeline() const { return timeline_; }
     // As last told by the board, over whatever connection.
     const std::optional<glp_hello>& hello() const { return hello_; }
@@ -78,7 +82,9 @@ private:
     void on_reply(const ReceivedFrame& frame, const glp_reply& reply) override;
     void on_unknown(const ReceivedFrame& frame) override;
     void on_malformed(const ReceivedFrame& frame, glp_status reason) override;
-    void enter_joins(LinkReport& report) const;
+    std::uint64_t samples_in(std::size_t join) const;
+    void settle_joins();
+    void complete(LinkCounts& counts) const;
     void note_silence();
 
     StreamDecoderOptions options_;
@@ -92,7 +98,10 @@ private:
     std::optional<glp_device_status> status_;
     std::uint32_t run_ = 0;
     std::uint64_t hellos_contradicting_ = 0;
-    std::optional<LinkReport> before_start_;
+    std::optional<LinkCounts> before_start_;
+    std::vector<double> join_nominal_hz_;              // of each join: as configured when it was found
+    std::vector<std::uint64_t> settled_join_samples_;  // of the first joins, of which no more is learned
+    std::uint64_t samples_in_settled_joins_ = 0;
     unsigned connections_ = 1;
     bool line_raised_ = false;  // in the present connection
 };

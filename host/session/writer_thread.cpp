@@ -109,7 +109,7 @@ void WriterThread::checkpoint(bool last) {
 }
 
 CaptureCounters WriterThread::counters() const {
-    const LinkReport link = decoder_.report();
+    const LinkCounts link = decoder_.counts();
     return {.stream_bytes = link.bytes.total,
             .frames = link.frames.good,
             .samples = link.samples.good,
@@ -125,11 +125,11 @@ void WriterThread::fail(Error error) {
 }
 
 void WriterThread::publish() {
-    const LinkReport link = decoder_.report();
+    const LinkCounts link = decoder_.counts();
     const std::lock_guard lock(mutex_);
     progress_.samples = link.samples.good;
     progress_.samples_missing = link.samples.missing;
-    progress_.dropouts = link.dropouts.size() + link.dropouts_unlisted;
+    progress_.dropouts = link.dropouts_counted;
     progress_.frames_corrupted = link.frames.corrupted;
     progress_.file_bytes = writer_.bytes_written();
     progress_.path = writer_.paths().back();

@@ -1,4 +1,7 @@
 // Every frame and sample is accounted for, and blamed on the right part of the way.
+#include <algorithm>
+#include <type_traits>
+
 #include <gtest/gtest.h>
 
 #include "tests/host/decode/made_stream.hpp"
@@ -317,6 +320,50 @@ TEST(LinkAccounts, AnImpossibleIndexBeginsAnewInsteadOfCountingLosses) {
     const LinkReport report = link.decoder.report();
     EXPECT_EQ(report.samples.missing, 0U);
     EXPECT_EQ(report.runs, 2U);
+}
+
+// What the writer's thread asks for after every batch holds no list, and is the report's own.
+TEST(LinkAccounts, CountsAreTheReportsAndHoldNoList) {
+    static_assert(std::is_trivially_copyable_v<LinkCounts>);
+    Listening link;
+    link.begin();
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        if (i % 3 == 0) { link.board.lose_samples(5); }
+        if (i % 20 == 19) {
+            link.decoder.begin_connection();
+            if (i % 40 == 19) { ++link.board.hello.boot_id; }
+            link.board.restart(link.board.time_s() + 2.0);
+            link.begin();
+        }
+        link.hear_samples(i % 7);
+        link.hear(link.board.status_frame());
+        const LinkReport report = link.decoder.report();
+        const LinkCounts counts = link.decoder.counts();
+        std::uint64_t missing = 0;
+        for (const LinkDropout& dropout : report.dropouts) { missing += dropout.samples; }
+        EXPECT_EQ(counts.samples.missing, missing) << i;
+        EXPECT_EQ(counts.samples.missing, report.samples.missing) << i;
+        EXPECT_EQ(counts.samples_in_joins, report.samples_in_joins) << i;
+        EXPECT_EQ(counts.dropouts_counted, report.dropouts.size()) << i;
+        EXPECT_TRUE(std::ranges::is_sorted(report.dropouts, {}, &LinkDropout::run)) << i;
+    }
+    EXPECT_EQ(link.decoder.report().joins.size(), 10U);
+}
+
+// A board that is reset, or says so, all the time.
+TEST(LinkAccounts, AJoinIsWorkedOutOnce) {
+    Listening link;
+    link.begin();
+    std::size_t most = 0;
+    for (int i = 0; i < 3000; ++i) {
+        ++link.board.hello.boot_id;
+        link.board.restart(link.board.time_s() + 0.5);
+        link.begin();
+        most = std::max(most, link.decoder.open_joins());
+    }
+    EXPECT_EQ(link.decoder.report().joins.size(), 3000U);
+    EXPECT_GT(link.decoder.report().samples_in_joins, 0U);
+    EXPECT_LE(most, 2U);
 }
 
 }  // namespace
