@@ -9,7 +9,8 @@
 
 namespace gyrolog {
 
-void RunningAllan::take(std::int64_t index, std::int16_t count) {
+void RunningAllan::take(std::int64_t signed_index, std::int16_t count) {
+    const auto index = static_cast<std::uint64_t>(signed_index);
     if (index != index_) {
         for (Octave& octave : octaves_) { octave.kept = 0; }
         index_ = index;
@@ -23,7 +24,7 @@ void RunningAllan::take(std::int64_t index, std::int16_t count) {
 
 // theta_ is the point before sample `index_`: it belongs to every octave whose stride divides the index.
 void RunningAllan::take_point() {
-    const auto zeros = static_cast<std::size_t>(std::countr_zero(static_cast<std::uint64_t>(index_)));
+    const auto zeros = static_cast<std::size_t>(std::countr_zero(index_));
     const std::size_t reached = std::min(octaves, zeros + overlap_log2 + 1);
     for (std::size_t j = 0; j < reached; ++j) {
         enter(octaves_[j], theta_, std::size_t{1} << std::min<std::size_t>(j, overlap_log2));

@@ -61,8 +61,10 @@ private:
     static void enter(Octave& octave, std::int64_t theta, std::size_t reach);
 
     std::vector<Octave> octaves_ = std::vector<Octave>(octaves);
-    std::int64_t theta_ = 0;   // of the samples before `index_`
-    std::int64_t index_ = -1;  // of the next sample; -1: none has come
+    std::int64_t theta_ = 0;  // of the samples before `index_`
+    // Of the next sample, at first of none. Unsigned: a board may tell any number, and goes on from the
+    // largest one at 0.
+    std::uint64_t index_ = ~std::uint64_t{0};
     std::uint64_t samples_ = 0;
 };
 

@@ -26,6 +26,7 @@ constexpr double rate_known_s = 2.0;      // of stamps, where nothing is learned
 constexpr std::size_t batch_rows_most = std::size_t{1} << 16U;
 constexpr std::int64_t flush_interval_ns = 1'000'000'000;
 constexpr double longest_pause_s = 1e9;
+constexpr double longest_pause_instants = 1e14;  // the same at 100 kHz: a broken clock may give any rate
 
 // Gyros of which nothing is known, to try a model on.
 Recording three_axes(double rate_hz) {
@@ -211,7 +212,8 @@ std::int64_t LiveDenoise::place(const glp_samples& samples) const {
     const auto from_s = timeline.device_time_s(run_, end_index, rate_hz);
     const auto to_s = timeline.device_time_s(decoder_->run(), samples.first_index, rate_hz);
     if (!from_s || !to_s) { return grid_end_; }
-    return grid_end_ + std::llround(std::clamp(*to_s - *from_s, 0.0, longest_pause_s) * rate_hz);
+    const double pause_s = std::clamp(*to_s - *from_s, 0.0, longest_pause_s);
+    return grid_end_ + std::llround(std::min(pause_s * rate_hz, longest_pause_instants));
 }
 
 void LiveDenoise::append(const glp_samples& samples, std::int64_t index) {

@@ -96,7 +96,7 @@ HostTime read_clock(const Json& json) {
     HostTime time;
     Fields(json).number("monotonic_ns", time.monotonic_ns);
     Fields(json).number("realtime_ns", time.realtime_ns);
-    return time;
+    return {told_ns(time.monotonic_ns), told_ns(time.realtime_ns)};
 }
 
 std::optional<Json> parse(std::string_view text, std::string_view schema) {

@@ -6,6 +6,7 @@
 
 #include <gyrolog_protocol/usb_identity.h>
 
+#include "host/base/clock.hpp"
 #include "host/capture/byte_order.hpp"
 #include "host/capture/head_records.hpp"
 #include "host/capture/pcapng.hpp"
@@ -110,7 +111,7 @@ void CaptureReader::enter_section(const CaptureBlock& block) {
     const auto comment = pcapng::section_comment(block.bytes);
     std::optional<CaptureMetadata> metadata = comment ? read_metadata_json(*comment) : std::nullopt;
     if (!metadata) { return; }
-    monotonic_behind_ns_ = metadata->started.realtime_ns - metadata->started.monotonic_ns;
+    monotonic_behind_ns_ = told_ns(metadata->started.realtime_ns - metadata->started.monotonic_ns);
     segment_ = metadata->segment;
     if (!metadata_) { metadata_ = std::move(metadata); }
 }
@@ -141,7 +142,8 @@ std::optional<CapturedTransfer> CaptureReader::take_packet(const CaptureBlock& b
     }
 
     CapturedTransfer captured{record->transfer, block.offset};
-    captured.transfer.time = {block.time_ns - monotonic_behind_ns_, block.time_ns};
+    const std::int64_t realtime_ns = told_ns(block.time_ns);
+    captured.transfer.time = {told_ns(realtime_ns - monotonic_behind_ns_), realtime_ns};
     ++accounts_.transfers;
     const bool completed = captured.transfer.event == Transfer::Event::completion;
     if (completed && captured.transfer.status != 0) { ++accounts_.failed_transfers; }

@@ -14,6 +14,9 @@ constexpr std::size_t joins_kept = 10'000;
 // grid.
 constexpr std::uint64_t implausible_jump = std::uint64_t{1} << 40U;
 
+// Nor are the indices of one start so far apart: their differences fit a signed number.
+constexpr std::uint64_t implausible_span = std::uint64_t{1} << 62U;
+
 constexpr std::uint64_t sensor_fifo_bytes = 512;  // of an MPU-9250
 
 constexpr std::uint16_t cause_flags =
@@ -173,12 +176,14 @@ void LinkAccounts::keep_open(std::uint64_t before_hello) {
 
 bool LinkAccounts::begins_grid(const glp_frame& frame, const glp_samples& samples) const {
     return !in_run_ || booted_since_samples_ || (frame.flags & glp_flag_first_after_start) != 0 ||
-           samples.first_index < next_index_ || samples.first_index - next_index_ >= implausible_jump;
+           samples.first_index < next_index_ || samples.first_index - next_index_ >= implausible_jump ||
+           samples.first_index - grid_index_ >= implausible_span;
 }
 
 void LinkAccounts::begin_run(std::uint64_t next_index, std::uint32_t lost_samples) {
     run_ += in_run_ ? 1U : 0U;
     in_run_ = true;
+    grid_index_ = next_index;
     next_index_ = next_index;
     lost_samples_ = lost_samples;
     lost_unplaced_ = 0;

@@ -169,6 +169,7 @@ private:
     std::vector<LinkJoin> joins_;
     std::uint32_t run_ = 0;
     bool in_run_ = false;
+    std::uint64_t grid_index_ = 0;  // the first of the present grid
     std::uint64_t next_index_ = 0;
     std::uint32_t lost_samples_ = 0;    // the board's counter at the last SAMPLES
     std::uint64_t lost_unplaced_ = 0;   // counted by the board, not yet seen as a jump of the index

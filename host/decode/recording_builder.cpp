@@ -245,6 +245,16 @@ void RecordingBuilder::count_in_rows(Recording& recording) const {
     recording.samples_per_row = samples_per_row_;
 }
 
+// Where on the grid the run behind a join begins: with its first number, of which the first samples may be
+// missing.
+std::int64_t RecordingBuilder::begin_behind(const LinkReport& link, const RunOrigin& before,
+                                            const RunOrigin& after) {
+    const auto join = std::ranges::lower_bound(link.joins, before.run, {}, &LinkJoin::run_before);
+    const bool known =
+        join != link.joins.end() && join->run_before == before.run && join->run_after == after.run;
+    return after.grid_index(known ? join->first_index : after.first_index);
+}
+
 void RecordingBuilder::enter_dropouts(const LinkReport& link, const std::vector<RunOrigin>& origins,
                                       Recording& recording) {
     const std::int64_t last = recording.segments.back().first_index;
@@ -259,7 +269,7 @@ void RecordingBuilder::enter_dropouts(const LinkReport& link, const std::vector<
         const bool join = dropout.cause == DropoutCause::unplugged || dropout.cause == DropoutCause::reset;
         // The grid is laid with the rate of the whole recording, the account with that of the run before.
         if (join && std::next(origin) != origins.end()) {
-            samples = std::max<std::int64_t>(std::next(origin)->grid_index(0) - at, 0);
+            samples = std::max<std::int64_t>(begin_behind(link, *origin, *std::next(origin)) - at, 0);
         }
         recording.dropouts.push_back({static_cast<double>(at) / recording.rate_hz, samples,
                                       std::string(dropout_cause_name(dropout.cause))});

@@ -108,6 +108,7 @@ private:
     std::vector<RunOrigin> place_on_grid(const std::vector<Piece>& pieces, const SampleTimeline& timeline,
                                          Recording& recording) const;
     void count_in_rows(Recording& recording) const;
+    static std::int64_t begin_behind(const LinkReport& link, const RunOrigin& before, const RunOrigin& after);
     static void enter_dropouts(const LinkReport& link, const std::vector<RunOrigin>& origins,
                                Recording& recording);
 

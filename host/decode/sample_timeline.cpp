@@ -298,7 +298,7 @@ std::optional<double> SampleTimeline::device_time_s(std::uint32_t run_number, st
         nearest = after == run->stamps.begin() ? *after : *(after - 1);
     }
     return start_of(*run) + static_cast<double>(nearest.ticks) / *tick_hz_ +
-           static_cast<double>(from_first - nearest.index) / rate_hz;
+           (static_cast<double>(from_first) - static_cast<double>(nearest.index)) / rate_hz;
 }
 
 // A run's own stamps change while it lasts, and the place of its boot with that boot's first frames. A run

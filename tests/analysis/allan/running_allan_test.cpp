@@ -1,6 +1,7 @@
 #include "analysis/allan/running_allan.hpp"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -71,6 +72,19 @@ double by_definition(const std::vector<std::int16_t>& counts, const std::vector<
     }
     const auto denominator = 2.0L * static_cast<long double>(m * m) * static_cast<long double>(terms);
     return terms == 0 ? 0.0 : static_cast<double>(std::sqrt(squares / denominator));
+}
+
+// Numbers that a board may send; UndefinedBehaviorSanitizer looks on.
+TEST(RunningAllan, TakesTheLargestIndexThereIs) {
+    RunningAllan running;
+    for (std::uint64_t i = 0; i < 100; ++i) {
+        const std::uint64_t index =
+            static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) - 50 + i;
+        running.take(static_cast<std::int64_t>(index), static_cast<std::int16_t>(i % 3));
+    }
+    EXPECT_EQ(running.samples(), 100U);
+    ASSERT_FALSE(running.points(100.0).empty());
+    EXPECT_EQ(running.points(100.0).front().terms, 99) << "no hole";
 }
 
 TEST(RunningAllan, IsTheOverlappingDeviationUpToSixteenSamples) {

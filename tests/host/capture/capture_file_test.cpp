@@ -3,9 +3,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "host/capture/byte_order.hpp"
+#include "host/capture/capture_metadata.hpp"
+#include "host/capture/pcapng.hpp"
 #include "host/capture/recover.hpp"
 #include "tests/host/capture/made_capture.hpp"
 #include "tests/support/file_size_limit.hpp"
@@ -272,6 +276,33 @@ TEST(Recovery, WritesANewHeaderWhenTheOldOneIsLost) {
     ASSERT_EQ(read->transfers.size(), made.transfers.size());
     EXPECT_TRUE(read->transfers.back().same_content(made.transfers.back()));
     EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
+}
+
+// A header that tells any time: UndefinedBehaviorSanitizer looks on.
+TEST(CaptureFile, ClocksThatCannotBeAreBroughtIntoRange) {
+    constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
+    constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    const std::vector<HostTime> told{{least, most}, {most, least}, {least, least}, {most, most}, {1, least}};
+    const MadeCapture made = make_capture(3, 100);
+    const auto header_bytes = get<std::uint32_t>(made.bytes, 4);
+    for (const HostTime time : told) {
+        CaptureMetadata metadata;
+        metadata.program = "made";
+        metadata.started = time;
+        Bytes file;
+        pcapng::append_section_header(file, metadata_json(metadata), "made");
+        file.insert(file.end(), made.bytes.begin() + header_bytes, made.bytes.end());
+        const auto read = read_capture(file);
+        ASSERT_TRUE(read.ok());
+        ASSERT_EQ(read->transfers.size(), made.transfers.size());
+        for (const KeptTransfer& transfer : read->transfers) {
+            for (const std::int64_t ns :
+                 {transfer.transfer.time.monotonic_ns, transfer.transfer.time.realtime_ns}) {
+                EXPECT_LE(ns, told_ns_max);
+                EXPECT_GE(ns, -told_ns_max);
+            }
+        }
+    }
 }
 
 }  // namespace

@@ -361,5 +361,31 @@ TEST(SampleTimeline, ItsMemoryDoesNotGrowWithTheStream) {
     EXPECT_NEAR(rate->rate_hz, 1003.0, 5.0 * rate->sd_hz);
 }
 
+// Numbers that a board may send after a reset; UndefinedBehaviorSanitizer looks on.
+TEST(DecodedRecording, ANumberNearTheEndOfItsTypeIsNoPause) {
+    for (const std::uint64_t first : {(std::uint64_t{1} << 63U) + 1, std::uint64_t{1} << 63U,
+                                      (std::uint64_t{1} << 63U) - 8, ~std::uint64_t{0} - 100}) {
+        Listening link;
+        link.begin();
+        link.hear_samples(20);
+        ++link.board.hello.boot_id;
+        link.hear(link.board.hello_frame());
+        link.hear(link.board.config_frame());
+        link.board.index = first;
+        link.board.start_s = -static_cast<double>(first) / link.board.rate_hz;
+        link.hear_samples(3);
+        const auto recording = link.decoder.take_recording("bench");
+        ASSERT_TRUE(recording.ok()) << first;
+        EXPECT_EQ(recording->rows(), 24U * 16U) << first;
+        std::int64_t missing = 0;
+        for (const Dropout& dropout : recording->dropouts) {
+            EXPECT_GE(dropout.samples, 0) << first;
+            missing += dropout.samples;
+        }
+        EXPECT_EQ(missing, recording->missing_samples()) << first;
+        EXPECT_LT(missing, 1'000'000'000'000) << first;
+    }
+}
+
 }  // namespace
 }  // namespace gyrolog
