@@ -114,6 +114,7 @@ Status BlockScanner::recognise() {
     } else if (!begins_section) {
         GYROLOG_TRY(const auto intact, find_intact(0));
         if (!intact) { return Error{ErrorCode::malformed, "not a capture: neither pcapng nor pcap"}; }
+        accounts_.bytes_judged_in_vain = 0;  // the first call searches there again
     }
     recognised_ = true;
     return {};
@@ -155,13 +156,25 @@ Result<std::optional<CaptureBlock>> BlockScanner::block_at(std::uint64_t offset,
     }
     GYROLOG_TRY(const ByteView bytes, view(offset, static_cast<std::size_t>(length)));
     if (bytes.size() < length) { return block; }
-    block = format_ == Format::pcap ? judge_pcap_record(bytes) : judge(bytes, searching);
+    block = format_ == Format::pcap ? judge_pcap_record(bytes) : judge_within_limit(bytes, offset, searching);
     if (block) { block->offset = offset; }
     return block;
 }
 
+// Candidates may overlap, and each would have its checksum worked out: what is no block is paid for by the
+// bytes that are behind it.
+std::optional<CaptureBlock> BlockScanner::judge_within_limit(ByteView bytes, std::uint64_t offset,
+                                                             bool searching) {
+    if (get<std::uint32_t>(bytes, bytes.size() - 4) != bytes.size() ||
+        accounts_.bytes_judged_in_vain + bytes.size() > bytes_judged_in_vain_max(offset)) {
+        return std::nullopt;
+    }
+    std::optional<CaptureBlock> block = judge(bytes, searching);
+    if (!block) { accounts_.bytes_judged_in_vain += bytes.size(); }
+    return block;
+}
+
 std::optional<CaptureBlock> BlockScanner::judge(ByteView bytes, bool searching) const {
-    if (get<std::uint32_t>(bytes, bytes.size() - 4) != bytes.size()) { return std::nullopt; }
     CaptureBlock block;
     block.bytes = bytes;
     switch (get<std::uint32_t>(bytes, 0)) {

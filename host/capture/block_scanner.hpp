@@ -5,7 +5,10 @@
 //     byte is ever unaccounted for.
 //   - A broken block costs itself: the next block is found by its own lengths and checksum, not by the broken
 //     one's.
-//   - Memory does not grow with the file.
+//   - Memory does not grow with the file, and work only in proportion: of candidates that prove broken, no
+//   more
+//     than bytes_judged_in_vain_max() is looked at. Where a made-up file asks for more, a candidate counts as
+//     broken unseen.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +19,7 @@
 #include "host/base/bytes.hpp"
 #include "host/base/result.hpp"
 #include "host/capture/input_file.hpp"
+#include "host/capture/pcapng.hpp"
 
 namespace gyrolog {
 
@@ -59,9 +63,16 @@ struct BlockAccounts {
     std::uint64_t damaged_ranges = 0;
     std::vector<DamagedRange> damage;  // the first of them, up to a thousand
     FileEnd end = FileEnd::clean;
+    std::uint64_t bytes_judged_in_vain = 0;  // of candidates that looked like blocks and were none
 
     bool balanced() const { return bytes_total == bytes_in_blocks + bytes_damaged + bytes_in_tail; }
 };
+
+// Up to this offset of a file. A broken block is judged once, so that honest damage costs its own length;
+// eight times that leaves room for captures within captures.
+constexpr std::uint64_t bytes_judged_in_vain_max(std::uint64_t offset) {
+    return 8 * (offset + pcapng::block_bytes_max);
+}
 
 class BlockScanner {
 public:
@@ -90,6 +101,7 @@ private:
     Status recognise();
     Result<ByteView> view(std::uint64_t offset, std::size_t bytes);
     Result<std::optional<CaptureBlock>> block_at(std::uint64_t offset, bool searching);
+    std::optional<CaptureBlock> judge_within_limit(ByteView bytes, std::uint64_t offset, bool searching);
     std::optional<CaptureBlock> judge(ByteView bytes, bool searching) const;
     std::optional<CaptureBlock> judge_packet(ByteView block, bool searching) const;
     bool must_vouch(bool searching) const;

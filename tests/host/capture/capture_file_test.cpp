@@ -278,6 +278,50 @@ TEST(Recovery, WritesANewHeaderWhenTheOldOneIsLost) {
     EXPECT_EQ(read->accounts.blocks.end, FileEnd::clean);
 }
 
+// 16 384 blocks begin here, one in each 32 bytes, each half a megabyte long, with both lengths and a place
+// for its hash, which is wrong: worked out for each, the hashes would be of gigabytes.
+Bytes overlapping_blocks(std::size_t bytes) {
+    constexpr std::uint32_t length = 512 * 1024;
+    constexpr std::uint32_t hash_option = 3 | 5U << 16U;  // five bytes
+    constexpr std::uint32_t crc_32_of_0 = 2;              // the hash's kind, and its first bytes
+    Bytes made(16, 0xFF);                                 // no length that leads past it
+    while (made.size() < bytes) {
+        // Each one's hash stands in the time stamp of the last that lies within it.
+        for (const std::uint32_t word :
+             {pcapng::enhanced_packet, length, 0U, hash_option, crc_32_of_0, length - 48U, 0U, length}) {
+            put<std::uint32_t>(made, word);
+        }
+    }
+    return made;
+}
+
+TEST(CaptureFile, SearchesWhatWasMadeToBeSlowInProportionToItsSize) {
+    const MadeCapture made = make_capture(20, 300);
+    const Bytes trap = overlapping_blocks(std::size_t{1} << 20U);
+    for (const std::size_t at : {std::size_t{0}, made.head_end, made.ends[10], made.bytes.size()}) {
+        Bytes file = made.bytes;
+        file.insert(file.begin() + static_cast<std::ptrdiff_t>(at), trap.begin(), trap.end());
+        const auto read = read_capture(file);
+        ASSERT_TRUE(read.ok()) << at << ": " << read.error().message;
+        const BlockAccounts& blocks = read->accounts.blocks;
+        EXPECT_TRUE(blocks.balanced());
+        EXPECT_GT(blocks.bytes_judged_in_vain, trap.size()) << at << ": the trap is none";
+        EXPECT_LE(blocks.bytes_judged_in_vain, bytes_judged_in_vain_max(file.size())) << at;
+        EXPECT_EQ(read->transfers.size(), made.transfers.size()) << at << ": intact blocks were left out";
+    }
+}
+
+// What a sound file costs, and one with damage everywhere: far below the limit.
+TEST(CaptureFile, HonestDamageIsJudgedOnce) {
+    MadeCapture made = make_capture(200, 700);
+    EXPECT_EQ(read_capture(made.bytes)->accounts.blocks.bytes_judged_in_vain, 0U);
+    for (const std::size_t end : made.ends) { made.bytes[end - 30] ^= 1U; }
+    const auto read = read_capture(made.bytes);
+    ASSERT_TRUE(read.ok());
+    EXPECT_GT(read->accounts.blocks.bytes_judged_in_vain, made.bytes.size() / 2);
+    EXPECT_LE(read->accounts.blocks.bytes_judged_in_vain, made.bytes.size());
+}
+
 // A header that tells any time: UndefinedBehaviorSanitizer looks on.
 TEST(CaptureFile, ClocksThatCannotBeAreBroughtIntoRange) {
     constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
