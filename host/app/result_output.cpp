@@ -1,9 +1,8 @@
 #include "host/app/result_output.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "host/base/file_output.hpp"
 #include "host/base/program_name.hpp"
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 
@@ -31,7 +30,7 @@ void ResultOutput::json(const std::string& path, const std::function<nlohmann::o
     text(path, [&] {
         nlohmann::ordered_json signed_answer = answer();
         signed_answer["reported_by"] = program_name();
-        return signed_answer.dump(2) + "\n";
+        return written_out(signed_answer, 2);
     });
 }
 

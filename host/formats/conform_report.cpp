@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/base/printable.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -37,13 +39,6 @@ std::string spaced_hex(const Bytes& bytes) {
     }
     if (bytes.size() > text_bytes_max) { text += fmt::format(" ... ({} bytes)", bytes.size()); }
     return text;
-}
-
-// A device may put any byte into its texts.
-std::string printable(std::string_view text) {
-    std::string clean;
-    for (const char c : text) { clean += c >= 0x20 && c < 0x7F ? c : '?'; }
-    return clean;
 }
 
 std::string words_of(const TranscriptEntry& entry) {

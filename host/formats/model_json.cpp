@@ -298,7 +298,7 @@ std::string format_model(const SensorModel& model) {
         json["effects"].push_back(std::move(entry));
     }
     put_back(json, model.carried_json);
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return written_out(json, 2);
 }
 
 Result<SensorModel> read_model(const std::string& path, std::uint64_t seed) {

@@ -85,7 +85,7 @@ Json slopes_json(const SlopeReading& slopes, const RateUnit& unit) {
 
 std::string json_text(Json report) {
     report["reported_by"] = program_name();
-    return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return written_out(report, 1);
 }
 
 }  // namespace gyrolog

@@ -15,6 +15,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include "host/base/clock.hpp"
 #include "tests/support/instrumented.hpp"
 #include "tests/support/needs.hpp"
@@ -268,6 +270,20 @@ TEST_F(Outputs, ANameFromOutsideCommandsNobody) {
         ASSERT_FALSE(text.empty());
         shows_only(text);
         EXPECT_THAT(text, HasSubstr("\\u000a\\u009b31mdelete"));
+    }
+}
+
+// JSON is UTF-8; a file's name may be any bytes.
+TEST_F(Outputs, ANameThatIsNoUtf8StandsInEveryJson) {
+    const std::string odd = folder_.path("night\xFF\xC3(.pcapng");
+    const ProgramResult captured =
+        run_gyrolog({"capture", "--device", "sim:rate=1000,seed=7", "--duration", "20s", "-o", odd});
+    ASSERT_EQ(captured.exit_code, 0) << captured.err;
+    for (const char* command : {"info", "check", "analyze"}) {
+        const ProgramResult result = run_gyrolog({command, odd, "--json", "-"});
+        EXPECT_EQ(result.exit_code, 0) << command << ": " << result.err;
+        EXPECT_TRUE(nlohmann::json::accept(result.out)) << command << ": " << result.out;
+        EXPECT_THAT(result.out, HasSubstr("night\xEF\xBF\xBD")) << command;
     }
 }
 
