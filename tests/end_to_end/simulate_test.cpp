@@ -301,5 +301,18 @@ TEST_F(Refusals, AFullDiskIsSaid) {
     EXPECT_EQ(result.exit_code, 6) << result.err;
 }
 
+// 2^40 rows: days of work, for a disk that cannot hold them.
+TEST(Simulate, WhatNoDiskHoldsIsNotBegun) {
+    const TemporaryFolder folder;
+    const std::string model = write(static_model(), folder);
+    for (const char* name : {"run.csv", "run.pcapng"}) {
+        const ProgramResult made =
+            run_gyrolog({"simulate", model, "-o", folder.path(name), "--duration", "600000d"});
+        EXPECT_EQ(made.exit_code, 6) << name << ": " << made.err;
+        EXPECT_THAT(made.err, HasSubstr("takes at least")) << name;
+        EXPECT_FALSE(std::filesystem::exists(folder.path(name))) << name;
+    }
+}
+
 }  // namespace
 }  // namespace gyrolog
