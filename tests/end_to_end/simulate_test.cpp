@@ -301,13 +301,17 @@ TEST_F(Refusals, AFullDiskIsSaid) {
     EXPECT_EQ(result.exit_code, 6) << result.err;
 }
 
-// 2^40 rows: days of work, for a disk that cannot hold them.
+// Days of work, for a disk that cannot hold it.
 TEST(Simulate, WhatNoDiskHoldsIsNotBegun) {
+    constexpr double capture_bytes_least = 1000.0 * 86'400.0 * 8000.0 * 6.0;
     const TemporaryFolder folder;
+    if (static_cast<double>(std::filesystem::space(folder.path(".")).available) > capture_bytes_least) {
+        GTEST_SKIP() << "this disk would hold it";
+    }
     const std::string model = write(static_model(), folder);
     for (const char* name : {"run.csv", "run.pcapng"}) {
-        const ProgramResult made =
-            run_gyrolog({"simulate", model, "-o", folder.path(name), "--duration", "600000d"});
+        const ProgramResult made = run_gyrolog(
+            {"simulate", model, "-o", folder.path(name), "--rate", "8000", "--duration", "1000d"});
         EXPECT_EQ(made.exit_code, 6) << name << ": " << made.err;
         EXPECT_THAT(made.err, HasSubstr("takes at least")) << name;
         EXPECT_FALSE(std::filesystem::exists(folder.path(name))) << name;
