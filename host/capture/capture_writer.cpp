@@ -28,8 +28,7 @@ CaptureWriter::CaptureWriter(std::unique_ptr<AppendFile> file, const SourceIdent
     : file_(std::move(file)),
       address_{std::max<std::uint16_t>(identity.bus_number, 1),
                std::max<std::uint8_t>(identity.device_address, 1)},
-      started_(started),
-      last_flush_ns_(started.monotonic_ns) {
+      started_(started) {
     buffer_.reserve(buffer_bytes + pcapng::packet_bytes_max);
 }
 
@@ -65,10 +64,10 @@ Status CaptureWriter::append(const Transfer& transfer) {
     append_record(transfer);
     ++transfers_;
     if (transfer.carries_stream()) { stream_bytes_ += transfer.data.size(); }
-    const bool due = transfer.time.monotonic_ns - last_flush_ns_ >= flush_interval_ms * 1'000'000;
-    if (due) { last_flush_ns_ = transfer.time.monotonic_ns; }
-    return due || buffer_.size() >= buffer_bytes ? flush() : Status();
+    return write_full_buffer();
 }
+
+Status CaptureWriter::write_full_buffer() { return buffer_.size() >= buffer_bytes ? flush() : Status(); }
 
 void CaptureWriter::append_statistics(HostTime now, std::string_view comment) {
     pcapng::append_statistics(buffer_, file_time_ns(now), comment, transfers_ + counters_.transfers_dropped,
@@ -84,14 +83,14 @@ void CaptureWriter::append_checkpoint(const CaptureCounters& counters, HostTime 
 Status CaptureWriter::checkpoint(const CaptureCounters& counters, HostTime now) {
     if (failed_) { return *failed_; }
     append_checkpoint(counters, now, false);
-    return flush();
+    return write_full_buffer();
 }
 
 Status CaptureWriter::mark(CaptureMark mark) {
     if (failed_) { return *failed_; }
     mark.stream_bytes = stream_bytes_;
     append_statistics(mark.time, mark_json(mark));
-    return flush();
+    return write_full_buffer();
 }
 
 Status CaptureWriter::sync() {

@@ -2,7 +2,8 @@
 //
 // Promise to the user: whatever kills the process or the machine, every transfer appended before the last
 // successful sync() is read back, in order and bit for bit, and nothing that was not appended is ever read
-// back. A killed process on a living machine loses at most what came in the last flush_interval_ms.
+// back. A killed process on a living machine loses at most what was appended since the last successful
+// flush() or sync().
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,9 @@ namespace gyrolog {
 
 class CaptureWriter {
 public:
-    static constexpr std::int64_t flush_interval_ms = 250;
-    static constexpr std::size_t buffer_bytes = std::size_t{64} << 10U;
+    // So much waits in memory at most. Where each write waits for the disk, few large ones keep up with a
+    // stream that many small ones fall behind.
+    static constexpr std::size_t buffer_bytes = std::size_t{1} << 20U;
 
     // Errors: those of the file.
     static Result<CaptureWriter> create(std::unique_ptr<AppendFile> file, const SourceIdentity& identity,
@@ -36,7 +38,9 @@ public:
     // After any storage error the writer is finished: the file is cut back to its last whole block, and every
     // later call repeats the first error. Writing on would bury half a block in the middle of the file.
     //
-    // Error invalid_argument, with nothing written and the writer unharmed: more than 256 KiB in one
+    // What is appended waits in memory until the next flush() or sync(), or until buffer_bytes wait.
+    //
+    // Error invalid_argument, with nothing appended and the writer unharmed: more than 256 KiB in one
     // transfer.
     Status append(const Transfer& transfer);
     // Once a second or once a MiB, whichever comes first: where a reader of a long or damaged file finds its
@@ -45,6 +49,8 @@ public:
     Status checkpoint(const CaptureCounters& counters, HostTime now);
     // Its place in the file is here and now.
     Status mark(CaptureMark mark);
+    // Everything appended so far is in the file, and survives the end of this process.
+    Status flush();
     // Everything appended so far survives a loss of power.
     Status sync();
     // The same soon, without waiting for the disk; a failure is told by the next call.
@@ -66,7 +72,7 @@ private:
     void append_record(const Transfer& transfer);
     void append_statistics(HostTime now, std::string_view comment);
     std::int64_t file_time_ns(HostTime time) const;
-    Status flush();
+    Status write_full_buffer();
     Status fail(Error error, std::size_t buffered_bytes_written);
 
     std::unique_ptr<AppendFile> file_;
@@ -78,7 +84,6 @@ private:
     std::uint64_t file_bytes_ = 0;
     std::uint64_t transfers_ = 0;
     std::uint64_t stream_bytes_ = 0;
-    std::int64_t last_flush_ns_ = 0;
     CaptureCounters counters_;  // of the last checkpoint
 };
 

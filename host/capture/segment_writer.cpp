@@ -114,9 +114,12 @@ Status SegmentWriter::checkpoint(const CaptureCounters& counters) {
 
 Status SegmentWriter::take_place() {
     if (placed_ || !file_) { return {}; }
+    GYROLOG_CHECK(file_->flush());
     placed_ = true;
     return file_->take_place();
 }
+
+Status SegmentWriter::flush() { return file_ ? file_->flush() : Status(); }
 
 Status SegmentWriter::sync() { return file_ ? file_->sync() : Status(); }
 

@@ -32,14 +32,16 @@ public:
     Status append(const Transfer& transfer);
     // In the present file.
     Status mark(CaptureMark mark);
-    // Error disk_full, with everything written and the writer unharmed: no more than is to be kept free is
-    // left.
+    // Error disk_full, with the checkpoint appended and the writer unharmed: no more than is to be kept free
+    // is left.
     Status checkpoint(const CaptureCounters& counters);
+    Status flush();
     Status sync();
     // The same soon, without waiting for the disk.
     Status sync_soon();
 
-    // A file that replaces another does so now, if it has not yet; closed before, it is gone.
+    // A file that replaces another does so now, if it has not yet, with all that was appended in it; closed
+    // before, it is gone.
     Status take_place();
     // Whether the file that was to be replaced is still there.
     bool keeps_old() const { return replaces_ && !placed_; }

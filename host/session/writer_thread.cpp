@@ -1,5 +1,6 @@
 #include "host/session/writer_thread.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -46,26 +47,58 @@ CaptureProgress WriterThread::progress() const {
 void WriterThread::run() {
     if (request_.observer != nullptr) { request_.observer->on_decoder(decoder_); }
     while (!queue_.finished()) {
-        queue_.pop(progress_interval).for_each([&](const Transfer& transfer) { take(transfer); });
-        write_marks();
-        if (clock_ns(CLOCK_MONOTONIC) - last_sync_ns_ >= sync_interval_ns) { checkpoint(false); }
+        const TransferQueue::Batch batch = queue_.pop(std::min(progress_interval, until_flush()));
+        const std::int64_t came_until_ns = clock_ns(CLOCK_MONOTONIC);
+        batch.for_each([&](const Transfer& transfer) { take(transfer); });
+        write_out(came_until_ns, append_marks());
         publish();
     }
-    write_marks();
-    checkpoint(true);
+    write_last();
     publish();
 }
 
-void WriterThread::write_marks() {
-    if (request_.control == nullptr) { return; }
+std::chrono::milliseconds WriterThread::until_flush() const {
+    const std::int64_t past_ns = clock_ns(CLOCK_MONOTONIC) - last_flush_ns_;
+    return std::chrono::ceil<std::chrono::milliseconds>(flush_interval - std::chrono::nanoseconds(past_ns));
+}
+
+// Whether there were any.
+bool WriterThread::append_marks() {
+    if (request_.control == nullptr) { return false; }
+    bool any = false;
     for (CaptureMark& mark : request_.control->take_marks()) {
-        if (state_.storage_error) { return; }
-        if (Status written = writer_.mark(std::move(mark)); !written.ok()) {
-            fail(std::move(written).error());
+        if (state_.storage_error) { return false; }
+        if (Status appended = writer_.mark(std::move(mark)); !appended.ok()) {
+            fail(std::move(appended).error());
         } else {
             ++marks_;
+            any = true;
         }
     }
+    return any;
+}
+
+// One write a turn, after all that the turn appends: a second one would hold nothing new, and keep what comes
+// meanwhile out of the file.
+void WriterThread::write_out(std::int64_t came_until_ns, bool at_once) {
+    const bool sync_due = came_until_ns - last_sync_ns_ >= sync_interval_ns;
+    const bool flush_due = std::chrono::nanoseconds(came_until_ns - last_flush_ns_) >= flush_interval;
+    if (!sync_due && !flush_due && !at_once) { return; }
+    last_flush_ns_ = came_until_ns;
+    if (sync_due) {
+        last_sync_ns_ = came_until_ns;
+        append_checkpoint();
+    }
+    if (state_.storage_error) { return; }
+    Status written = sync_due ? writer_.sync_soon() : writer_.flush();
+    if (!written.ok()) { fail(std::move(written).error()); }
+}
+
+void WriterThread::write_last() {
+    static_cast<void>(append_marks());
+    append_checkpoint();
+    if (state_.storage_error) { return; }
+    if (Status written = writer_.sync(); !written.ok()) { fail(std::move(written).error()); }
 }
 
 void WriterThread::take(const Transfer& transfer) {
@@ -94,18 +127,17 @@ void WriterThread::take(const Transfer& transfer) {
         next_index_.reset();
         latest_.reset();
     }
-    if (bytes_since_checkpoint_ >= checkpoint_bytes) { checkpoint(false); }
+    if (bytes_since_checkpoint_ >= checkpoint_bytes) { append_checkpoint(); }
 }
 
-void WriterThread::checkpoint(bool last) {
-    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
-    const bool sync_due = last || now_ns - last_sync_ns_ >= sync_interval_ns;
+void WriterThread::append_checkpoint() {
     bytes_since_checkpoint_ = 0;
     if (state_.storage_error) { return; }
-    Status written = writer_.checkpoint(counters());
-    if (written.ok() && sync_due) { written = last ? writer_.sync() : writer_.sync_soon(); }
-    if (sync_due) { last_sync_ns_ = now_ns; }
-    if (!written.ok()) { fail(std::move(written).error()); }
+    Status appended = writer_.checkpoint(counters());
+    if (appended.ok()) { return; }
+    // A disk without room to spare still takes what came.
+    static_cast<void>(writer_.flush());
+    fail(std::move(appended).error());
 }
 
 CaptureCounters WriterThread::counters() const {

@@ -20,8 +20,16 @@ namespace gyrolog {
 
 // The writer's thread: drains the queue into the file and into the decoder, and tells the caller's thread
 // what came.
+//
+// Promise to the user: a killed process loses at most what came in the last flush_interval and during the
+// last two writes to the file. For each write takes all that came before it began (in pieces of a file's
+// buffer), and the next one begins a flush_interval after its beginning, or at once where it took longer;
+// syncs keep neither waiting. A change of files (rotation, --force) counts as part of the write before it: it
+// waits for the disk.
 class WriterThread final : private MessageHandler {
 public:
+    static constexpr std::chrono::milliseconds flush_interval{250};
+
     WriterThread(TransferQueue& queue, const QueueingSink& sink, SegmentWriter& writer,
                  const CaptureRequest& request)
         : queue_(queue),
@@ -69,9 +77,13 @@ public:
 
 private:
     void run();
-    void write_marks();
+    std::chrono::milliseconds until_flush() const;
     void take(const Transfer& transfer);
-    void checkpoint(bool last);
+    bool append_marks();
+    void append_checkpoint();
+    // What came until then, if it is due or wanted at once.
+    void write_out(std::int64_t came_until_ns, bool at_once);
+    void write_last();
     CaptureCounters counters() const;
     void fail(Error error);
     void publish();
@@ -103,7 +115,8 @@ private:
     std::uint64_t bytes_since_checkpoint_ = 0;
     std::uint64_t marks_ = 0;
     std::int64_t last_sync_ns_ = clock_ns(CLOCK_MONOTONIC);
-    bool started_ = false;  // by DTR, in the present connection
+    std::int64_t last_flush_ns_ = clock_ns(CLOCK_MONOTONIC);  // its beginning
+    bool started_ = false;                                    // by DTR, in the present connection
     bool any_start_ = false;
     bool hello_came_ = false;
     bool config_came_ = false;

@@ -187,7 +187,6 @@ TEST(CaptureFile, GivesBackMarksWithTheirTimesAndPlaces) {
         if (transfers[i].view().carries_stream()) { stream_bytes += transfers[i].data.size(); }
         if (i == 7) {
             ASSERT_TRUE(writer->mark({{5'004'000'000, 1'700'000'000'127'456'789}, "lamp on, 20 °C", 0}).ok());
-            EXPECT_EQ(writer->bytes_written(), disk.contents.size()) << "a mark does not wait for more";
             ASSERT_TRUE(writer->checkpoint({}, made_start).ok());
             ASSERT_TRUE(writer->mark({made_start, std::string(10'000, 'x'), 0}).ok());
             EXPECT_GT(stream_bytes, 0U);

@@ -82,19 +82,27 @@ TEST(CaptureWriter, SyncedTransfersSurviveTheLossOfEverythingElse) {
     EXPECT_EQ(read->transfers.size(), 21U);
 }
 
-TEST(CaptureWriter, HandsOverWhatIsOlderThanItsFlushInterval) {
+TEST(CaptureWriter, HoldsWhatIsAppendedUntilItIsFlushedOrMuch) {
     FakeDisk disk;
     auto writer = CaptureWriter::create(disk.open(), made_identity(), made_start);
     ASSERT_TRUE(writer.ok());
     const std::size_t head = disk.contents.size();
+    const Bytes data(10'000);
     Transfer transfer;
     transfer.endpoint = 0x81;
-    transfer.time.monotonic_ns = made_start.monotonic_ns + 1000;
+    transfer.data = data;
     ASSERT_TRUE(writer->append(transfer).ok());
+    ASSERT_TRUE(writer->checkpoint({}, made_start).ok());
+    ASSERT_TRUE(writer->mark({made_start, "lamp on", 0}).ok());
     EXPECT_EQ(disk.contents.size(), head);
-    transfer.time.monotonic_ns += CaptureWriter::flush_interval_ms * 1'000'000;
-    ASSERT_TRUE(writer->append(transfer).ok());
+    ASSERT_TRUE(writer->flush().ok());
     EXPECT_EQ(disk.contents.size(), writer->bytes_written());
+    const std::size_t flushed = disk.contents.size();
+    while (disk.contents.size() == flushed && writer->bytes_written() < 2 * CaptureWriter::buffer_bytes) {
+        ASSERT_TRUE(writer->append(transfer).ok());
+    }
+    EXPECT_GE(disk.contents.size() - flushed, CaptureWriter::buffer_bytes);
+    EXPECT_LE(disk.contents.size() - flushed, CaptureWriter::buffer_bytes + 2 * data.size());
 }
 
 TEST(CaptureWriter, ReportsARefusedSyncAndAFailedCut) {

@@ -1,9 +1,11 @@
 // What a night brings: a cable that is pulled, a disk that is full, slow or broken.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "host/capture/capture_reader.hpp"
 #include "host/session/capture_session.hpp"
 #include "host/session/load_capture.hpp"
+#include "host/session/writer_thread.hpp"
 #include "host/virtual_board/sim_source.hpp"
 #include "tests/host/session/board_source.hpp"
 #include "tests/support/program.hpp"
@@ -40,6 +43,15 @@ public:
     std::atomic<int> syncs{0};
     std::atomic<std::uint64_t> written_bytes{0};
 
+    struct Write {
+        std::int64_t begun_ns = 0;
+        std::int64_t done_ns = 0;
+    };
+    std::vector<Write> writes() const {
+        const std::lock_guard lock(mutex_);
+        return writes_;
+    }
+
     Result<std::unique_ptr<AppendFile>> create(const std::string& path, IfExists if_exists) override {
         GYROLOG_TRY(std::unique_ptr<AppendFile> file, create_append_file(path, if_exists));
         if (--files_with_room == 0) { room_bytes = 50'000; }
@@ -53,6 +65,13 @@ private:
         File(FaultyDisk& disk, std::unique_ptr<AppendFile> file) : disk_(disk), file_(std::move(file)) {}
 
         Result<std::size_t> write(ByteView bytes) override {
+            const std::int64_t begun_ns = host_now().monotonic_ns;
+            auto taken = write_slowly(bytes);
+            const std::lock_guard lock(disk_.mutex_);
+            disk_.writes_.push_back({begun_ns, host_now().monotonic_ns});
+            return taken;
+        }
+        Result<std::size_t> write_slowly(ByteView bytes) {
             std::this_thread::sleep_for(milliseconds(disk_.write_takes_ms));
             if (disk_.breaks) { return Error{ErrorCode::storage_failed, "write: input/output error"}; }
             const std::uint64_t room = disk_.room_bytes;
@@ -76,6 +95,9 @@ private:
         FaultyDisk& disk_;
         std::unique_ptr<AppendFile> file_;
     };
+
+    mutable std::mutex mutex_;
+    std::vector<Write> writes_;
 };
 
 class CaptureOverFaults : public testing::Test {
@@ -227,6 +249,76 @@ TEST_F(CaptureOverFaults, SyncThatBlocksForLongIsRiddenOut) {
     EXPECT_FALSE(outcome->data_lost());
     EXPECT_GT(outcome->queue_high_water_bytes, 100'000U) << "it did not block: this test tests nothing";
     EXPECT_EQ(source->bytes_refused(), 0U) << "the source never waits for the disk";
+    expect_all_stored(*source, *outcome);
+}
+
+// What a kill would leave: the file as it is at this moment.
+struct Snapshot {
+    std::int64_t taken_ns = 0;
+    std::string path;
+};
+
+// Of the transfers in the file the last one's arrival.
+std::int64_t last_arrival_ns(const std::string& path) {
+    auto reader = CaptureReader::open(path);
+    if (!reader.ok()) { return 0; }
+    std::int64_t last_ns = 0;
+    while (true) {
+        const auto captured = reader->next();
+        if (!captured.ok() || !*captured) { return last_ns; }
+        last_ns = (*captured)->transfer.time.monotonic_ns;
+    }
+}
+
+// The promise of WriterThread, where each write takes longer than the interval between two.
+TEST_F(CaptureOverFaults, WhatCameBeforeTheIntervalAndTheLastTwoWritesIsInTheFile) {
+    constexpr double interval_s = std::chrono::duration<double>(WriterThread::flush_interval).count();
+    constexpr double busy_machine_s = 0.1;
+    const auto source = BoardSource::create({.turn_board_s = 0.005, .turn_host_s = 0.005});
+    disk_.write_takes_ms = 350;
+    request_.duration_s = 1.8;
+    std::vector<Snapshot> snapshots;
+    const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& /*progress*/) {
+        snapshots.push_back(
+            {host_now().monotonic_ns, folder_.path("at" + std::to_string(snapshots.size()) + ".pcapng")});
+        std::filesystem::copy_file(request_.path, snapshots.back().path);
+        return true;
+    });
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_FALSE(outcome->data_lost());
+    expect_all_stored(*source, *outcome);
+    const std::vector<FaultyDisk::Write> writes = disk_.writes();
+    unsigned under_load = 0;
+    for (const Snapshot& snapshot : snapshots) {
+        double allowed_s = interval_s + busy_machine_s;
+        int counted = 0;
+        for (auto write = writes.rbegin(); write != writes.rend() && counted < 2; ++write) {
+            if (write->begun_ns > snapshot.taken_ns) { continue; }
+            allowed_s +=
+                static_cast<double>(std::min(write->done_ns, snapshot.taken_ns) - write->begun_ns) * 1e-9;
+            ++counted;
+        }
+        const std::int64_t last_ns = last_arrival_ns(snapshot.path);
+        if (last_ns == 0) { continue; }
+        under_load += counted == 2 ? 1U : 0U;
+        EXPECT_LE(static_cast<double>(snapshot.taken_ns - last_ns) * 1e-9, allowed_s);
+    }
+    EXPECT_GE(under_load, 5U) << "this test tests nothing";
+}
+
+// Many small writes would fall behind a disk that takes its time for each, however small.
+TEST_F(CaptureOverFaults, ADiskThatIsSlowAtEveryWriteIsKeptUpWith) {
+    // 8 kHz, nearly twenty times faster than the clock: some 2 MB/s.
+    VirtualBoardOptions options;
+    options.rate_hz = 8000.0;
+    options.dlpf_hz = 250;
+    const auto source = BoardSource::create({}, std::move(options));
+    disk_.write_takes_ms = 200;
+    request_.duration_s = 22.0;
+    const auto outcome = run_capture(*source, request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_FALSE(outcome->data_lost());
+    EXPECT_LT(outcome->queue_high_water_bytes, 1'000'000U) << "what comes during a write, and no more";
     expect_all_stored(*source, *outcome);
 }
 
