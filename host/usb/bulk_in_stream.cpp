@@ -1,6 +1,7 @@
 #include "host/usb/bulk_in_stream.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -82,7 +83,10 @@ Status BulkInStream::start(EndHandler on_end) {
     if (slots_.empty()) { GYROLOG_CHECK(allocate(plan_)); }
     bool queued = false;
     int code = LIBUSB_SUCCESS;
+    std::optional<Error> failure;
     usb_.call([&] {
+        failure = usb_.failure();
+        if (failure) { return; }
         errors_in_row_ = stalls_in_row_ = empty_in_row_ = 0;
         error_.reset();
         code = submit_all();
@@ -90,9 +94,11 @@ Status BulkInStream::start(EndHandler on_end) {
         if (!queued) { return; }
         on_end_ = std::move(on_end);
         state_ = State::running;
+        usb_.add(*this);
         const std::lock_guard lock(mutex_);
         ended_ = false;
     });
+    if (failure) { return *failure; }
     if (!queued) { return usb_error("queue the first bulk transfer", code); }
     return {};
 }
@@ -173,16 +179,7 @@ void BulkInStream::on_complete(Slot& slot) {
     --in_flight_;
     const auto received_bytes = static_cast<std::size_t>(slot.transfer->actual_length);
     const int status = slot.transfer->status;
-
-    Transfer told;
-    told.event = Transfer::Event::completion;
-    told.endpoint = endpoint_;
-    told.id = slot.id;
-    told.status = kernel_status_of_transfer(status);
-    told.requested_bytes = slot.bytes;
-    told.time = host_now();
-    told.data = ByteView(slot.transfer->buffer, received_bytes);
-    observer_.on_usb_transfer(told);
+    tell_completion(slot, kernel_status_of_transfer(status), {slot.transfer->buffer, received_bytes});
 
     if (state_ == State::running) { judge(status, received_bytes); }
     if (state_ == State::clearing_halt && status == LIBUSB_TRANSFER_NO_DEVICE) {
@@ -197,6 +194,31 @@ void BulkInStream::on_complete(Slot& slot) {
         }
     }
     if (in_flight_ == 0 && state_ != State::running) { when_none_in_flight(); }
+}
+
+void BulkInStream::tell_completion(const Slot& slot, int kernel_status, ByteView data) {
+    Transfer told;
+    told.event = Transfer::Event::completion;
+    told.endpoint = endpoint_;
+    told.id = slot.id;
+    told.status = kernel_status;
+    told.requested_bytes = slot.bytes;
+    told.time = host_now();
+    told.data = data;
+    observer_.on_usb_transfer(told);
+}
+
+void BulkInStream::on_event_failure(const Error& error) {
+    for (Slot& slot : slots_) {
+        if (!slot.in_flight) { continue; }
+        slot.in_flight = false;
+        --in_flight_;
+        usb_.keep(std::exchange(slot.transfer, nullptr));
+        tell_completion(slot, -ESHUTDOWN, {});
+    }
+    end_ = End::device_lost;
+    error_ = error;
+    finish();
 }
 
 void BulkInStream::judge(int status, std::size_t received_bytes) {
@@ -266,6 +288,7 @@ void BulkInStream::when_none_in_flight() {
 
 void BulkInStream::finish() {
     state_ = State::idle;
+    usb_.remove(*this);
     // The handler goes first: when stop() returns, the end has been told.
     const EndHandler on_end = std::exchange(on_end_, nullptr);
     if (on_end) { on_end(end_, error_); }

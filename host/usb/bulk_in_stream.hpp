@@ -63,7 +63,7 @@ public:
 //   - nothing but empty packets, faster than any board has reason to: the stream ends rather than burn the
 //     processor
 //   - a transfer that the kernel will not take back for want of memory is done without, down to the last
-class BulkInStream {
+class BulkInStream final : private EventFailureListener {
 public:
     enum class End { stopped, device_lost, failed };
     // Called once for each successful start, on the event thread, after the last transfer has completed. The
@@ -76,7 +76,7 @@ public:
                  TransferObserver& observer);
     BulkInStream(const BulkInStream&) = delete;
     BulkInStream& operator=(const BulkInStream&) = delete;
-    ~BulkInStream();
+    ~BulkInStream() override;
 
     // Queues the transfers, as many of the planned ones as the kernel has memory for. Fails when it takes
     // none.
@@ -110,6 +110,8 @@ private:
     int submit_all();
     void cancel_all();
     void on_complete(Slot& slot);
+    void tell_completion(const Slot& slot, int kernel_status, ByteView data);
+    void on_event_failure(const Error& error) override;
     void judge(int status, std::size_t received_bytes);
     void count_empty();
     void begin_end(End end, std::optional<Error> error);

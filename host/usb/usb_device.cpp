@@ -1,6 +1,7 @@
 #include "host/usb/usb_device.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -25,22 +26,23 @@ using TransferPointer = std::unique_ptr<libusb_transfer, TransferDeleter>;
 
 // One transfer that its caller waits for. libusb's own blocking calls would do, but they report to the
 // caller's thread, which may be later than the data that the request has set free.
-class AwaitedTransfer {
+class AwaitedTransfer final : private EventFailureListener {
 public:
     AwaitedTransfer(UsbContext& usb, TransferObserver& observer) : usb_(usb), observer_(observer) {}
 
-    // `transfer` is filled except for its callback; `told` says what it is. Returns an enum libusb_error, and
-    // the bytes that went over in `transferred_bytes`.
-    int run(libusb_transfer& transfer, Transfer told) {
-        transfer.callback = [](libusb_transfer* completed) {
+    // `transfer` is filled except for its callback; `told` says what it is. Returns an enum libusb_error.
+    int run(TransferPointer& transfer, Transfer told) {
+        transfer_ = &transfer;
+        transfer->callback = [](libusb_transfer* completed) {
             static_cast<AwaitedTransfer*>(completed->user_data)->on_complete(*completed);
         };
-        transfer.user_data = this;
+        transfer->user_data = this;
         int code = LIBUSB_SUCCESS;
         usb_.call([&] {
             told.time = host_now();
-            code = libusb_submit_transfer(&transfer);
+            code = usb_.failure() ? LIBUSB_ERROR_IO : libusb_submit_transfer(transfer.get());
             if (code != LIBUSB_SUCCESS) { return; }
+            usb_.add(*this);
             told.id = usb_.next_transfer_id();
             observer_.on_usb_transfer(told);
             told.data = {};
@@ -49,16 +51,28 @@ public:
         if (code != LIBUSB_SUCCESS) { return code; }
         std::unique_lock lock(mutex_);
         completed_.wait(lock, [this] { return done_; });
-        return code_of(transfer.status);
+        return code_;
     }
 
 private:
     void on_complete(const libusb_transfer& transfer) {
+        usb_.remove(*this);
+        finish(kernel_status_of_transfer(transfer.status), code_of(transfer.status));
+    }
+
+    // The kernel has copied what was to be sent; its buffer may go.
+    void on_event_failure(const Error& /*error*/) override {
+        usb_.keep(transfer_->release());
+        finish(-ESHUTDOWN, LIBUSB_ERROR_IO);
+    }
+
+    void finish(int kernel_status, int code) {
         told_.event = Transfer::Event::completion;
-        told_.status = kernel_status_of_transfer(transfer.status);
+        told_.status = kernel_status;
         told_.time = host_now();
         observer_.on_usb_transfer(told_);
         const std::lock_guard lock(mutex_);
+        code_ = code;
         done_ = true;
         completed_.notify_all();
     }
@@ -80,7 +94,9 @@ private:
 
     UsbContext& usb_;
     TransferObserver& observer_;
+    TransferPointer* transfer_ = nullptr;
     Transfer told_;
+    int code_ = LIBUSB_SUCCESS;
     std::mutex mutex_;
     std::condition_variable completed_;
     bool done_ = false;
@@ -152,7 +168,7 @@ Status UsbDevice::set_line_state(bool data_terminal_ready, TransferObserver& obs
     const std::uint16_t lines = data_terminal_ready ? GLP_CDC_LINE_DTR : 0;
     libusb_fill_control_setup(setup.data(), request_type_class_interface_out, GLP_CDC_SET_CONTROL_LINE_STATE,
                               lines, board_.layout.control_interface, 0);
-    const TransferPointer transfer(libusb_alloc_transfer(0));
+    TransferPointer transfer(libusb_alloc_transfer(0));
     if (!transfer) { return usb_error("set DTR", LIBUSB_ERROR_NO_MEM); }
     libusb_fill_control_transfer(transfer.get(), handle_, setup.data(), nullptr, nullptr, control_timeout_ms);
 
@@ -160,14 +176,14 @@ Status UsbDevice::set_line_state(bool data_terminal_ready, TransferObserver& obs
     told.event = Transfer::Event::submission;
     told.kind = TransferKind::control;
     told.setup = setup;
-    const int code = AwaitedTransfer(usb_, observer).run(*transfer, told);
+    const int code = AwaitedTransfer(usb_, observer).run(transfer, told);
     if (code != LIBUSB_SUCCESS) { return usb_error("set DTR", code); }
     return {};
 }
 
 Status UsbDevice::write(ByteView bytes, std::int64_t timeout_ms, TransferObserver& observer) {
     const std::int64_t deadline_ns = clock_ns(CLOCK_MONOTONIC) + timeout_ms * 1'000'000;
-    const TransferPointer transfer(libusb_alloc_transfer(0));
+    TransferPointer transfer(libusb_alloc_transfer(0));
     if (!transfer) { return usb_error("write to the board", LIBUSB_ERROR_NO_MEM); }
     Bytes chunk;
     while (!bytes.empty()) {
@@ -182,7 +198,7 @@ Status UsbDevice::write(ByteView bytes, std::int64_t timeout_ms, TransferObserve
         told.endpoint = board_.layout.endpoint_out;
         told.requested_bytes = static_cast<std::uint32_t>(size);
         told.data = chunk;
-        const int code = AwaitedTransfer(usb_, observer).run(*transfer, told);
+        const int code = AwaitedTransfer(usb_, observer).run(transfer, told);
         if (code != LIBUSB_SUCCESS) { return usb_error("write to the board", code); }
         bytes = bytes.subspan(size);
     }

@@ -10,6 +10,8 @@
 
 #include <libusb.h>
 
+#include "tests/support/umockdev_board.hpp"
+
 namespace gyrolog::test {
 
 struct FakeCompletion {
@@ -18,7 +20,10 @@ struct FakeCompletion {
 };
 
 // The bus and the kernel behind it. Judges the caller by libusb's rules: a transfer is not submitted twice,
-// not freed while in flight, and every one that was allocated is freed.
+// not freed while in flight, and every one that was allocated is freed; a device is closed as often as it was
+// opened, with nothing in flight unless events have failed.
+//
+// Unlike umockdev it needs no preloaded library, so that ThreadSanitizer sees all that host/usb does.
 class FakeUsb {
 public:
     // What happens to the oldest transfer in flight; nothing while the board is silent. The argument counts
@@ -30,6 +35,15 @@ public:
     static FakeUsb& bus();
 
     void reset(Script script, Admission admission = {});
+    // A device on bus 1 that answers in the script's place; none with null. The one before is gone, and what
+    // was in flight fails with NO_DEVICE.
+    void plug_in(MockUsbFunction* function, std::uint8_t device_address = 2);
+    // From now on event handling fails with this code; with LIBUSB_SUCCESS it works again. So many times only
+    // where `times` is given.
+    static constexpr std::uint64_t for_good = ~std::uint64_t{0};
+    void fail_events(int code, std::uint64_t times = for_good);
+    // Nothing completes any more but what is cancelled.
+    void fall_silent();
     // Cancelled transfers complete only after this many further turns of event handling.
     void delay_cancellations(unsigned turns);
     // From now on, as after a disconnect, everything fails with NO_DEVICE.
