@@ -28,7 +28,8 @@ Result<std::uint16_t> parse_dlpf(const std::string& text) {
 
 void CaptureOptions::declare(CLI::App& app) {
     app.add_option("--device", devices,
-                   "usb: (the only board), usb:SERIAL, tty:PATH, sim:KEY=VALUE,... or replay:FILE; several "
+                   "usb: (the only board), usb:SERIAL, tty:PATH[,speed=BAUD], sim:KEY=VALUE,... or "
+                   "replay:FILE; several "
                    "times, or usb:* for all boards: each has its own file")
         ->type_name("URI")
         ->expected(1)

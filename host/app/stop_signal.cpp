@@ -5,6 +5,7 @@
 
 #include "host/app/live_keys.hpp"
 #include "host/base/unfinished_files.hpp"
+#include "host/transport/raw_port.hpp"
 
 namespace gyrolog {
 namespace {
@@ -25,11 +26,13 @@ void on_stop_signal(int number) {
     int none = 0;
     if (tidy_ends.load() > 0 && noted.compare_exchange_strong(none, number)) { return; }
     remove_unfinished_files();
+    restore_ports();
     end_by(number);
 }
 
 void on_crash(int number) {
     give_terminal_back();
+    restore_ports();
     end_by(number);
 }
 

@@ -1,5 +1,7 @@
 #include "host/session/open_source.hpp"
 
+#include <charconv>
+
 #include "host/formats/model_json.hpp"
 #include "host/transport/replay_source.hpp"
 #include "host/transport/source_uri.hpp"
@@ -36,6 +38,20 @@ Opened open_usb(const SourceUri& uri) {
     return opened(UsbSource::open(std::move(usb), uri.rest));
 }
 
+Opened open_tty(const SourceUri& uri) {
+    TtySpeed speed;
+    for (const auto& [key, value] : uri.options) {
+        unsigned baud = 0;
+        const auto [end, status] = std::from_chars(value.data(), value.data() + value.size(), baud);
+        if (status != std::errc{} || end != value.data() + value.size() || baud == 0) {
+            return Error{ErrorCode::invalid_argument, "open serial port '" + uri.rest + "': option speed=" +
+                                                          value + ": wants a number of baud"};
+        }
+        speed = baud;
+    }
+    return opened(TtySource::open(uri.rest, speed));
+}
+
 Opened open_simulated(const SourceUri& uri, const SourceLimit& limit, bool real_time) {
     GYROLOG_TRY(SimOptions options, parse_sim_options(uri.options));
     options.realtime = options.realtime || real_time;
@@ -61,7 +77,7 @@ Opened open_source(const std::string& uri, const SourceLimit& limit, bool real_t
         case SourceUri::Kind::usb:
             return open_usb(parsed);
         case SourceUri::Kind::tty:
-            return opened(TtySource::open(parsed.rest));
+            return open_tty(parsed);
         case SourceUri::Kind::sim:
             return open_simulated(parsed, limit, real_time);
         case SourceUri::Kind::replay:

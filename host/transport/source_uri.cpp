@@ -20,8 +20,9 @@ constexpr std::array<Scheme, 4> schemes{{{"usb", SourceUri::Kind::usb, false},
 Error refusal(std::string_view text, std::string_view offender, std::string_view why) {
     std::string message = "device '";
     message.append(text).append("': ").append(offender).append(why);
-    return {ErrorCode::invalid_argument,
-            message + "; a device is usb:, usb:SERIAL, tty:PATH, sim:KEY=VALUE,... or replay:FILE"};
+    return {
+        ErrorCode::invalid_argument,
+        message + "; a device is usb:, usb:SERIAL, tty:PATH[,speed=BAUD], sim:KEY=VALUE,... or replay:FILE"};
 }
 
 Status parse_options(std::string_view whole, SourceUri& uri) {
@@ -43,6 +44,14 @@ Status parse_options(std::string_view whole, SourceUri& uri) {
     return {};
 }
 
+void split_off_speed(SourceUri& uri) {
+    constexpr std::string_view mark = ",speed=";
+    const std::size_t at = uri.rest.rfind(mark);
+    if (at == std::string::npos || uri.rest.find(',', at + 1) != std::string::npos) { return; }
+    uri.options.emplace_back("speed", uri.rest.substr(at + mark.size()));
+    uri.rest.resize(at);
+}
+
 }  // namespace
 
 Result<SourceUri> parse_source_uri(std::string_view text) {
@@ -53,6 +62,7 @@ Result<SourceUri> parse_source_uri(std::string_view text) {
     });
     if (scheme == schemes.end()) { return refusal(text, text.substr(0, colon), " is no kind of device"); }
     SourceUri uri{scheme->kind, std::string(text.substr(colon + 1)), {}};
+    if (uri.kind == SourceUri::Kind::tty) { split_off_speed(uri); }
     if (uri.rest.empty() && scheme->needs_rest) { return refusal(text, "nothing", " stands behind the ':'"); }
     if (uri.kind == SourceUri::Kind::sim) { GYROLOG_CHECK(parse_options(text, uri)); }
     return uri;

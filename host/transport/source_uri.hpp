@@ -1,4 +1,5 @@
-// How a user names a device: "usb:", "usb:SERIAL", "tty:PATH", "sim:KEY=VALUE,...", "replay:FILE".
+// How a user names a device: "usb:", "usb:SERIAL", "tty:PATH[,speed=BAUD]", "sim:KEY=VALUE,...",
+// "replay:FILE".
 #pragma once
 
 #include <string>
@@ -15,11 +16,12 @@ struct SourceUri {
 
     Kind kind = Kind::usb;
     std::string rest;  // behind the colon: a serial number (may be empty), a path, options, a file
-    std::vector<std::pair<std::string, std::string>> options;  // of sim, in the order written; each key once
+    // Of sim, in the order written, each key once; of tty, the speed.
+    std::vector<std::pair<std::string, std::string>> options;
 };
 
 // Error `invalid_argument` with the forms that are understood. Which options a simulated board has is not
-// judged here.
+// judged here. A path may hold commas: only what begins with ",speed=" at its end is none of it.
 Result<SourceUri> parse_source_uri(std::string_view text);
 
 }  // namespace gyrolog

@@ -10,13 +10,11 @@
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
 #include <gyrolog_protocol/usb_identity.h>
 #include <poll.h>
 #include <pthread.h>
 #include <sys/eventfd.h>
 #include <sys/ioctl.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include "host/usb/sysfs.hpp"
@@ -32,50 +30,10 @@ constexpr std::uint8_t request_type_class_interface_out = 0x21;
 
 std::string words_of(int error_number) { return std::generic_category().message(error_number); }
 
-// A board whose port is gone because a program that had taken the board away from the kernel's driver was
-// killed: its control interface is there and has no driver. Empty when there is none.
-std::string hint_of_a_taken_port() {
-    namespace fs = std::filesystem;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator("/sys/bus/usb/devices", none)) {
-        const std::string name = entry.path().filename().string();
-        if (!name.ends_with(":1.0") || fs::exists(entry.path() / "driver", none)) { continue; }
-        const std::string device = "/sys/bus/usb/devices/" + name.substr(0, name.find(':'));
-        const auto vendor_id = static_cast<std::uint16_t>(read_sysfs_number(device, "idVendor", 16));
-        const auto product_id = static_cast<std::uint16_t>(read_sysfs_number(device, "idProduct", 16));
-        if (glp_usb_id_of(vendor_id, product_id) != glp_usb_id_other &&
-            read_sysfs_text(device, "product").starts_with(GLP_USB_PRODUCT_PREFIX)) {
-            return "; a board is there whose port a killed program has taken along: plug it in again, or run "
-                   "`echo " +
-                   name + " | sudo tee /sys/bus/usb/drivers/cdc_acm/bind`";
-        }
-    }
-    return {};
-}
-
-Error open_error(const std::string& path, int error_number) {
-    const std::string doing = "open serial port '" + path + "': ";
-    switch (error_number) {
-        case ENOENT:
-        case ENODEV:
-        case ENXIO:
-            return {ErrorCode::not_found, doing + "not there" + hint_of_a_taken_port()};
-        case EACCES:
-        case EPERM:
-            return {ErrorCode::permission_denied, doing +
-                                                      "permission denied; install tools/60-gyrolog.rules, or "
-                                                      "join the group that owns the port"};
-        case EBUSY:
-            return {ErrorCode::busy, doing + "in use by another program"};
-        default:
-            return {ErrorCode::failed, doing + words_of(error_number)};
-    }
-}
-
 // For a port on USB the identity of the device behind it; sysfs shows the port's interface, one level below.
-SourceIdentity identity_of(const std::string& path) {
+SourceIdentity identity_of(const std::string& path, const TtySpeed& speed) {
     SourceIdentity identity;
-    identity.uri = "tty:" + path;
+    identity.uri = "tty:" + path + (speed ? ",speed=" + std::to_string(*speed) : "");
     std::error_code missing;
     const std::filesystem::path port = std::filesystem::canonical(path, missing);
     if (missing) { return identity; }
@@ -98,44 +56,13 @@ SourceIdentity identity_of(const std::string& path) {
     return identity;
 }
 
-// Every byte as it comes, at once, and no modem lines but DTR. The speed means nothing to a board on USB; on
-// a UART bridge the line's present one is kept.
-Status make_raw(int terminal, const std::string& path) {
-    termios settings{};
-    if (tcgetattr(terminal, &settings) != 0) {
-        return Error{ErrorCode::invalid_argument, "open serial port '" + path + "': not a terminal"};
-    }
-    cfmakeraw(&settings);
-    settings.c_cflag |= CLOCAL | CREAD;
-    settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS);
-    settings.c_cc[VMIN] = 1;
-    settings.c_cc[VTIME] = 0;
-    if (tcsetattr(terminal, TCSANOW, &settings) != 0) { return open_error(path, errno); }
-    return {};
-}
-
-Result<int> open_terminal(const std::string& path) {
-    const int terminal = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (terminal < 0) { return open_error(path, errno); }
-    if (Status raw = make_raw(terminal, path); !raw.ok()) {
-        ::close(terminal);
-        return std::move(raw).error();
-    }
-    // A second reader would take away bytes. Where the request is unknown nothing is lost but this
-    // protection.
-    static_cast<void>(ioctl(terminal, TIOCEXCL));
-    return terminal;
-}
-
-// Where the port of this identity is now: under its old name, or another one with the same serial number.
-// Empty when there is none.
-std::string port_of(const SourceIdentity& identity) {
-    std::string old_path = identity.uri.substr(std::string("tty:").size());
-    if (identity.serial.empty() || identity_of(old_path).serial == identity.serial) { return old_path; }
+// Where the port of this serial number is now: under its old name, or another one. Empty when there is none.
+std::string port_of(const std::string& serial, const std::string& old_path) {
+    if (serial.empty() || identity_of(old_path, {}).serial == serial) { return old_path; }
     std::error_code none;
     for (const auto& port : std::filesystem::directory_iterator("/sys/class/tty", none)) {
         std::string path = "/dev/" + port.path().filename().string();
-        if (identity_of(path).serial == identity.serial) { return path; }
+        if (identity_of(path, {}).serial == serial) { return path; }
     }
     return {};
 }
@@ -155,35 +82,39 @@ struct TtySource::PendingWrite {
     Status status;
 };
 
-Result<std::unique_ptr<TtySource>> TtySource::open(const std::string& path) {
-    GYROLOG_TRY(const int terminal, open_terminal(path));
+Result<std::unique_ptr<TtySource>> TtySource::open(const std::string& path, TtySpeed speed) {
+    GYROLOG_TRY(RawPort port, RawPort::open(path, speed));
     const int wake = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-    // From here on the source closes both.
-    std::unique_ptr<TtySource> source(new TtySource(terminal, wake, path));
-    if (wake < 0) { return open_error(path, errno); }
-    return source;
+    if (wake < 0) { return Error{ErrorCode::failed, "open serial port '" + path + "': " + words_of(errno)}; }
+    return std::unique_ptr<TtySource>(new TtySource(std::move(port), path, speed, wake));
 }
 
 Status TtySource::reconnect() {
     // A port that is held open keeps its name from the board that comes back.
     let_go();
-    const std::string path = port_of(identity_);
+    const std::string path = port_of(identity_.serial, path_);
     if (path.empty()) {
         return Error{ErrorCode::not_found,
                      "open '" + identity_.uri + "': no port has the board's serial number"};
     }
-    GYROLOG_TRY(terminal_, open_terminal(path));
+    GYROLOG_TRY(RawPort port, RawPort::open(path, speed_));
+    port_.emplace(std::move(port));
     identify(path);
     return {};
 }
 
-TtySource::TtySource(int terminal, int wake, const std::string& path)
-    : terminal_(terminal), wake_(wake), calls_([this] { this->wake(); }), buffer_(read_bytes) {
+TtySource::TtySource(RawPort port, const std::string& path, TtySpeed speed, int wake)
+    : port_(std::move(port)),
+      speed_(speed),
+      wake_(wake),
+      calls_([this] { this->wake(); }),
+      buffer_(read_bytes) {
     identify(path);
 }
 
 void TtySource::identify(const std::string& path) {
-    identity_ = identity_of(path);
+    path_ = path;
+    identity_ = identity_of(path, speed_);
     endpoints_ = {};
     if (const auto layout = parse_cdc_configuration(identity_.configuration_descriptor); layout.ok()) {
         endpoints_ = {layout->endpoint_in, layout->endpoint_out};
@@ -192,13 +123,12 @@ void TtySource::identify(const std::string& path) {
 
 void TtySource::let_go() {
     TtySource::stop();
-    // Closing lowers DTR (HUPCL).
-    if (terminal_ >= 0) { ::close(std::exchange(terminal_, -1)); }
+    port_.reset();
 }
 
 TtySource::~TtySource() {
     TtySource::let_go();
-    if (wake_ >= 0) { ::close(wake_); }
+    ::close(wake_);
 }
 
 double TtySource::tolerated_stall_s(double bytes_per_s, double /*bytes_per_frame*/) const {
@@ -211,7 +141,7 @@ void TtySource::wake() const {
 }
 
 Status TtySource::start(TransferSink& sink) {
-    if (terminal_ < 0) { return Error{ErrorCode::device_lost, identity_.uri + ": the port is closed"}; }
+    if (!port_) { return Error{ErrorCode::device_lost, identity_.uri + ": the port is closed"}; }
     sink_ = &sink;
     stop_asked_ = false;
     calls_.reopen();
@@ -293,7 +223,7 @@ void TtySource::run() {
 
 void TtySource::wait_for_events() {
     const bool writing = pending_write_ != nullptr;
-    std::array<pollfd, 2> watched{{{wake_, POLLIN, 0}, {terminal_, POLLIN, 0}}};
+    std::array<pollfd, 2> watched{{{wake_, POLLIN, 0}, {port_->descriptor(), POLLIN, 0}}};
     timespec left{};
     if (writing) {
         watched[1].events |= POLLOUT;
@@ -316,7 +246,7 @@ void TtySource::wait_for_events() {
 
 // One read a turn, so that a write never waits behind a stream that does not pause.
 void TtySource::read_available(bool hung_up) {
-    const ssize_t count = ::read(terminal_, buffer_.data(), buffer_.size());
+    const ssize_t count = ::read(port_->descriptor(), buffer_.data(), buffer_.size());
     if (count > 0) {
         silence_.heard();
         tell_read_completion(0, ByteView(buffer_).first(static_cast<std::size_t>(count)));
@@ -329,7 +259,7 @@ void TtySource::read_available(bool hung_up) {
 
 void TtySource::write_pending() {
     PendingWrite& write = *pending_write_;
-    const ssize_t count = ::write(terminal_, write.rest.data(), write.rest.size());
+    const ssize_t count = ::write(port_->descriptor(), write.rest.data(), write.rest.size());
     if (count >= 0) { write.rest = write.rest.subspan(static_cast<std::size_t>(count)); }
     if (write.rest.empty()) {
         finish_write(0, {});
@@ -382,7 +312,7 @@ void TtySource::tell_read_completion(int status, ByteView data) {
 Status TtySource::change_line_state(bool data_terminal_ready) {
     int lines = TIOCM_DTR;
     const HostTime submitted = host_now();
-    if (ioctl(terminal_, data_terminal_ready ? TIOCMBIS : TIOCMBIC, &lines) != 0) {
+    if (ioctl(port_->descriptor(), data_terminal_ready ? TIOCMBIS : TIOCMBIC, &lines) != 0) {
         const bool has_none = errno == ENOTTY || errno == EINVAL;
         return Error{has_none ? ErrorCode::unsupported : ErrorCode::failed,
                      "set DTR of '" + identity_.uri + "': " + words_of(errno)};

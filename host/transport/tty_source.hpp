@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "host/base/call_queue.hpp"
 #include "host/transport/byte_source.hpp"
 #include "host/transport/line_silence.hpp"
+#include "host/transport/raw_port.hpp"
 
 namespace gyrolog {
 
@@ -22,8 +24,8 @@ namespace gyrolog {
 // starts.
 class TtySource final : public ByteSource {
 public:
-    // Errors: not_found, permission_denied, busy; invalid_argument when the path is not a terminal.
-    static Result<std::unique_ptr<TtySource>> open(const std::string& path);
+    // Errors: those of RawPort.
+    static Result<std::unique_ptr<TtySource>> open(const std::string& path, TtySpeed speed = {});
     TtySource(const TtySource&) = delete;
     TtySource& operator=(const TtySource&) = delete;
     ~TtySource() override;
@@ -48,7 +50,7 @@ private:
         std::uint8_t out = line_endpoint_out;
     };
 
-    TtySource(int terminal, int wake, const std::string& path);
+    TtySource(RawPort port, const std::string& path, TtySpeed speed, int wake);
     void identify(const std::string& path);
 
     void run();
@@ -62,8 +64,10 @@ private:
     void lose(int error_number);
     void wake() const;
 
-    int terminal_;
-    int wake_;  // an eventfd: makes the thread look at its calls
+    std::optional<RawPort> port_;  // none between the loss of a port and its return
+    std::string path_;
+    const TtySpeed speed_;
+    const int wake_;  // an eventfd: makes the thread look at its calls
     SourceIdentity identity_;
     Endpoints endpoints_;
     CallQueue calls_;

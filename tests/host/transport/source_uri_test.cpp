@@ -24,6 +24,15 @@ TEST(SourceUri, APathMayHoldColonsAndCommas) {
     EXPECT_EQ(parse_source_uri("replay:a:b,c=d.pcapng")->rest, "a:b,c=d.pcapng");
 }
 
+TEST(SourceUri, ASerialPortMayHaveASpeed) {
+    const auto uri = parse_source_uri("tty:/dev/serial/by-path/a:1,0,speed=921600");
+    ASSERT_TRUE(uri.ok()) << uri.error().message;
+    EXPECT_EQ(uri->rest, "/dev/serial/by-path/a:1,0");
+    EXPECT_THAT(uri->options, ElementsAre(Pair("speed", "921600")));
+    EXPECT_EQ(parse_source_uri("tty:/dev/a,speed=9,b")->rest, "/dev/a,speed=9,b");
+    EXPECT_FALSE(parse_source_uri("tty:,speed=9600").ok());
+}
+
 TEST(SourceUri, SimulationOptionsKeepTheirOrder) {
     const auto uri = parse_source_uri("sim:rate=1000,seed=7,model=a=b.json,realtime=");
     ASSERT_TRUE(uri.ok()) << uri.error().message;

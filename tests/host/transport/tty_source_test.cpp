@@ -5,13 +5,16 @@
 #include <cstdlib>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <gyrolog_protocol/usb_identity.h>
 #include <poll.h>
+#include <pty.h>
 #include <sys/stat.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include "tests/support/collecting_sink.hpp"
@@ -182,6 +185,96 @@ TEST_F(TtySourceTest, ASourceCanBeStartedAgain) {
         source_->stop();
         EXPECT_EQ(sink.end(), SourceEnd::stopped);
     }
+}
+
+// A line with settings of its own: echo, whole lines, 9600 baud.
+class TtySettings : public ::testing::Test {
+protected:
+    TtySettings() {
+        EXPECT_EQ(openpty(&board_, &line_, nullptr, nullptr, nullptr), 0);
+        path_ = ptsname(board_);
+        found_ = now();
+        found_.c_lflag |= static_cast<tcflag_t>(ECHO | ICANON | ISIG);
+        found_.c_oflag |= static_cast<tcflag_t>(OPOST);
+        cfsetispeed(&found_, B9600);
+        cfsetospeed(&found_, B9600);
+        EXPECT_EQ(tcsetattr(line_, TCSANOW, &found_), 0);
+        found_ = now();
+    }
+    ~TtySettings() override {
+        close(line_);
+        close(board_);
+    }
+    termios now() const {
+        termios settings{};
+        EXPECT_EQ(tcgetattr(line_, &settings), 0);
+        return settings;
+    }
+    bool is_raw() const {
+        return (now().c_lflag & static_cast<tcflag_t>(ECHO | ICANON | ISIG)) == 0 &&
+               (now().c_oflag & static_cast<tcflag_t>(OPOST)) == 0;
+    }
+    void expect_as_found() const {
+        const termios settings = now();
+        EXPECT_EQ(settings.c_iflag, found_.c_iflag);
+        EXPECT_EQ(settings.c_oflag, found_.c_oflag);
+        EXPECT_EQ(settings.c_cflag, found_.c_cflag);
+        EXPECT_EQ(settings.c_lflag, found_.c_lflag);
+        EXPECT_EQ(cfgetispeed(&settings), cfgetispeed(&found_));
+        EXPECT_EQ(cfgetospeed(&settings), cfgetospeed(&found_));
+    }
+
+    int board_ = -1;
+    int line_ = -1;
+    std::string path_;
+    termios found_{};
+};
+
+TEST_F(TtySettings, AreThoseOfARawLineAtTheSpeedThatWasAskedForAndPutBackAtTheEnd) {
+    for (const auto& [speed, expected] :
+         {std::pair{TtySpeed(921'600), speed_t{B921600}}, {TtySpeed(), speed_t{B9600}}}) {
+        auto source = TtySource::open(path_, speed);
+        ASSERT_TRUE(source.ok()) << source.error().message;
+        EXPECT_EQ((*source)->identity().uri, "tty:" + path_ + (speed ? ",speed=921600" : ""));
+        EXPECT_TRUE(is_raw());
+        const termios settings = now();
+        EXPECT_EQ(cfgetospeed(&settings), expected);
+        EXPECT_EQ(cfgetispeed(&settings), expected);
+        CollectingSink sink;
+        ASSERT_TRUE((*source)->start(sink).ok());
+        EXPECT_TRUE(is_raw());
+        source->reset();
+        expect_as_found();
+    }
+}
+
+TEST_F(TtySettings, AreUntouchedByASpeedThatNoPortHas) {
+    const auto source = TtySource::open(path_, 12'345U);
+    ASSERT_FALSE(source.ok());
+    EXPECT_EQ(source.error().code, ErrorCode::invalid_argument);
+    EXPECT_THAT(source.error().message, ::testing::HasSubstr("12345 baud"));
+    expect_as_found();
+}
+
+TEST_F(TtySettings, ArePutBackWhenTheBoardIsGivenUpAndTakenUpAgain) {
+    auto source = TtySource::open(path_, 115'200U);
+    ASSERT_TRUE(source.ok()) << source.error().message;
+    ASSERT_TRUE((*source)->reconnect().ok());
+    EXPECT_TRUE(is_raw());
+    EXPECT_EQ((*source)->identity().uri, "tty:" + path_ + ",speed=115200");
+    source->reset();
+    expect_as_found();
+}
+
+TEST_F(TtySettings, ArePutBackForASignalThatEndsTheProgram) {
+    auto source = TtySource::open(path_, 115'200U);
+    ASSERT_TRUE(source.ok()) << source.error().message;
+    EXPECT_TRUE(is_raw());
+    restore_ports();
+    expect_as_found();
+    source->reset();
+    restore_ports();  // of nothing
+    expect_as_found();
 }
 
 TEST_F(TtySourceTest, ASecondReaderIsKeptOut) {
