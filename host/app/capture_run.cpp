@@ -148,7 +148,7 @@ Result<CaptureOutcome> watch_capture(Console& console, ByteSource& source, Captu
         silence.tell(progress);
         parking.tell(progress);
         tell_denoising(console, denoise, &view);
-        if (!progress.parked) { view.show(progress); }
+        if (!progress.parked && progress.hello) { view.show(progress); }
         const bool end = console.stop_wanted() || keys.end_wanted();
         if (end) { keys.finish(); }
         return !end;
@@ -224,7 +224,8 @@ CaptureResult tell_outcome(Console& console, const char* command, const Result<C
     CaptureResult result;
     if (!outcome.ok()) {
         report_error(console, command, outcome.error());
-        result.code = exit_code_of_opening(outcome.error());
+        const bool ended = outcome.error().code == ErrorCode::failed && console.stop_wanted();
+        result.code = ended ? ended_by_signal(console.signal->load()) : exit_code_of_opening(outcome.error());
         return result;
     }
     result.file_written = !outcome->kept_old;

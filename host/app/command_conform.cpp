@@ -43,7 +43,9 @@ ExitCode conform(Console& console, const ConformOptions& options) {
                  dialogue.error().message + "; conform wants a device that answers: usb:, tty:PATH or sim:"});
             return ExitCode::usage;
         }
-        return fail_to_open(console, dialogue.error());
+        const ExitCode code = fail_to_open(console, dialogue.error());
+        const bool ended = dialogue.error().code == ErrorCode::failed && console.stop_wanted();
+        return ended ? ended_by_signal(console.signal->load()) : code;
     }
     const ConformanceReport report = judge(*dialogue);
     ResultOutput results(console);
@@ -61,7 +63,7 @@ ExitCode conform(Console& console, const ConformOptions& options) {
 Action setup_conform(CLI::App& app) {
     auto options = std::make_shared<ConformOptions>();
     app.add_option("--device", options->device,
-                   "usb: (the only board), usb:SERIAL, tty:PATH or sim:KEY=VALUE,...")
+                   "usb: (the only board), usb:SERIAL, tty:PATH[,speed=BAUD] or sim:KEY=VALUE,...")
         ->type_name("URI")
         ->capture_default_str();
     app.add_option("--json", options->json, "Write the verdicts as JSON to FILE (- for standard output)")

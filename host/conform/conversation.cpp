@@ -80,12 +80,13 @@ private:
 class Conversation {
 public:
     Conversation(ByteSource& source, const std::function<bool()>& go_on)
-        : source_(source), probe_(source), go_on_(go_on) {}
+        : source_(source), probe_(source, go_on), go_on_(go_on) {}
 
     Result<Dialogue> run() {
         GYROLOG_CHECK(probe_.start());
         GYROLOG_CHECK(settle());
         const Status spoken = speak();
+        probe_.finish();
         restore();
         probe_.stop();
         if (!spoken.ok()) { return spoken.error(); }

@@ -1,5 +1,6 @@
 #include "host/conform/probe.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -12,6 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::chrono::milliseconds asking_interval(100);
 constexpr double reply_timeout_s = 1.0;
 // A virtual board answers at once, when this computer lets it.
 constexpr double held_up_timeout_s = 3.0;
@@ -24,8 +26,10 @@ std::chrono::nanoseconds to_ns(double duration_s) {
 }  // namespace
 
 // A source that can wait but keeps to the clock would lose what nobody takes.
-Probe::Probe(ByteSource& source)
-    : source_(source), held_up_(source.can_wait() && std::isinf(source.tolerated_stall_s(1.0, 1.0))) {}
+Probe::Probe(ByteSource& source, const std::function<bool()>& go_on)
+    : source_(source),
+      go_on_(go_on),
+      held_up_(source.can_wait() && std::isinf(source.tolerated_stall_s(1.0, 1.0))) {}
 
 void Probe::stop() {
     {
@@ -73,12 +77,17 @@ bool Probe::await(const std::function<bool(const Transcript&)>& enough, double l
     bool satisfied = false;
     while (!satisfied) {
         const std::uint64_t transfers = transfers_;
-        const bool moved = changed_.wait_for(
-            lock, to_ns(longest_silence_s), [&] { return transfers_ != transfers || ended_ || !listening_; });
+        const auto silent_until = Clock::now() + to_ns(longest_silence_s);
+        bool moved = false;
+        while (!moved && Clock::now() < silent_until && !given_up()) {
+            moved = changed_.wait_until(
+                lock, std::min<Clock::time_point>(silent_until, Clock::now() + asking_interval),
+                [&] { return transfers_ != transfers || ended_ || !listening_; });
+        }
         satisfied = !listening_ || enough(transcript_);
         const bool over =
             transcript_.now_s() - begin_s >= limit_s || (!held_up_ && Clock::now() - begin >= to_ns(limit_s));
-        if (!moved || ended_ || over || transcript_.full()) { break; }
+        if (!moved || ended_ || over || transcript_.full() || given_up()) { break; }
     }
     listening_ = false;
     enough_ = nullptr;
@@ -104,6 +113,16 @@ bool Probe::await_silence(double silence_s, double limit_s) {
             return false;
         }
     }
+}
+
+bool Probe::given_up() {
+    wanted_ = wanted_ && go_on_();
+    return !wanted_ && !finishing_;
+}
+
+void Probe::finish() {
+    const std::lock_guard lock(mutex_);
+    finishing_ = true;
 }
 
 void Probe::forget() {

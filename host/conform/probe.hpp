@@ -22,7 +22,9 @@ namespace gyrolog {
 
 class Probe final : private TransferSink {
 public:
-    explicit Probe(ByteSource& source);
+    // While it waits for anything, `go_on` is asked ten times a second. When it says no, that wait and all
+    // later ones end as if their time were over, until finish() was called.
+    Probe(ByteSource& source, const std::function<bool()>& go_on);
     ~Probe() override { stop(); }
     Probe(const Probe&) = delete;
     Probe& operator=(const Probe&) = delete;
@@ -47,6 +49,8 @@ public:
                double limit_s);
     // Takes all that comes until the line was silent for so long; at most `limit_s`. False: it never was.
     bool await_silence(double silence_s, double limit_s);
+    // What is waited for from here on is waited for to the end.
+    void finish();
     // Forgets what came so far.
     void forget();
 
@@ -62,9 +66,13 @@ public:
 private:
     bool on_transfer(const Transfer& transfer) override;
     void on_end(SourceEnd end, const std::optional<Error>& error) override;
+    bool given_up();
 
     ByteSource& source_;
+    const std::function<bool()>& go_on_;
     const bool held_up_;
+    bool wanted_ = true;
+    bool finishing_ = false;
     std::uint32_t number_ = 0;
 
     mutable std::mutex mutex_;

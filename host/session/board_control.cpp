@@ -16,12 +16,12 @@ constexpr std::chrono::milliseconds flush_time(
 
 }  // namespace
 
-Status BoardControl::quiet() {
+Status BoardControl::quiet(const GoOn& go_on) {
     Status lowered = source_.set_line_state(false);
     if (lowered.ok()) { return {}; }
     if (lowered.error().code != ErrorCode::unsupported) { return lowered; }
     has_line_ = false;
-    const Status stopped = command(glp_frame_stop, {}, Answer::awaited);
+    const Status stopped = command(glp_frame_stop, {}, go_on);
     if (!stopped.ok() && stopped.error().code == ErrorCode::unsupported) {
         takes_commands_ = false;
         return {};
@@ -30,7 +30,7 @@ Status BoardControl::quiet() {
     return stopped.ok() || stopped.error().code == ErrorCode::timeout ? Status() : stopped;
 }
 
-Status BoardControl::configure(const glp_configure& wanted) {
+Status BoardControl::configure(const glp_configure& wanted, const GoOn& go_on) {
     const bool asked = wanted.rate_mHz != 0 || wanted.dlpf_hz != 0 || wanted.gyro_full_scale_dps != 0 ||
                        wanted.accel_full_scale_g != 0 || wanted.layout != 0 || wanted.samples_per_frame != 0;
     if (!asked) { return {}; }
@@ -41,16 +41,16 @@ Status BoardControl::configure(const glp_configure& wanted) {
     }
     std::array<std::uint8_t, GLP_FRAME_PAYLOAD_MAX> payload{};
     const std::size_t size = glp_configure_write(&wanted, payload.data(), payload.size());
-    return command(glp_frame_configure, ByteView(payload).first(size), Answer::awaited);
+    return command(glp_frame_configure, ByteView(payload).first(size), go_on);
 }
 
-Status BoardControl::start() {
+Status BoardControl::start(const GoOn& go_on) {
     start_asked_ = true;
     streaming_ = true;
     if (has_line_) { return source_.set_line_state(true); }
     if (!takes_commands_) { return {}; }
-    GYROLOG_CHECK(command(glp_frame_start, {}, Answer::awaited));
-    return command(glp_frame_get_hello, {}, Answer::not_awaited);
+    GYROLOG_CHECK(command(glp_frame_start, {}, go_on));
+    return send(glp_frame_get_hello, {});
 }
 
 void BoardControl::stop() {
@@ -58,28 +58,31 @@ void BoardControl::stop() {
     if (has_line_) {
         static_cast<void>(source_.set_line_state(false));
     } else if (takes_commands_) {
-        static_cast<void>(command(glp_frame_stop, {}, Answer::not_awaited));
+        static_cast<void>(send(glp_frame_stop, {}));
     }
     if (!source_.can_wait()) { std::this_thread::sleep_for(flush_time); }
 }
 
-Status BoardControl::set_streaming(bool wanted) {
+Status BoardControl::set_streaming(bool wanted, const GoOn& go_on) {
     if (wanted == streaming_ || !(has_line_ || takes_commands_)) { return {}; }
     streaming_ = wanted;
-    if (wanted) { return start(); }
+    if (wanted) { return start(go_on); }
     stop();
     return {};
 }
 
-Status BoardControl::command(glp_frame_type type, ByteView payload, Answer answer) {
+Status BoardControl::send(glp_frame_type type, ByteView payload) {
     const glp_frame frame{static_cast<std::uint8_t>(type), 0, ++sequence_, payload.data(), payload.size()};
     std::array<std::uint8_t, GLP_FRAME_WIRE_MAX> wire{};
     const glp_cobs_result encoded = glp_frame_encode(&frame, wire.data(), wire.size());
     writer_.expect_reply(sequence_, frame.type);
-    GYROLOG_CHECK(source_.write(ByteView(wire).first(encoded.size)));
-    if (answer == Answer::not_awaited) { return {}; }
+    return source_.write(ByteView(wire).first(encoded.size));
+}
+
+Status BoardControl::command(glp_frame_type type, ByteView payload, const GoOn& go_on) {
+    GYROLOG_CHECK(send(type, payload));
     std::optional<std::uint8_t> result;
-    writer_.wait(reply_timeout, [&](const WriterThread::State& state) {
+    writer_.wait(reply_timeout, go_on, [&](const WriterThread::State& state) {
         if (state.reply) { result = state.reply->result; }
         return result.has_value() || sink_.end().has_value();
     });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "host/session/queueing_sink.hpp"
 #include "host/session/writer_thread.hpp"
@@ -12,26 +13,29 @@ namespace gyrolog {
 // The conversation with the board: quiet, configured, started; and stopped again at the end. A line without
 // control signals (a pty, a bare UART) is started and stopped by commands instead. A source that takes
 // neither (a replayed capture) plays whatever it has.
+//
+// `go_on` is asked while an answer is waited for; when it says no, the wait ends as if the time were over.
 class BoardControl {
 public:
+    using GoOn = std::function<bool()>;
+
     BoardControl(ByteSource& source, WriterThread& writer, const QueueingSink& sink)
         : source_(source), writer_(writer), sink_(sink) {}
 
-    Status quiet();
-    Status configure(const glp_configure& wanted);
+    Status quiet(const GoOn& go_on);
+    Status configure(const glp_configure& wanted, const GoOn& go_on);
     bool has_line() const { return has_line_; }
-    Status start();
+    Status start(const GoOn& go_on);
     // Quiets a board that was asked to start. Whatever goes wrong here, the capture is over anyway.
     void stop();
 
     // As the user asks in the middle of a capture. A source that takes neither line nor commands goes on.
-    Status set_streaming(bool wanted);
+    Status set_streaming(bool wanted, const GoOn& go_on);
     bool streaming() const { return streaming_; }
 
 private:
-    enum class Answer { awaited, not_awaited };
-
-    Status command(glp_frame_type type, ByteView payload, Answer answer);
+    Status send(glp_frame_type type, ByteView payload);
+    Status command(glp_frame_type type, ByteView payload, const GoOn& go_on);
     Status refusal(std::uint8_t result) const;
 
     ByteSource& source_;

@@ -38,21 +38,33 @@ Error storage_error_of(Error error) {
 
 // From a silent board to a stream whose HELLO and CONFIG have come.
 Status begin(ByteSource& source, QueueingSink& sink, WriterThread& writer, BoardControl& control,
-             const glp_configure& configure, const CaptureRequest& request) {
+             const glp_configure& configure, const CaptureRequest& request,
+             const std::function<bool()>& ask_caller) {
+    bool wanted = true;
+    const std::function<bool()> go_on = [&] {
+        wanted = wanted && ask_caller();
+        return wanted;
+    };
+    const auto unless_ended = [&](Status status) {
+        return wanted ? std::move(status)
+                      : Status(Error{ErrorCode::failed,
+                                     source.identity().uri + ": ended before the board had answered"});
+    };
     GYROLOG_CHECK(source.start(sink));
-    GYROLOG_CHECK(control.quiet());
-    GYROLOG_CHECK(control.configure(configure));
-    GYROLOG_CHECK(control.start());
+    GYROLOG_CHECK(unless_ended(control.quiet(go_on)));
+    GYROLOG_CHECK(unless_ended(control.configure(configure, go_on)));
+    GYROLOG_CHECK(unless_ended(control.start(go_on)));
     // A HELLO from before the start may be that of a stream which somebody else had started.
     const auto identified = [&](const WriterThread::State& state) {
         return (state.line_was_raised || !control.has_line()) && state.has_hello && state.has_config;
     };
     writer.wait(
-        milliseconds(static_cast<std::int64_t>(request.hello_timeout_s * 1e3)),
+        milliseconds(static_cast<std::int64_t>(request.hello_timeout_s * 1e3)), go_on,
         [&](const WriterThread::State& state) { return identified(state) || sink.end().has_value(); });
     // The source may have ended with the frames still in the queue.
     if (sink.end()) { writer.join(); }
     if (identified(writer.state())) { return {}; }
+    GYROLOG_CHECK(unless_ended({}));
     if (const auto error = sink.error()) { return *error; }
     return Error{ErrorCode::timeout, no_hello};
 }
@@ -162,7 +174,8 @@ public:
     Session& operator=(const Session&) = delete;
 
     Result<CaptureOutcome> run() {
-        const Status began = begin(source_, sink_, thread_, control_, request_.configure, request_);
+        const Status began = begin(source_, sink_, thread_, control_, request_.configure, request_,
+                                   [this] { return observe_(progress()); });
         if (began.ok()) {
             settle_queue();
             stream_until_end();
@@ -276,7 +289,8 @@ private:
 
     Status obey() {
         if (request_.control == nullptr) { return {}; }
-        GYROLOG_CHECK(control_.set_streaming(request_.control->streaming_wanted()));
+        GYROLOG_CHECK(control_.set_streaming(request_.control->streaming_wanted(),
+                                             [this] { return observe_(progress()); }));
         if (!control_.streaming()) { silence_.begin(); }
         return {};
     }
@@ -292,19 +306,22 @@ private:
         const auto lost_at = Clock::now();
         std::string why = outcome_.error ? outcome_.error->message : source_.identity().uri + ": lost";
         auto next_try = lost_at;
-        while (true) {
+        const auto go_on = [&] {
             CaptureProgress parked = progress();
             parked.parked = true;
             parked.parked_s = seconds_since(lost_at);
             parked.parked_why = why;
-            if (!observe_(parked) || over(parked)) { return false; }
+            return observe_(parked) && !over(parked);
+        };
+        while (true) {
+            if (!go_on()) { return false; }
             if (Clock::now() < next_try) {
                 std::this_thread::sleep_for(
                     std::min<Clock::duration>(progress_interval, next_try - Clock::now()));
                 continue;
             }
             Status back = source_.reconnect();
-            if (back.ok()) { back = resume(); }
+            if (back.ok()) { back = resume(go_on); }
             if (back.ok()) { return true; }
             if (outcome_.end == CaptureEnd::storage_failed) { return false; }
             if (!may_come_back(back.error().code)) {
@@ -319,7 +336,7 @@ private:
     }
 
     // The next file, and the handshake with a board that is back.
-    Status resume() {
+    Status resume(const std::function<bool()>& go_on) {
         ++connections_;
         if (Status opened = writer_.begin_connection(source_.identity()); !opened.ok()) {
             storage_failed(storage_error_of(std::move(opened).error()));
@@ -331,7 +348,7 @@ private:
         queue_.reopen();
         sink_.reopen();
         thread_.resume();
-        Status began = begin(source_, sink_, thread_, control_, again, request_);
+        Status began = begin(source_, sink_, thread_, control_, again, request_, go_on);
         if (began.ok()) {
             settle_queue();
             return {};

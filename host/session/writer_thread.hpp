@@ -1,9 +1,11 @@
 // What a capture does with its transfers, in a thread of its own.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -70,6 +72,17 @@ public:
     bool wait(std::chrono::milliseconds time, Wanted&& wanted) {
         std::unique_lock lock(mutex_);
         return changed_.wait_for(lock, time, [&] { return wanted(std::as_const(state_)); });
+    }
+
+    // The same; gives up, too, when `go_on()` says so, which is asked ten times a second without the lock.
+    template <typename Wanted>
+    bool wait(std::chrono::milliseconds time, const std::function<bool()>& go_on, Wanted&& wanted) {
+        constexpr std::chrono::milliseconds turn(100);
+        for (; time.count() > 0; time -= turn) {
+            if (wait(std::min(time, turn), wanted)) { return true; }
+            if (!go_on()) { return false; }
+        }
+        return false;
     }
 
     CaptureProgress progress() const;

@@ -1,6 +1,7 @@
 #include "host/session/capture_session.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -207,6 +208,27 @@ TEST_F(CaptureSession, RepliesStandInTheCaptureInTheirPlace) {
     EXPECT_EQ(order.frames[0].second, glp_frame_reply) << "to the CONFIGURE before the start";
     EXPECT_EQ(order.frames[1].second, glp_frame_config);
     EXPECT_EQ(order.frames[2].second, glp_frame_hello);
+}
+
+// By line and by commands, each of which waits for an answer.
+TEST_F(CaptureSession, ABoardThatDoesNotAnswerIsWaitedForOnlyAsLongAsTheCallerWants) {
+    for (const bool has_line : {true, false}) {
+        const auto source = BoardSource::create({.has_line = has_line, .speaks_instead = Bytes{}});
+        request_.hello_timeout_s = 60.0;
+        request_.configure.rate_mHz = has_line ? 0 : 1'000'000;
+        unsigned asked = 0;
+        const auto begin = std::chrono::steady_clock::now();
+        const auto outcome = run_capture(*source, request_, [&](const CaptureProgress& progress) {
+            EXPECT_FALSE(progress.hello.has_value());
+            return ++asked < 3;
+        });
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(900));
+        ASSERT_FALSE(outcome.ok());
+        EXPECT_EQ(outcome.error().code, ErrorCode::failed);
+        EXPECT_NE(outcome.error().message.find("ended before"), std::string::npos) << outcome.error().message;
+        EXPECT_EQ(asked, 3U);
+        EXPECT_FALSE(file_is_there());
+    }
 }
 
 TEST_F(CaptureSession, StrangersBytesAreAnErrorAndAreKept) {
