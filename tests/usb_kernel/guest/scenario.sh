@@ -36,9 +36,10 @@ finish() {
     echo $job_status > "$1.exit"
 }
 
-# stop NAME: asks the job to end, as Ctrl-C does, unless it has ended by itself, and waits for it.
+# stop NAME: asks the job to end, unless it has ended by itself, and waits for it. Not with SIGINT: a shell without job
+# control starts its jobs with that one ignored.
 stop() {
-    kill -INT "$(cat "$1.pid")" 2> /dev/null || true
+    kill -TERM "$(cat "$1.pid")" 2> /dev/null || true
     finish "$1"
 }
 

@@ -1,4 +1,4 @@
-# Ctrl-C, and what a second program may do meanwhile.
+# A signal that ends the capture, and what a second program may do meanwhile.
 . /test/scenario.sh
 . /test/boards.sh
 
