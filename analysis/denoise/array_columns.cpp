@@ -152,11 +152,15 @@ JoinedArray join_recordings(std::span<const ArrayMember> members) {
             return joined;
         }
         const std::size_t missing = matched.rows.size() - matched.found;
-        if (missing > 0 || matched.slips > 0) {
+        if (missing > 0) {
             array.warnings.push_back("'" + member.recording->name + "': no sample at " +
                                      std::to_string(missing) + " of " + std::to_string(matched.rows.size()) +
-                                     " instants; left out or taken twice " + std::to_string(matched.slips) +
-                                     " samples for the difference of the clocks");
+                                     " instants");
+        }
+        if (matched.slips > 0) {
+            array.warnings.push_back("'" + member.recording->name +
+                                     "': samples left out or taken twice for the difference of the clocks: " +
+                                     std::to_string(matched.slips));
         }
         take_gyros(array, numbers, *member.recording, &matched);
     }

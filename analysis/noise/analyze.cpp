@@ -141,6 +141,14 @@ void warn_of_rate(const AnalysisReport& report, std::vector<std::string>& warnin
     warnings.push_back(text.str());
 }
 
+void count_holes(const Recording& recording, AnalysisReport& report) {
+    const Stops stops = recording.stops();
+    report.stops = stops.events;
+    report.stopped_s = stops.s;
+    report.dropouts = recording.dropouts.size() - stops.events;
+    report.samples_missing = recording.missing_samples() - stops.instants;
+}
+
 }  // namespace
 
 AnalysisReport analyze(const Recording& recording, const AnalysisOptions& options) {
@@ -152,8 +160,7 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
     report.stamps = recording.stamps;
     report.duration_s = recording.duration_s();
     report.samples = recording.rows();
-    report.dropouts = recording.dropouts.size();
-    report.samples_missing = recording.missing_samples();
+    count_holes(recording, report);
     report.segments = recording.segments.size();
     report.kind = options.kind;
     report.convention = options.convention;

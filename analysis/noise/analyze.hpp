@@ -46,6 +46,8 @@ struct AnalysisReport {
     std::size_t samples = 0;
     std::size_t dropouts = 0;
     std::int64_t samples_missing = 0;
+    std::size_t stops = 0;  // by the user: neither dropouts nor missing
+    double stopped_s = 0.0;
     std::size_t segments = 0;
     DeviationKind kind = DeviationKind::overlapping;
     PhaseConvention convention = PhaseConvention::sp1065;

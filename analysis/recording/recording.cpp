@@ -33,6 +33,18 @@ std::int64_t Recording::missing_samples() const {
            static_cast<std::int64_t>(rows());
 }
 
+Stops Recording::stops() const {
+    Stops stops;
+    for (const Dropout& hole : dropouts) {
+        if (hole.cause != stopped_cause) { continue; }
+        ++stops.events;
+        stops.instants += hole.samples;
+    }
+    const double instants_per_s = rate_hz * static_cast<double>(samples_per_row);
+    if (instants_per_s > 0.0) { stops.s = static_cast<double>(stops.instants) / instants_per_s; }
+    return stops;
+}
+
 double Recording::duration_s() const {
     if (segments.empty() || rate_hz <= 0.0) { return 0.0; }
     const Segment& last = segments.back();

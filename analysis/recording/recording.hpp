@@ -45,11 +45,21 @@ enum class StampKind {
     arrival,   // stamps mark when the data arrived (bursts): good for the mean rate only
 };
 
+// The cause of a pause that somebody wanted: its instants are not there, and nobody misses them.
+inline constexpr std::string_view stopped_cause = "stopped";
+
 struct Dropout {
     double at_s = 0.0;         // from the recording's first sample
     std::int64_t samples = 0;  // missing
     std::string
         cause;  // "sensor_fifo_overflow", "bus_error", "ring_overflow", "link", "time_stamps", "empty_fields"
+};
+
+// Of a recording's dropouts, those that somebody wanted.
+struct Stops {
+    std::size_t events = 0;
+    std::int64_t instants = 0;
+    double s = 0.0;
 };
 
 // Segments are in order and do not overlap on the grid; every row belongs to exactly one.
@@ -71,7 +81,9 @@ struct Recording {
 
     std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
     const Column* find(std::string_view column_name) const;
+    // Of the grid, also those of its stops.
     std::int64_t missing_samples() const;
+    Stops stops() const;
     // From the first sampling instant to the end of the last one: (last index - first index + 1) / rate.
     double duration_s() const;
 };

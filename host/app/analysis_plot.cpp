@@ -7,7 +7,9 @@
 #include "analysis/plot/allan_figure.hpp"
 #include "analysis/plot/histogram_figure.hpp"
 #include "host/app/quantity.hpp"
+#include "host/base/counted.hpp"
 #include "host/base/file_output.hpp"
+#include "host/formats/stops_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -63,12 +65,16 @@ AllanTrace trace_of(const AxisReport& axis, bool is_allan) {
 std::string completeness(const AnalysisReport& report) {
     if (report.stamps == StampKind::arrival) { return "stamped on arrival"; }
     if (report.samples_missing == 0) { return "none missing"; }
-    return fmt::format("{} missing in {} dropouts", report.samples_missing, report.dropouts);
+    return fmt::format("{} missing in {}", format_count(static_cast<std::uint64_t>(report.samples_missing)),
+                       counted(report.dropouts, "dropout"));
 }
 
 std::vector<std::string> facts_of(const AnalysisReport& report) {
-    return {fmt::format("{:.6g} Hz", report.rate_hz), format_duration(report.duration_s),
-            format_count(report.samples) + " samples", completeness(report)};
+    std::vector<std::string> facts = {fmt::format("{:.6g} Hz", report.rate_hz),
+                                      format_duration(report.duration_s), counted(report.samples, "sample"),
+                                      completeness(report)};
+    if (report.stops > 0) { facts.push_back(stops_text(report.stops, report.stopped_s)); }
+    return facts;
 }
 
 AllanFigure figure_of(const AnalysisReport& report) {

@@ -9,7 +9,9 @@
 
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
+#include "host/base/counted.hpp"
 #include "host/formats/json.hpp"
+#include "host/formats/stops_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -35,7 +37,22 @@ std::string hex(const std::uint8_t* bytes, std::size_t size) {
 // Sampling instants at the sensor's own rate; without a rate there is no length.
 double duration_s(const LoadedCapture& capture, const LinkReport& link) {
     const auto rate_hz = capture.decoder->rate_hz();
-    return rate_hz ? static_cast<double>(link.samples.good + link.samples.missing) / *rate_hz : 0.0;
+    return rate_hz ? static_cast<double>(link.instants()) / *rate_hz : 0.0;
+}
+
+double stopped_s(const LoadedCapture& capture, const LinkReport& link) {
+    const auto rate_hz = capture.decoder->rate_hz();
+    return rate_hz ? static_cast<double>(link.samples_in_stops) / *rate_hz : 0.0;
+}
+
+Json stops_json(const LoadedCapture& capture, const LinkReport& link) {
+    const double rate_hz = capture.decoder->rate_hz().value_or(0.0);
+    Json stops = Json::array();
+    for (const Dropout& stop : capture.decoder->timed(link.stops)) {
+        const double lasted_s = rate_hz > 0.0 ? static_cast<double>(stop.samples) / rate_hz : 0.0;
+        stops.push_back({{"at_s", stop.at_s}, {"s", lasted_s}});
+    }
+    return stops;
 }
 
 std::string started_utc(const LoadedCapture& capture) {
@@ -165,7 +182,7 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
     const LinkReport link = capture.decoder->report();
     const BlockAccounts& file = capture.file.blocks;
     Json dropouts = Json::array();
-    for (const Dropout& dropout : capture.decoder->timed_dropouts(link)) {
+    for (const Dropout& dropout : capture.decoder->timed(link.dropouts)) {
         dropouts.push_back({{"at_s", dropout.at_s}, {"samples", dropout.samples}, {"cause", dropout.cause}});
     }
     return {
@@ -189,6 +206,7 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
          {{"good", link.samples.good}, {"missing", link.samples.missing}, {"frozen", link.samples_frozen}}},
         {"dropouts", dropouts},
         {"dropouts_unlisted", link.dropouts_unlisted},
+        {"stops", stops_json(capture, link)},
         {"corrupted_by_reason", reasons_json(link)},
         {"lost_on_device",
          {{"samples", link.samples.lost_on_device}, {"frames", link.frames.lost_on_device}}},
@@ -233,13 +251,17 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
         text += row("  frozen", link.samples_frozen, "one reading again and again: the sensor hung");
     }
     constexpr std::size_t shown = 20;
-    const std::vector<Dropout> dropouts = capture.decoder->timed_dropouts(link);
+    const std::vector<Dropout> dropouts = capture.decoder->timed(link.dropouts);
     for (std::size_t i = 0; i < std::min(shown, dropouts.size()); ++i) {
-        text += fmt::format("  dropout at {:.3f} s: {} samples, {}\n", dropouts[i].at_s, dropouts[i].samples,
+        text += fmt::format("  dropout at {:.3f} s: {}, {}\n", dropouts[i].at_s,
+                            counted(static_cast<std::uint64_t>(dropouts[i].samples), "sample"),
                             dropouts[i].cause);
     }
     if (const std::uint64_t more = dropouts.size() + link.dropouts_unlisted; more > shown) {
-        text += fmt::format("  and {} more dropouts (--json lists them)\n", more - shown);
+        text += fmt::format("  and {} (--json lists them)\n", counted(more - shown, "more dropout"));
+    }
+    if (!link.stops.empty()) {
+        text += fmt::format("  {}\n", stops_text(link.stops.size(), stopped_s(capture, link)));
     }
     text += fmt::format("  {}\n", verdict(capture));
     return text;
@@ -296,12 +318,20 @@ Json info_json(const std::string& path, const LoadedCapture& capture) {
             {"duration_s", duration_s(capture, link)},
             {"samples", link.samples.good},
             {"samples_missing", link.samples.missing},
+            {"stops", stops_json(capture, link)},
             {"board_clock", clock},
             {"host_clock_set_by_s", host_clock_set_by_s(capture)},
             {"marks", marks_json(capture)},
             {"end", name_of(capture.file.blocks.end)},
             {"file_bytes", capture.file.blocks.bytes_total},
             {"program", capture.metadata ? capture.metadata->program : ""}};
+}
+
+std::string missing_text(const LinkReport& link) {
+    const std::uint64_t dropouts = link.dropouts.size() + link.dropouts_unlisted;
+    return dropouts == 0
+               ? "no sample"
+               : counted(link.samples.missing, "sample").append(" in ").append(counted(dropouts, "dropout"));
 }
 
 std::string info_text(const std::string& path, const LoadedCapture& capture) {
@@ -326,8 +356,8 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
     line("started", started_utc(capture));
     const auto rate_hz = capture.decoder->rate_hz();
     if (rate_hz) {
-        line("length", fmt::format("{}, {} samples at {:.4f} Hz", format_duration(duration_s(capture, link)),
-                                   format_count(link.samples.good), *rate_hz));
+        line("length", fmt::format("{}, {} at {:.4f} Hz", format_duration(duration_s(capture, link)),
+                                   counted(link.samples.good, "sample"), *rate_hz));
     }
     if (const auto estimate = capture.decoder->rate_estimate()) {
         line("rate", fmt::format("{:.6f} ± {:.2g} Hz by the board's clock; the stamps jitter by {:.2g} us",
@@ -341,8 +371,8 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
         line("", fmt::format("this computer's clock was set by {:+.3f} s meanwhile; no time stamp moved",
                              set_by_s));
     }
-    line("missing", fmt::format("{} samples in {} dropouts", format_count(link.samples.missing),
-                                link.dropouts.size() + link.dropouts_unlisted));
+    line("missing", missing_text(link));
+    if (!link.stops.empty()) { line("pause", stops_text(link.stops.size(), stopped_s(capture, link))); }
     for (const CaptureMark& mark : capture.marks) { line("mark", mark_text(capture, mark)); }
     line("file",
          fmt::format("{}, {}", format_bytes(capture.file.blocks.bytes_total), end_text(path, capture)));

@@ -16,6 +16,9 @@ nlohmann::ordered_json info_json(const std::string& path, const LoadedCapture& c
 std::string check_text(const std::string& path, const LoadedCapture& capture);
 std::string info_text(const std::string& path, const LoadedCapture& capture);
 
+// "no sample", "12 samples in 3 dropouts".
+std::string missing_text(const LinkReport& link);
+
 // Nothing of what the board sent is known to be missing.
 bool nothing_missing(const LoadedCapture& capture);
 

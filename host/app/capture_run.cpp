@@ -6,19 +6,22 @@
 #include <fmt/format.h>
 
 #include "host/app/capture_notices.hpp"
+#include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
 #include "host/app/former_id.hpp"
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/stop_signal.hpp"
+#include "host/base/counted.hpp"
+#include "host/formats/stops_text.hpp"
 #include "host/session/load_capture.hpp"
 
 namespace gyrolog {
 namespace {
 
-double stored_s(const CaptureOutcome& outcome, const LinkReport& link) {
+double seconds_of(const CaptureOutcome& outcome, std::uint64_t instants) {
     const double rate_hz = outcome.progress.rate_hz.value_or(0.0);
-    return rate_hz > 0.0 ? static_cast<double>(link.samples.good + link.samples.missing) / rate_hz : 0.0;
+    return rate_hz > 0.0 ? static_cast<double>(instants) / rate_hz : 0.0;
 }
 
 // The disk refused at some point: what counts is what the file gives back.
@@ -32,21 +35,23 @@ void keep_what_is_stored(const std::string& path, const CaptureOutcome& outcome,
 
 void sum_up(Console& console, const CaptureOutcome& outcome, const LinkReport& link,
             const std::string& path) {
-    console.err << fmt::format("  {}: {} samples in {}, {}\n", path, format_count(link.samples.good),
-                               format_duration(stored_s(outcome, link)),
+    console.err << fmt::format("  {}: {} in {}, {}\n", path, counted(link.samples.good, "sample"),
+                               format_duration(seconds_of(outcome, link.instants())),
                                format_bytes(outcome.progress.file_bytes));
     if (link.samples.missing > 0 || link.frames.missing > 0) {
-        console.err << fmt::format(
-            "  missing: {} samples in {} dropouts, {} frames; run `gyrolog check {}` for each\n",
-            format_count(link.samples.missing), link.dropouts.size() + link.dropouts_unlisted,
-            link.frames.missing, path);
+        console.err << fmt::format("  missing: {}, {}; run `gyrolog check {}` for each\n", missing_text(link),
+                                   counted(link.frames.missing, "frame"), path);
+    }
+    if (!link.stops.empty()) {
+        console.err << fmt::format("  {}\n",
+                                   stops_text(link.stops.size(), seconds_of(outcome, link.samples_in_stops)));
     }
     if (link.samples_frozen > 0) {
-        console.err << fmt::format("  {} samples are one reading again and again: the sensor hung\n",
-                                   format_count(link.samples_frozen));
+        console.err << fmt::format("  one reading came again and again, {}: the sensor hung\n",
+                                   counted(link.samples_frozen, "time"));
     }
     if (link.frames.corrupted > 0) {
-        console.err << fmt::format("  {} damaged frames were refused\n", link.frames.corrupted);
+        console.err << fmt::format("  refused: {}\n", counted(link.frames.corrupted, "damaged frame"));
     }
     if (link.samples_in_joins > 0 || !link.joins.empty()) {
         console.err << fmt::format("  {} of them while the board was away or began anew\n",
@@ -59,14 +64,14 @@ void sum_up(Console& console, const CaptureOutcome& outcome, const LinkReport& l
     }
     if (link.hellos_contradicting > 0) {
         console.err << fmt::format(
-            "  the board contradicted itself {} times about its clock or its number: its first word holds; "
+            "  the board contradicted itself {} about its clock or its number: its first word holds; "
             "`gyrolog conform` shows more\n",
-            link.hellos_contradicting);
+            counted(link.hellos_contradicting, "time"));
     }
     if (outcome.transfers_dropped > 0) {
-        console.err << fmt::format(
-            "  {} transfers ({}) found the queue full and were lost on this computer\n",
-            outcome.transfers_dropped, format_bytes(outcome.bytes_dropped));
+        console.err << fmt::format("  lost on this computer, whose queue was full: {} ({})\n",
+                                   counted(outcome.transfers_dropped, "transfer"),
+                                   format_bytes(outcome.bytes_dropped));
     }
 }
 

@@ -9,6 +9,7 @@
 #include "host/app/recording_input.hpp"
 #include "host/formats/export_format.hpp"
 #include "host/formats/model_json.hpp"
+#include "host/formats/stops_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -50,6 +51,10 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
                 read_recording({options.source, options.rate_hz, options.lsb_dps}));
     for (const std::string& warning : recording.warnings) {
         console.err << "gyrolog export: warning: " << warning << '\n';
+    }
+    if (const Stops stops = recording.stops(); stops.events > 0) {
+        console.err << "gyrolog export: the recording was " << stops_text(stops.events, stops.s)
+                    << "; what is written has a hole there\n";
     }
     ExportSource samples;
     samples.recording = &recording;

@@ -8,6 +8,7 @@
 #include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/result_output.hpp"
+#include "host/base/counted.hpp"
 #include "host/capture/recover.hpp"
 
 namespace gyrolog {
@@ -36,9 +37,9 @@ nlohmann::ordered_json recovery_json(const RecoverOptions& options, const Recove
 std::string recovery_text(const RecoverOptions& options, const RecoveryReport& report) {
     const BlockAccounts& source = report.source;
     const std::uint64_t left_out = source.bytes_damaged + source.bytes_in_tail;
-    return fmt::format("{}: {} of {} kept, {} bytes left out in {} damaged places{}\n", options.recovered,
+    return fmt::format("{}: {} of {} kept, {} left out in {}{}\n", options.recovered,
                        format_bytes(report.bytes_kept), format_bytes(source.bytes_total),
-                       format_count(left_out), source.damaged_ranges,
+                       counted(left_out, "byte"), counted(source.damaged_ranges, "damaged place"),
                        source.bytes_in_tail > 0 ? " and a torn tail" : "");
 }
 

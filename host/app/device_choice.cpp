@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "host/base/counted.hpp"
 #include "host/transport/source_uri.hpp"
 #include "host/usb/usb_board.hpp"
 #include "host/virtual_board/sim_options.hpp"
@@ -60,8 +61,8 @@ Result<std::vector<std::string>> choose_devices(const std::vector<std::string>& 
         const auto wanted = has(asked, all_boards) ? std::ptrdiff_t{1} : times_any;
         if (static_cast<std::ptrdiff_t>(unnamed.size()) < wanted) {
             return Error{ErrorCode::not_found,
-                         std::to_string(wanted) + " more boards are asked for on USB, and " +
-                             std::to_string(unnamed.size()) + " are there; `gyrolog list` shows them"};
+                         "asked for on USB: " + counted(static_cast<std::uint64_t>(wanted), "more board") +
+                             "; there: " + counted(unnamed.size(), "board") + "; `gyrolog list` shows them"};
         }
     }
     std::vector<std::string> chosen;

@@ -29,8 +29,8 @@ std::optional<Error> refused(const Recording& recording, const std::string& path
     const auto refusal = diagnosis_refusal(recording);
     if (!refusal) { return std::nullopt; }
     const std::size_t samples = recording.samples_per_row;
-    const std::string as = samples > 1 ? fmt::format("in means of {} samples it ", samples) : "";
-    return Error{ErrorCode::failed, fmt::format("diagnose '{}': {}{}", path, as, *refusal)};
+    const std::string as = samples > 1 ? fmt::format(": in means of {} samples it", samples) : "";
+    return Error{ErrorCode::failed, fmt::format("'{}'{} {}", path, as, *refusal)};
 }
 
 // Sampling instants, whether or not a sample is there.

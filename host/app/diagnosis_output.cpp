@@ -25,7 +25,7 @@ Result<ModelFile> read_single_model(const std::string& path) {
                         path)};
     }
     if (const auto refusal = simulation_refusal(file.model)) {
-        return Error{ErrorCode::failed, "simulate '" + path + "': " + *refusal};
+        return Error{ErrorCode::failed, "model '" + path + "': " + *refusal};
     }
     return file;
 }

@@ -13,6 +13,7 @@
 #include "host/app/denoise_knowledge.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/quantity.hpp"
+#include "host/base/counted.hpp"
 #include "host/decode/recording_builder.hpp"
 #include "host/formats/denoise_text.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "host/app/allan_chart.hpp"
 #include "host/app/quantity.hpp"
+#include "host/base/counted.hpp"
 #include "host/base/printable.hpp"
 
 namespace gyrolog {
@@ -53,7 +54,8 @@ std::string live_line(const CaptureProgress& progress) {
     std::string line =
         fmt::format("{}  {} samples", format_elapsed(progress.device_s), format_count(progress.samples));
     if (progress.rate_hz) { line += fmt::format("  {:.2f} Hz", *progress.rate_hz); }
-    line += fmt::format("  {} dropouts  {} CRC errors", progress.dropouts, progress.frames_corrupted);
+    line += fmt::format("  {}  {}", counted(progress.dropouts, "dropout"),
+                        counted(progress.frames_corrupted, "CRC error"));
     if (progress.temperature_C) { line += fmt::format("  {:.1f} °C", *progress.temperature_C); }
     return line + "  " + format_bytes(progress.file_bytes);
 }

@@ -86,12 +86,4 @@ std::string format_duration(double duration_s) {
     return fmt::format("{:.3g} s", duration_s);
 }
 
-std::string format_count(std::uint64_t count) {
-    std::string digits = std::to_string(count);
-    for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
-        digits.insert(static_cast<std::size_t>(at), 1, ',');
-    }
-    return digits;
-}
-
 }  // namespace gyrolog

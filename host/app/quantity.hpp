@@ -28,7 +28,4 @@ std::string format_bytes(std::uint64_t bytes);
 // 43200 as "12 h", 655.1 as "10.9 min": one unit, three digits.
 std::string format_duration(double duration_s);
 
-// 4320000 as "4,320,000".
-std::string format_count(std::uint64_t count);
-
 }  // namespace gyrolog

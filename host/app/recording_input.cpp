@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/counted.hpp"
 #include "host/formats/recording_csv.hpp"
 #include "host/session/load_capture.hpp"
 
@@ -19,8 +20,8 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
     if (capture.file.blocks.end == FileEnd::damaged) {
         recording->warnings.push_back(
-            fmt::format("the file is damaged in {} places; the samples lost there count as missing",
-                        capture.file.blocks.damaged_ranges));
+            fmt::format("the file is damaged in {}; the samples lost there count as missing",
+                        counted(capture.file.blocks.damaged_ranges, "place")));
     }
     if (input.rate_hz) {
         const double told_hz = recording->rate_hz * static_cast<double>(input.samples_per_row);

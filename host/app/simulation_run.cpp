@@ -6,6 +6,7 @@
 
 #include "host/app/quantity.hpp"
 #include "host/app/stop_signal.hpp"
+#include "host/base/counted.hpp"
 #include "host/formats/recording_csv.hpp"
 
 namespace gyrolog {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/recording/recording.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -73,6 +75,8 @@ std::string_view dropout_cause_name(DropoutCause cause) {
             return "unplugged";
         case DropoutCause::reset:
             return "reset";
+        case DropoutCause::stopped:
+            return stopped_cause;
     }
     return "device";
 }
@@ -180,6 +184,11 @@ bool LinkAccounts::begins_grid(const glp_frame& frame, const glp_samples& sample
            samples.first_index - grid_index_ >= implausible_span;
 }
 
+// The indices begin again because the board was told to start again, and not because one has gone wrong.
+bool LinkAccounts::is_restart(const glp_frame& frame, const glp_samples& samples, std::uint64_t next_index) {
+    return (frame.flags & glp_flag_first_after_start) != 0 || samples.first_index < next_index;
+}
+
 void LinkAccounts::begin_run(std::uint64_t next_index, std::uint32_t lost_samples) {
     run_ += in_run_ ? 1U : 0U;
     in_run_ = true;
@@ -198,7 +207,8 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
         const bool start_was_in_stream =
             in_run_ || start_seen_ || (frame.flags & glp_flag_first_after_start) != 0;
         const bool from_zero = start_was_in_stream && samples.first_index < implausible_jump;
-        const bool joins = in_run_ && (connection_lost_ || booted_since_samples_);
+        const bool came_back = connection_lost_ || booted_since_samples_;
+        const bool joins = in_run_ && (came_back || is_restart(frame, samples, next_index_));
         LinkJoin next{.run_before = run_, .end_index = next_index_};
         // Before the first samples the gap is theirs: their index counts it.
         if (in_run_) {
@@ -209,7 +219,9 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
         if (joins) {
             next.run_after = run_;
             next.first_index = next_index_;
-            next.cause = booted_since_samples_ ? DropoutCause::reset : DropoutCause::unplugged;
+            next.cause = booted_since_samples_ ? DropoutCause::reset
+                         : connection_lost_    ? DropoutCause::unplugged
+                                               : DropoutCause::stopped;
             join(next);
         }
     } else if (samples.config_generation != generation_ || samples.layout != layout_ ||
@@ -287,9 +299,10 @@ void LinkAccounts::enter(const std::vector<LinkDropout>& gap) {
 }
 
 void LinkAccounts::join(const LinkJoin& next) {
-    if (joins_.size() < joins_kept) {
-        joins_.push_back(next);
-    } else {
+    std::vector<LinkJoin>& list = next.cause == DropoutCause::stopped ? restarts_ : joins_;
+    if (list.size() < joins_kept) {
+        list.push_back(next);
+    } else if (next.cause != DropoutCause::stopped) {
         ++dropouts_unlisted_;
     }
 }
@@ -317,7 +330,7 @@ LinkCounts LinkAccounts::counts(const FrameDecoder& decoder) const {
 }
 
 LinkReport LinkAccounts::report(const FrameDecoder& decoder) const {
-    LinkReport report{counts(decoder), dropouts_, dropouts_unlisted_, joins_};
+    LinkReport report{counts(decoder), dropouts_, dropouts_unlisted_, joins_, restarts_, {}};
     for (const LinkDropout& part : tail_gap()) { report.dropouts.push_back(part); }
     return report;
 }

@@ -33,6 +33,7 @@ enum class DropoutCause : std::uint8_t {
     silent,                // no sample came, by the board's clock, and the board counted none as lost
     unplugged,             // the connection was lost, and the board has kept its memory
     reset,                 // the board began anew, with or without a lost connection
+    stopped,               // by whoever listened, who started the board again later: nothing is missing
 };
 
 std::string_view dropout_cause_name(DropoutCause cause);
@@ -45,8 +46,8 @@ struct LinkDropout {
     DropoutCause cause = DropoutCause::link;
 };
 
-// Where the board came back: nothing was sampled between instant end_index of one run, the first one that is
-// not accounted for there, and first_index of the next.
+// Where the board came back, or was stopped and started again: nothing was sampled between instant end_index
+// of one run, the first one that is not accounted for there, and first_index of the next.
 struct LinkJoin {
     std::uint32_t run_before = 0;
     std::uint64_t end_index = 0;
@@ -81,6 +82,7 @@ struct LinkCounts {
     SampleAccounts samples;
     std::uint64_t dropouts_counted = 0;     // listed or not, joins among them
     std::uint64_t samples_in_joins = 0;     // of the missing ones
+    std::uint64_t samples_in_stops = 0;     // neither good nor missing
     std::uint64_t frames_before_start = 0;  // intact, of a stream that ran before this host raised DTR
     // HELLO frames that say other than the one before them within one boot. They are counted as corrupted,
     // and used for nothing.
@@ -88,12 +90,19 @@ struct LinkCounts {
     std::uint64_t boots = 0;  // of the board, as far as the stream shows
     std::uint64_t runs = 0;
     std::uint64_t samples_frozen = 0;  // of the good ones: one reading again and again
+
+    // Sampling instants from the first one to the last.
+    std::uint64_t instants() const { return samples.good + samples.missing + samples_in_stops; }
 };
 
 struct LinkReport : LinkCounts {
     std::vector<LinkDropout> dropouts;  // in order of arrival
     std::uint64_t dropouts_unlisted = 0;
     std::vector<LinkJoin> joins;  // each is a dropout, too, as soon as the clocks say of how many samples
+    // Where the board was stopped and started again, over one connection: each is a stop as soon as the
+    // clocks say of how many instants.
+    std::vector<LinkJoin> restarts;
+    std::vector<LinkDropout> stops;
 
     bool complete() const {
         return frames.missing == 0 && samples.missing == 0 && joins.empty() && samples_frozen == 0;
@@ -129,6 +138,7 @@ public:
     LinkReport report(const FrameDecoder& decoder) const;
     LinkCounts counts(const FrameDecoder& decoder) const;
     const std::vector<LinkJoin>& joins() const { return joins_; }
+    const std::vector<LinkJoin>& restarts() const { return restarts_; }
 
 private:
     // The end of the run as the board last told it: `next_index` instants have passed, of which up to
@@ -150,6 +160,7 @@ private:
     std::vector<LinkDropout> tail_gap() const;
     void enter(const std::vector<LinkDropout>& gap);
     void join(const LinkJoin& next);
+    static bool is_restart(const glp_frame& frame, const glp_samples& samples, std::uint64_t next_index);
 
     FrameAccounts frames_;
     std::uint64_t intact_ = 0;
@@ -167,6 +178,7 @@ private:
     std::vector<LinkDropout> dropouts_;
     std::uint64_t dropouts_unlisted_ = 0;
     std::vector<LinkJoin> joins_;
+    std::vector<LinkJoin> restarts_;
     std::uint32_t run_ = 0;
     bool in_run_ = false;
     std::uint64_t grid_index_ = 0;  // the first of the present grid

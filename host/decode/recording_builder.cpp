@@ -258,22 +258,25 @@ std::int64_t RecordingBuilder::begin_behind(const LinkReport& link, const RunOri
 void RecordingBuilder::enter_dropouts(const LinkReport& link, const std::vector<RunOrigin>& origins,
                                       Recording& recording) {
     const std::int64_t last = recording.segments.back().first_index;
-    for (const LinkDropout& dropout : link.dropouts) {
+    const auto enter = [&](const LinkDropout& dropout) {
         const auto origin =
             std::lower_bound(origins.begin(), origins.end(), dropout.run,
                              [](const RunOrigin& o, std::uint32_t run) { return o.run < run; });
-        if (origin == origins.end() || origin->run != dropout.run) { continue; }
+        if (origin == origins.end() || origin->run != dropout.run) { return; }
         const std::int64_t at = origin->grid_index(dropout.first_index);
-        if (at <= 0 || at > last) { continue; }
+        if (at <= 0 || at > last) { return; }
         auto samples = static_cast<std::int64_t>(dropout.samples);
-        const bool join = dropout.cause == DropoutCause::unplugged || dropout.cause == DropoutCause::reset;
+        const bool join = dropout.cause == DropoutCause::unplugged || dropout.cause == DropoutCause::reset ||
+                          dropout.cause == DropoutCause::stopped;
         // The grid is laid with the rate of the whole recording, the account with that of the run before.
         if (join && std::next(origin) != origins.end()) {
             samples = std::max<std::int64_t>(begin_behind(link, *origin, *std::next(origin)) - at, 0);
         }
         recording.dropouts.push_back({static_cast<double>(at) / recording.rate_hz, samples,
                                       std::string(dropout_cause_name(dropout.cause))});
-    }
+    };
+    std::ranges::for_each(link.dropouts, enter);
+    std::ranges::for_each(link.stops, enter);
     std::ranges::stable_sort(recording.dropouts, {}, &Dropout::at_s);
     if (link.dropouts_unlisted > 0) {
         recording.warnings.push_back(std::to_string(link.dropouts_unlisted) +
@@ -335,8 +338,9 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
     }
     count_in_rows(recording);
     if (stretch.config->decimation > 1) {
-        recording.warnings.push_back("the board took every " + std::to_string(stretch.config->decimation) +
-                                     "th sample without a filter: faster noise is folded in");
+        recording.warnings.push_back("the board took one sample of " +
+                                     std::to_string(stretch.config->decimation) +
+                                     " without a filter: faster noise is folded in");
     }
     if (stretch.pieces.front().boot != stretch.pieces.back().boot) {
         recording.warnings.emplace_back("the board was reset: the pause is known by the host's clock only");

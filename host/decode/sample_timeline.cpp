@@ -311,12 +311,13 @@ bool SampleTimeline::settled(std::uint32_t run_number) const {
     return over && placed;
 }
 
-std::vector<Dropout> SampleTimeline::time_dropouts(const LinkReport& report, double nominal_rate_hz) const {
+std::vector<Dropout> SampleTimeline::time_dropouts(const std::vector<LinkDropout>& dropouts,
+                                                   double nominal_rate_hz) const {
     std::vector<Dropout> timed;
-    timed.reserve(report.dropouts.size());
+    timed.reserve(dropouts.size());
     std::optional<std::uint32_t> run;
     double rate_hz = nominal_rate_hz;
-    for (const LinkDropout& dropout : report.dropouts) {
+    for (const LinkDropout& dropout : dropouts) {
         if (run != dropout.run) {
             run = dropout.run;
             const auto estimate = rate(*run, *run);

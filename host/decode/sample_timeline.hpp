@@ -57,9 +57,10 @@ public:
     // Whether the first device time of a run is known for good, whatever comes.
     bool settled(std::uint32_t run) const;
 
-    // The report's dropouts with their device time. Where that is not known (no HELLO told the unit of the
-    // stamps), the time is 0. `nominal_rate_hz` serves runs too short for a rate of their own.
-    std::vector<Dropout> time_dropouts(const LinkReport& report, double nominal_rate_hz) const;
+    // Dropouts in order of arrival, with their device time. Where that is not known (no HELLO told the unit
+    // of the stamps), the time is 0. `nominal_rate_hz` serves runs too short for a rate of their own.
+    std::vector<Dropout> time_dropouts(const std::vector<LinkDropout>& dropouts,
+                                       double nominal_rate_hz) const;
 
 private:
     struct Stamp {

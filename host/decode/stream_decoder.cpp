@@ -38,9 +38,8 @@ bool StreamDecoder::take(const Transfer& transfer) {
     if (before_start_ || connections_ > 1) { return true; }
     before_start_ = counts();
     accounts_ = {};
-    join_nominal_hz_.clear();
-    settled_join_samples_.clear();
-    samples_in_settled_joins_ = 0;
+    joins_ = {};
+    restarts_ = {};
     timeline_ = {};
     liveness_ = SampleLiveness();
     builder_ = RecordingBuilder(options_.stream_bytes, options_.samples_per_row);
@@ -61,36 +60,43 @@ void StreamDecoder::begin_connection() {
 
 // Nothing numbers the instants between two runs; the grid on which a recording is laid has so many places
 // there.
-std::uint64_t StreamDecoder::samples_in(std::size_t join) const {
+std::uint64_t StreamDecoder::samples_in(const LinkJoin& join, double nominal_hz) const {
     constexpr double longest_s = 1e9;
     constexpr double most_instants = 1e14;  // the same at 100 kHz: a broken clock may give any rate
-    if (join < settled_join_samples_.size()) { return settled_join_samples_[join]; }
-    const LinkJoin& ends = accounts_.joins()[join];
-    const auto estimate = timeline_.rate(ends.run_before, ends.run_before);
-    const double rate_hz = estimate ? estimate->rate_hz : join_nominal_hz_[join];
-    const auto from_s = timeline_.device_time_s(ends.run_before, ends.end_index, rate_hz);
-    const auto to_s = timeline_.device_time_s(ends.run_after, ends.first_index, rate_hz);
+    const auto estimate = timeline_.rate(join.run_before, join.run_before);
+    const double rate_hz = estimate ? estimate->rate_hz : nominal_hz;
+    const auto from_s = timeline_.device_time_s(join.run_before, join.end_index, rate_hz);
+    const auto to_s = timeline_.device_time_s(join.run_after, join.first_index, rate_hz);
     if (!from_s || !to_s) { return 0; }
     const double pause_s = std::clamp(*to_s - *from_s, 0.0, longest_s);
     return static_cast<std::uint64_t>(std::llround(std::min(pause_s * rate_hz, most_instants)));
 }
 
-// A join is worked out once: a board may be reset, or pretend to be, any number of times.
-void StreamDecoder::settle_joins() {
-    const std::vector<LinkJoin>& joins = accounts_.joins();
-    join_nominal_hz_.resize(joins.size(), config_ ? config_->rate_mHz * 1e-3 : 0.0);
-    while (settled_join_samples_.size() < joins.size() &&
-           timeline_.settled(joins[settled_join_samples_.size()].run_after)) {
-        settled_join_samples_.push_back(samples_in(settled_join_samples_.size()));
-        samples_in_settled_joins_ += settled_join_samples_.back();
+std::uint64_t StreamDecoder::samples_in(const std::vector<LinkJoin>& joins, const Pauses& pauses,
+                                        std::size_t at) const {
+    return at < pauses.settled.size() ? pauses.settled[at] : samples_in(joins[at], pauses.nominal_hz[at]);
+}
+
+std::uint64_t StreamDecoder::samples_in_all(const std::vector<LinkJoin>& joins, const Pauses& pauses) const {
+    std::uint64_t sum = pauses.settled_sum;
+    for (std::size_t at = pauses.settled.size(); at < joins.size(); ++at) {
+        sum += samples_in(joins, pauses, at);
+    }
+    return sum;
+}
+
+void StreamDecoder::settle(const std::vector<LinkJoin>& joins, Pauses& pauses) const {
+    pauses.nominal_hz.resize(joins.size(), config_ ? config_->rate_mHz * 1e-3 : 0.0);
+    for (std::size_t at = pauses.settled.size(); at < joins.size() && timeline_.settled(joins[at].run_after);
+         ++at) {
+        pauses.settled.push_back(samples_in(joins, pauses, at));
+        pauses.settled_sum += pauses.settled.back();
     }
 }
 
 void StreamDecoder::complete(LinkCounts& counts) const {
-    counts.samples_in_joins = samples_in_settled_joins_;
-    for (std::size_t join = settled_join_samples_.size(); join < accounts_.joins().size(); ++join) {
-        counts.samples_in_joins += samples_in(join);
-    }
+    counts.samples_in_joins = samples_in_all(accounts_.joins(), joins_);
+    counts.samples_in_stops = samples_in_all(accounts_.restarts(), restarts_);
     counts.samples.missing += counts.samples_in_joins;
     counts.samples_frozen = liveness_.frozen_samples();
     counts.hellos_contradicting = hellos_contradicting_;
@@ -124,10 +130,16 @@ LinkReport StreamDecoder::report() const {
         while (dropout != report.dropouts.end() && dropout->run <= join.run_before) {
             merged.push_back(*dropout++);
         }
-        merged.push_back({join.run_before, join.end_index, samples_in(i), join.cause});
+        merged.push_back(
+            {join.run_before, join.end_index, samples_in(report.joins, joins_, i), join.cause});
     }
     merged.insert(merged.end(), dropout, report.dropouts.end());
     report.dropouts = std::move(merged);
+    for (std::size_t i = 0; i < report.restarts.size(); ++i) {
+        const LinkJoin& stop = report.restarts[i];
+        report.stops.push_back(
+            {stop.run_before, stop.end_index, samples_in(report.restarts, restarts_, i), stop.cause});
+    }
     return report;
 }
 
@@ -156,7 +168,8 @@ void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& sa
     if (!place) { return; }
     run_ = place->run;
     timeline_.take_samples(*place, samples, frame.arrival);
-    settle_joins();
+    settle(accounts_.joins(), joins_);
+    settle(accounts_.restarts(), restarts_);
     liveness_.take_samples(samples, config_ ? config_->rate_mHz * 1e-3 : 0.0);
     if (options_.keep_samples) { builder_.take_samples(*place, samples); }
     if (options_.observer != nullptr) { options_.observer->on_samples(frame, samples); }
@@ -202,8 +215,8 @@ std::optional<double> StreamDecoder::rate_hz() const {
     return std::nullopt;
 }
 
-std::vector<Dropout> StreamDecoder::timed_dropouts(const LinkReport& report) const {
-    return timeline_.time_dropouts(report, config_ ? config_->rate_mHz * 1e-3 : 0.0);
+std::vector<Dropout> StreamDecoder::timed(const std::vector<LinkDropout>& dropouts) const {
+    return timeline_.time_dropouts(dropouts, config_ ? config_->rate_mHz * 1e-3 : 0.0);
 }
 
 }  // namespace gyrolog

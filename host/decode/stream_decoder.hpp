@@ -48,7 +48,10 @@ public:
     // The report's numbers, at a cost that does not grow with the stream.
     LinkCounts counts() const;
     // Joins that counts() works out anew: a few, however many there were.
-    std::size_t open_joins() const { return accounts_.joins().size() - settled_join_samples_.size(); }
+    std::size_t open_joins() const {
+        return accounts_.joins().size() - joins_.settled.size() + accounts_.restarts().size() -
+               restarts_.settled.size();
+    }
     const SampleTimeline& timeline() const { return timeline_; }
     // As last told by the board, over whatever connection.
     const std::optional<glp_hello>& hello() const { return hello_; }
@@ -62,8 +65,8 @@ public:
     std::optional<double> rate_hz() const;
     // With its uncertainty; no value before there are enough stamps.
     std::optional<RateEstimate> rate_estimate() const { return timeline_.rate(run_, run_); }
-    // The report's dropouts with their time from the first sample.
-    std::vector<Dropout> timed_dropouts(const LinkReport& report) const;
+    // The report's dropouts, or its stops, with their time from the first sample.
+    std::vector<Dropout> timed(const std::vector<LinkDropout>& dropouts) const;
 
     std::size_t kept_samples() const { return builder_.samples(); }
     // Only with keep_samples. Empties the store of samples.
@@ -74,6 +77,14 @@ public:
     std::optional<double> recording_host_start_s() const { return builder_.host_start_s(); }
 
 private:
+    // How many instants passed in each of a list of joins. Each is worked out once: a board may be reset, or
+    // pretend to be, any number of times.
+    struct Pauses {
+        std::vector<double> nominal_hz;      // as configured when the join was found
+        std::vector<std::uint64_t> settled;  // of the first joins, of which no more is learned
+        std::uint64_t settled_sum = 0;
+    };
+
     void on_hello(const ReceivedFrame& frame, const glp_hello& hello) override;
     void on_config(const ReceivedFrame& frame, const glp_config& config) override;
     void on_samples(const ReceivedFrame& frame, const glp_samples& samples) override;
@@ -82,8 +93,10 @@ private:
     void on_reply(const ReceivedFrame& frame, const glp_reply& reply) override;
     void on_unknown(const ReceivedFrame& frame) override;
     void on_malformed(const ReceivedFrame& frame, glp_status reason) override;
-    std::uint64_t samples_in(std::size_t join) const;
-    void settle_joins();
+    std::uint64_t samples_in(const LinkJoin& join, double nominal_hz) const;
+    std::uint64_t samples_in(const std::vector<LinkJoin>& joins, const Pauses& pauses, std::size_t at) const;
+    std::uint64_t samples_in_all(const std::vector<LinkJoin>& joins, const Pauses& pauses) const;
+    void settle(const std::vector<LinkJoin>& joins, Pauses& pauses) const;
     void complete(LinkCounts& counts) const;
     void note_silence();
 
@@ -99,9 +112,8 @@ private:
     std::uint32_t run_ = 0;
     std::uint64_t hellos_contradicting_ = 0;
     std::optional<LinkCounts> before_start_;
-    std::vector<double> join_nominal_hz_;              // of each join: as configured when it was found
-    std::vector<std::uint64_t> settled_join_samples_;  // of the first joins, of which no more is learned
-    std::uint64_t samples_in_settled_joins_ = 0;
+    Pauses joins_;
+    Pauses restarts_;
     unsigned connections_ = 1;
     bool line_raised_ = false;  // in the present connection
 };

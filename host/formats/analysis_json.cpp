@@ -15,6 +15,7 @@ Json recording_json(const AnalysisReport& report) {
     json["duration_s"] = report.duration_s;
     json["samples"] = report.samples;
     json["dropouts"] = {{"events", report.dropouts}, {"samples", report.samples_missing}};
+    if (report.stops > 0) { json["stops"] = {{"events", report.stops}, {"s", report.stopped_s}}; }
     json["segments"] = report.segments;
     return json;
 }

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "host/base/counted.hpp"
 #include "host/formats/noise_text.hpp"
+#include "host/formats/stops_text.hpp"
 #include "host/formats/uncertain_number.hpp"
 
 namespace gyrolog {
@@ -67,11 +69,13 @@ std::string head_of(const AnalysisReport& report) {
     if (report.stamps == StampKind::none) { text += " as given"; }
     text += "\n";
     if (report.dropouts > 0) {
-        text += fmt::format("{} dropout{}, {} samples missing; {} unbroken segments\n", report.dropouts,
-                            report.dropouts == 1 ? "" : "s", report.samples_missing, report.segments);
+        text += fmt::format("{}, {} missing; {}\n", counted(report.dropouts, "dropout"),
+                            counted(static_cast<std::uint64_t>(report.samples_missing), "sample"),
+                            counted(report.segments, "unbroken segment"));
     } else if (report.stamps == StampKind::sampling) {
         text += "no dropouts\n";
     }
+    if (report.stops > 0) { text += stops_text(report.stops, report.stopped_s) + "\n"; }
     for (const std::string& warning : report.warnings) { text += fmt::format("warning: {}\n", warning); }
     return text;
 }

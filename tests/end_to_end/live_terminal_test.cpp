@@ -61,6 +61,43 @@ TEST_F(LiveTerminal, MarksStopsStartsAndEndsByKeys) {
     EXPECT_NE(info.find(" s  lamp on\n"), std::string::npos) << info;
 }
 
+// The seconds behind "stopped by the user for"; 0 where that is not said.
+double stopped_s(const std::string& text) {
+    const std::string words = "stopped by the user for ";
+    const std::size_t at = text.find(words);
+    if (at == std::string::npos) { return 0.0; }
+    char* unit = nullptr;
+    const double number = std::strtod(text.c_str() + at + words.size(), &unit);
+    return std::string(unit, 3) == " ms" ? number * 1e-3 : number;
+}
+
+TEST_F(LiveTerminal, AStopIsToldAlikeWhereverTheCaptureIsToldOf) {
+    Terminal terminal(command());
+    ASSERT_TRUE(terminal.shows("s stop the board")) << terminal.screen();
+    terminal.type("s");
+    ASSERT_TRUE(terminal.shows("s start the board")) << terminal.screen();
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    terminal.type("s");
+    ASSERT_TRUE(terminal.shows("s stop the board")) << terminal.screen();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    terminal.type("q");
+    ASSERT_EQ(terminal.wait(), 0) << terminal.screen();
+    const double told_s = stopped_s(terminal.screen());
+    EXPECT_GE(told_s, 0.5) << terminal.screen();
+    const std::string csv = folder.path("live.csv");
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"info", path}, {"check", path}, {"analyze", path}, {"export", path, "-o", csv}}) {
+        const ProgramResult result = run_gyrolog(arguments);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        const std::string text = result.out + result.err;
+        EXPECT_NEAR(stopped_s(text), told_s, 0.01 * told_s) << text;
+        EXPECT_EQ(text.find(" missing in "), std::string::npos) << text;
+    }
+    EXPECT_NE(run_gyrolog({"check", path}).out.find("nothing is missing"), std::string::npos);
+    EXPECT_NE(run_gyrolog({"info", path}).out.find("missing    no sample"), std::string::npos);
+    EXPECT_NE(run_gyrolog({"analyze", path}).out.find("no dropouts"), std::string::npos);
+}
+
 TEST_F(LiveTerminal, EndsByItsKeyAndLeavesTheTerminalAsItWas) {
     Terminal terminal(command());
     ASSERT_TRUE(terminal.shows("keys:")) << terminal.screen();
@@ -103,6 +140,20 @@ TEST_F(LiveTerminal, QuitAndAbortGiveTheTerminalBack) {
         EXPECT_TRUE(terminal.echoes()) << number;
         std::filesystem::remove(path);
     }
+}
+
+// A job of a shell, behind whose back the user types for others.
+TEST_F(LiveTerminal, InTheBackgroundItDrawsNothingAndTakesNoKey) {
+    std::vector<std::string> arguments = command();
+    arguments.insert(arguments.end(), {"--duration", "1.5s"});
+    Terminal terminal(arguments, Terminal::Place::background);
+    ASSERT_TRUE(terminal.shows("capturing from")) << terminal.screen();
+    terminal.type("q");
+    EXPECT_TRUE(terminal.echoes());
+    EXPECT_EQ(terminal.wait(), 0) << terminal.screen();
+    EXPECT_NE(terminal.screen().find("1,500 samples in"), std::string::npos) << terminal.screen();
+    EXPECT_EQ(terminal.screen().find("keys:"), std::string::npos) << terminal.screen();
+    EXPECT_EQ(terminal.screen().find('\x1b'), std::string::npos) << terminal.screen();
 }
 
 TEST_F(LiveTerminal, NothingOfItIsDrawnOffATerminal) {

@@ -125,7 +125,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const std::uint64_t count : report.frames.corrupted_by_reason) { corrupted += count; }
     GYROLOG_REQUIRE(report.frames.corrupted == corrupted);
     GYROLOG_REQUIRE(corrupted <= fed);
-    for (const Dropout& dropout : decoder.timed_dropouts(report)) {
+    for (const Dropout& dropout : decoder.timed(report.dropouts)) {
         GYROLOG_REQUIRE(std::isfinite(dropout.at_s));
         // A board that was reset may be back before the next sample was due.
         GYROLOG_REQUIRE(dropout.samples > 0 || dropout.cause == "reset");

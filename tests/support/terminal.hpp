@@ -22,9 +22,14 @@ namespace gyrolog {
 
 class Terminal {
 public:
-    explicit Terminal(std::vector<std::string> arguments) {
+    enum class Place { foreground, background };
+
+    explicit Terminal(std::vector<std::string> arguments, Place place = Place::foreground) {
         const winsize size{30, 100, 0, 0};
         arguments.insert(arguments.begin(), gyrolog_path());
+        if (place == Place::background) {
+            arguments.insert(arguments.begin(), {"/bin/sh", "-c", "set -m; \"$@\" & wait $!", "sh"});
+        }
         std::vector<char*> argv;
         argv.reserve(arguments.size() + 1);
         for (std::string& argument : arguments) { argv.push_back(argument.data()); }

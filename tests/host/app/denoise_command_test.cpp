@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -242,6 +243,30 @@ TEST_F(LiveDenoising, OneGyroIsWhatItWasByKalmanAndQuieterByJoint) {
         return sum;
     };
     EXPECT_LT(change(read(fused)), 0.2 * change(raw));
+}
+
+TEST_F(LiveDenoising, GoesOnOverAPauseOfTheBoard) {
+    for (const char* how : {"", ",reset=15"}) {
+        const std::string device = *how == '\0' ? "sim:rate=200,seed=7,unplug=15,replug=17"
+                                                : std::string("sim:rate=200,seed=7") + how;
+        ASSERT_EQ(capture(device, {"--duration", "25s", "--denoise", "joint"}), ExitCode::data_lost)
+            << err.str();
+        std::vector<std::string> again = said_arguments();
+        again.insert(again.end(), {"-o", fused});
+        ASSERT_EQ(denoise(again), ExitCode::ok) << err.str();
+        const Recording as_it_came = read(live);
+        const Recording afterwards = read(fused);
+        ASSERT_EQ(as_it_came.rows(), afterwards.rows()) << device;
+        EXPECT_GT(afterwards.rows(), 4000U) << device;
+        for (std::size_t i = 0; i < afterwards.rows(); ++i) {
+            ASSERT_NEAR(as_it_came.find("gz")->value(i), afterwards.find("gz")->value(i), 1e-6)
+                << device << i;
+        }
+        // A virtual board that does not wait for the clock leaves the host's little to say of the pause.
+        constexpr double pause_s = 2.0;
+        EXPECT_NEAR(as_it_came.t_s.back(), afterwards.t_s.back(), pause_s) << device;
+        EXPECT_TRUE(std::ranges::is_sorted(as_it_came.t_s)) << device;
+    }
 }
 
 TEST_F(LiveDenoising, TakesAModelWhereNothingRests) {

@@ -47,7 +47,7 @@ TEST(LiveView, SensorIsDescribedByWhatTheBoardSaidOfItself) {
 
 TEST(LiveView, LineTellsLengthRateLossesTemperatureAndSize) {
     EXPECT_EQ(live_line(some_progress()),
-              "1:02:03  372,390 samples  100.46 Hz  2 dropouts  1 CRC errors  31.2 °C  9.87 MB");
+              "1:02:03  372,390 samples  100.46 Hz  2 dropouts  1 CRC error  31.2 °C  9.87 MB");
 }
 
 TEST(LiveView, LineLeavesOutWhatIsNotKnownYet) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "host/base/counted.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -36,6 +38,9 @@ TEST(Quantity, SpeaksInRoundedUnits) {
     EXPECT_EQ(format_duration(655.1), "10.9 min");
     EXPECT_EQ(format_count(4'320'000), "4,320,000");
     EXPECT_EQ(format_count(999), "999");
+    EXPECT_EQ(counted(0, "sample"), "0 samples");
+    EXPECT_EQ(counted(1, "sample"), "1 sample");
+    EXPECT_EQ(counted(4'320'000, "sample"), "4,320,000 samples");
 }
 
 }  // namespace

@@ -258,6 +258,27 @@ TEST(LinkAccounts, AStartWhoseFirstFramesWereLostMissesExactlyThose) {
     EXPECT_EQ(report.runs, 2U);
 }
 
+TEST(LinkAccounts, AStopMissesNothingAndItsLengthIsKnown) {
+    Listening link;
+    link.begin();
+    link.hear_samples(5);
+    link.hear(link.board.event_frame(glp_event_stopped));
+    link.board.restart(3.0);
+    link.hear(link.board.samples_frame(glp_flag_first_after_start));
+    link.hear_samples(5);
+    const LinkReport report = link.decoder.report();
+    EXPECT_TRUE(report.complete());
+    EXPECT_EQ(report.samples.missing, 0U);
+    EXPECT_TRUE(report.dropouts.empty());
+    ASSERT_EQ(report.stops.size(), 1U);
+    EXPECT_EQ(report.stops[0].cause, DropoutCause::stopped);
+    EXPECT_NEAR(static_cast<double>(report.samples_in_stops), 3.0 * 1003.0 - 6 * 16, 1.0);
+    EXPECT_EQ(report.instants(), report.samples.good + report.samples_in_stops);
+    const std::vector<Dropout> timed = link.decoder.timed(report.stops);
+    ASSERT_EQ(timed.size(), 1U);
+    EXPECT_NEAR(timed[0].at_s, 6 * 16 / 1003.0, 1e-3);
+}
+
 TEST(LinkAccounts, JoiningARunningStreamMissesNothing) {
     Listening link;
     static_cast<void>(link.board.hello_frame());

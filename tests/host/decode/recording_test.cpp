@@ -102,7 +102,11 @@ TEST(DecodedRecording, SetsARestartApartByTheBoardsTicks) {
     ASSERT_TRUE(recording.ok());
     ASSERT_EQ(recording->segments.size(), 2U);
     EXPECT_EQ(recording->segments[1].first_index, std::llround(restarted_at));
-    EXPECT_TRUE(recording->dropouts.empty());
+    ASSERT_EQ(recording->dropouts.size(), 1U);
+    EXPECT_EQ(recording->dropouts[0].cause, stopped_cause);
+    EXPECT_EQ(recording->dropouts[0].samples, recording->missing_samples());
+    EXPECT_EQ(recording->stops().events, 1U);
+    EXPECT_NEAR(recording->stops().s, 7.25, 1e-3);
 }
 
 // Rows of means are on one grid, too: the later run's begin at the nearest of its places.
