@@ -52,6 +52,7 @@ public:
         const std::lock_guard lock(mutex_);
         return error_;
     }
+    bool source_waits() const { return source_waits_; }
     std::uint64_t data_transfers() const { return data_transfers_.load(std::memory_order_relaxed); }
     std::uint64_t transfers_dropped() const { return transfers_dropped_; }
     std::uint64_t bytes_dropped() const { return bytes_dropped_; }

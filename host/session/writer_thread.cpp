@@ -101,7 +101,17 @@ void WriterThread::write_last() {
     if (Status written = writer_.sync(); !written.ok()) { fail(std::move(written).error()); }
 }
 
+// A live board's last frames tell how its stream ended; a file that is played has all the rest ready. To the
+// transfer, so the rate is the one of the last publication, or nominal.
+bool WriterThread::enough_of_what_waits() const {
+    if (!sink_.source_waits()) { return false; }
+    std::optional<double> rate_hz = rate_hz_;
+    if (!rate_hz && decoder_.config()) { rate_hz = decoder_.config()->rate_mHz * 1e-3; }
+    return enough(instants_ + instants_in_joins_, rate_hz);
+}
+
 void WriterThread::take(const Transfer& transfer) {
+    if (enough_of_what_waits()) { return; }
     if (!state_.storage_error) {
         if (Status appended = writer_.append(transfer); !appended.ok()) { fail(std::move(appended).error()); }
     }
@@ -166,7 +176,9 @@ void WriterThread::publish() {
     progress_.file_bytes = writer_.bytes_written();
     progress_.path = writer_.paths().back();
     progress_.marks = marks_;
-    progress_.rate_hz = plausible_rate_hz();
+    rate_hz_ = plausible_rate_hz();
+    instants_in_joins_ = link.samples_in_joins;
+    progress_.rate_hz = rate_hz_;
     progress_.silent_s = silent_s();
     progress_.frozen_s = decoder_.liveness().frozen_now_s();
     progress_.hello = decoder_.hello();
@@ -175,7 +187,7 @@ void WriterThread::publish() {
         progress_.temperature_C = progress_.config->temp_offset_mC * 1e-3 +
                                   latest_->temperature * 1e-9 * progress_.config->temp_nC_per_lsb;
     }
-    const std::uint64_t instants = instants_ + link.samples_in_joins;
+    const std::uint64_t instants = instants_ + instants_in_joins_;
     if (progress_.rate_hz) { progress_.device_s = static_cast<double>(instants) / *progress_.rate_hz; }
     state_.line_was_raised = started_;
     state_.has_hello = hello_came_;

@@ -116,6 +116,7 @@ private:
     // By the times of arrival.
     double silent_s() const;
     bool enough(std::uint64_t instants, const std::optional<double>& rate_hz) const;
+    bool enough_of_what_waits() const;
     void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override;
 
     TransferQueue& queue_;
@@ -139,6 +140,8 @@ private:
     // not do: it counts from the board's start, and a board may have been streaming for hours before the
     // capture.
     std::uint64_t instants_ = 0;
+    std::uint64_t instants_in_joins_ = 0;  // as published
+    std::optional<double> rate_hz_;        // as published
     std::optional<std::uint64_t> next_index_;
     std::int64_t last_samples_ns_ = 0;
     std::optional<std::int64_t> last_frame_ns_;

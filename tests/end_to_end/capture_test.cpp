@@ -231,6 +231,20 @@ TEST_F(Capture, AReplayGivesTheSameStream) {
     EXPECT_EQ(first["samples"], second["samples"]);
 }
 
+// A file gives all of it at once, and no clock ends that.
+TEST_F(Capture, AReplayEndsWhereItIsTold) {
+    ASSERT_EQ(capture("sim:rate=1000,seed=9", "a.pcapng", {"--duration", "1m"}).exit_code, 0);
+    const std::string device = "replay:" + folder.path("a.pcapng");
+    ASSERT_EQ(capture(device, "second.pcapng", {"--duration", "1s"}).exit_code, 0);
+    ASSERT_EQ(capture(device, "few.pcapng", {"--samples", "700"}).exit_code, 0);
+    constexpr int transfer_samples = 500;  // of a virtual board that does not wait for the clock
+    for (const auto& [file, wanted] : {std::pair{"second.pcapng", 1000}, std::pair{"few.pcapng", 700}}) {
+        const int samples = check(file)["samples"]["good"];
+        EXPECT_NEAR(samples, wanted, 0.01 * wanted + transfer_samples) << file;
+        EXPECT_GE(samples, 0.99 * wanted) << file;
+    }
+}
+
 TEST_F(Capture, AFileCutAnywhereKeepsItsGoodPrefix) {
     ASSERT_EQ(capture("sim:", "whole.pcapng", {"--duration", "1m"}).exit_code, 0);
     const std::string whole = read_whole_file(folder.path("whole.pcapng"));
