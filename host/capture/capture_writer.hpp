@@ -62,6 +62,8 @@ public:
 
     // Length of the file once the buffer is in it.
     std::uint64_t bytes_written() const { return file_bytes_ + buffer_.size(); }
+    // Of them, those that the disk has not seen yet.
+    std::size_t bytes_buffered() const { return buffer_.size(); }
     std::uint64_t transfers() const { return transfers_; }
 
 private:

@@ -35,10 +35,14 @@ Result<SegmentWriter> SegmentWriter::create(SegmentPlan plan, const SourceIdenti
     return writer;
 }
 
-Status SegmentWriter::check_room() const {
+Status SegmentWriter::check_room() {
     if (plan_.min_free_bytes == 0) { return {}; }
     GYROLOG_TRY(const std::uint64_t free_bytes, disk_->free_bytes(plan_.path));
-    if (free_bytes > plan_.min_free_bytes) { return {}; }
+    const std::uint64_t spoken_for = plan_.min_free_bytes + (file_ ? file_->bytes_buffered() : 0);
+    if (free_bytes > spoken_for) {
+        room_until_bytes_ = bytes_written() + (free_bytes - spoken_for);
+        return {};
+    }
     constexpr std::uint64_t megabyte = 1'000'000;
     return Error{ErrorCode::disk_full,
                  "write '" + (paths_.empty() ? plan_.path : paths_.back()) + "': the disk has " +
@@ -97,8 +101,12 @@ Status SegmentWriter::append(const Transfer& transfer) {
         GYROLOG_CHECK(rotate());
         first_transfer_ns_ = transfer.time.monotonic_ns;
     }
-    return file_->append(transfer);
+    GYROLOG_CHECK(file_->append(transfer));
+    return keep_room();
 }
+
+// A source that does not wait for the clock fills a small disk between two checkpoints.
+Status SegmentWriter::keep_room() { return bytes_written() < room_until_bytes_ ? Status() : check_room(); }
 
 Status SegmentWriter::mark(CaptureMark mark) {
     if (!file_) { return Error{ErrorCode::storage_failed, "write '" + plan_.path + "': it is closed"}; }

@@ -29,6 +29,7 @@ public:
     // then no file is made.
     static Result<SegmentWriter> create(SegmentPlan plan, const SourceIdentity& identity, Disk& disk);
 
+    // Error disk_full as checkpoint() has it, before what is to be kept free is touched.
     Status append(const Transfer& transfer);
     // In the present file.
     Status mark(CaptureMark mark);
@@ -65,7 +66,8 @@ private:
 
     Status open_next();
     Result<std::unique_ptr<AppendFile>> create_file();
-    Status check_room() const;
+    Status check_room();
+    Status keep_room();
     bool is_due(const Transfer& transfer);
     Status rotate();
 
@@ -82,6 +84,7 @@ private:
     std::optional<std::int64_t> first_transfer_ns_;  // of the present file
     CaptureCounters counters_;                       // of the last checkpoint
     std::uint64_t closed_bytes_ = 0;
+    std::uint64_t room_until_bytes_ = 0;  // bytes_written() up to which the last look at the disk holds
     std::vector<std::string> paths_;
 };
 

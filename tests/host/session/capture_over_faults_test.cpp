@@ -57,7 +57,9 @@ public:
         if (--files_with_room == 0) { room_bytes = 50'000; }
         return std::unique_ptr<AppendFile>(new File(*this, std::move(file)));
     }
-    Result<std::uint64_t> free_bytes(const std::string& /*path*/) override { return told_free_bytes.load(); }
+    Result<std::uint64_t> free_bytes(const std::string& /*path*/) override {
+        return std::min(told_free_bytes.load(), room_bytes.load());
+    }
 
 private:
     class File final : public AppendFile {
@@ -385,6 +387,23 @@ TEST_F(CaptureOverFaults, RoomThatIsToStayFreeEndsTheCaptureWithAClosedFile) {
     ASSERT_FALSE(again.ok());
     EXPECT_EQ(again.error().code, ErrorCode::disk_full);
     EXPECT_FALSE(std::filesystem::exists(request_.path)) << "a full disk is not made fuller";
+}
+
+// Between two checkpoints a board that does not wait for the clock fills all of it.
+TEST_F(CaptureOverFaults, RoomThatIsToStayFreeIsKeptAtFullSpeed) {
+    const auto source = BoardSource::create({});
+    request_.duration_s = 600.0;
+    request_.min_free_bytes = 500'000;
+    disk_.room_bytes = 1'000'000;
+    const auto outcome = run_capture(*source, request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::storage_failed);
+    ASSERT_TRUE(outcome->error.has_value());
+    EXPECT_NE(outcome->error->message.find("--min-free"), std::string::npos) << outcome->error->message;
+    constexpr std::uint64_t last_checkpoint_bytes = 2'000;
+    EXPECT_GE(disk_.room_bytes, request_.min_free_bytes - last_checkpoint_bytes);
+    EXPECT_LE(disk_.room_bytes, request_.min_free_bytes + 50'000) << "what may be used is used";
+    EXPECT_EQ(loaded().file.blocks.end, FileEnd::clean);
 }
 
 TEST_F(CaptureOverFaults, DiskThatRefusesTheNextFileLeavesTheOnesBefore) {
