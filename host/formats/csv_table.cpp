@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/counted.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/input_limits.hpp"
 #include "host/formats/text_file.hpp"
@@ -22,6 +23,25 @@ std::string_view trimmed(std::string_view text) {
     while (!text.empty() && is_blank(text.front())) { text.remove_prefix(1); }
     while (!text.empty() && is_blank(text.back())) { text.remove_suffix(1); }
     return text;
+}
+
+// A byte that no text holds, as file(1) has it: control characters but for BEL to CR and ESC. 0 is judged
+// with the header.
+bool is_binary(char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return (byte > 0 && byte < 7) || (byte > 13 && byte < 32 && byte != 27) || byte == 127;
+}
+
+// What looks like another kind of file has no columns whose names would help anybody.
+Status check_kind(std::string_view header) {
+    const std::string_view begin = trimmed(header);
+    if (begin.starts_with('{') || begin.starts_with('[')) {
+        return malformed("this is JSON, a model or a report perhaps, and no table");
+    }
+    if (begin.find('\r') != std::string_view::npos) {
+        return malformed("line 1: the lines end in carriage returns alone: end them in line feeds");
+    }
+    return {};
 }
 
 // Files that are no comma-separated UTF-8 have names for their columns that would puzzle more than help.
@@ -47,6 +67,11 @@ Status check_encoding(std::string_view header) {
 }  // namespace
 
 Status CsvTable::feed(std::string_view piece) {
+    constexpr std::size_t looked_at_bytes = 4096;
+    const std::string_view beginning =
+        piece.substr(0, looked_at_bytes - std::min(looked_at_bytes, looked_at_));
+    looked_at_ += beginning.size();
+    if (std::ranges::any_of(beginning, is_binary)) { return malformed("this is no text, and no capture"); }
     while (!piece.empty()) {
         const std::size_t end = piece.find('\n');
         if (end == std::string_view::npos) {
@@ -153,6 +178,7 @@ Status CsvTable::field(CsvTableColumn& column, const char*& at, const char* end)
 Status CsvTable::header(std::string_view text) {
     GYROLOG_CHECK(check_encoding(text));
     if (text.starts_with("\xEF\xBB\xBF")) { text.remove_prefix(3); }
+    GYROLOG_CHECK(check_kind(text));
     std::set<std::string> names;
     while (true) {
         const std::size_t comma = text.find(',');
@@ -173,9 +199,12 @@ Status CsvTable::header(std::string_view text) {
 }
 
 Status CsvTable::wrong_count(std::string_view text) const {
-    const auto fields = std::count(text.begin(), text.end(), ',') + 1;
-    return malformed("line " + std::to_string(number_) + ": " + std::to_string(fields) +
-                     " fields where line 1 names " + std::to_string(columns_.size()));
+    const auto fields = static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) + 1;
+    const std::string place = fields < columns_.size()
+                                  ? "; the first without one is column " + in_quotes(columns_[fields].header)
+                                  : "; the last of them is column " + in_quotes(columns_.back().header);
+    return malformed("line " + std::to_string(number_) + ": " + counted(fields, "field") +
+                     " where line 1 names " + counted(columns_.size(), "column") + place);
 }
 
 std::string CsvTable::place(const CsvTableColumn& column) const {

@@ -56,7 +56,8 @@ private:
     std::size_t lines_of_row_ = 0;  // of the last row, while it is not whole: each has its values yet
     std::vector<CsvTableColumn> columns_;
     std::string rest_;
-    std::size_t number_ = 0;  // of the line
+    std::size_t number_ = 0;     // of the line
+    std::size_t looked_at_ = 0;  // bytes, for what no text holds
 };
 
 // The whole file, compressed or not; no further than it takes to have `lines_most`.

@@ -4,8 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
+#include "host/base/printable.hpp"
 #include "host/formats/input_limits.hpp"
 #include "host/formats/json.hpp"
 
@@ -43,6 +45,62 @@ private:
     std::size_t keys_ = 0;
     std::string refusal_;
 };
+
+// Reads without keeping anything, up to the first error.
+class ErrorFinder final : public nlohmann::json_sax<Json> {
+public:
+    bool null() override { return true; }
+    bool boolean(bool /*value*/) override { return true; }
+    bool number_integer(number_integer_t /*value*/) override { return true; }
+    bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
+    bool string(string_t& /*value*/) override { return true; }
+    bool binary(binary_t& /*value*/) override { return true; }
+    bool start_object(std::size_t /*elements*/) override { return true; }
+    bool key(string_t& /*value*/) override { return true; }
+    bool end_object() override { return true; }
+    bool start_array(std::size_t /*elements*/) override { return true; }
+    bool end_array() override { return true; }
+    bool parse_error(std::size_t position, const std::string& /*token*/,
+                     const Json::exception& error) override {
+        position_ = position;
+        what_ = error.what();
+        return false;
+    }
+
+    // "line 3, column 7: unexpected ','; expected string literal"; empty without an error.
+    std::string told(std::string_view text) const {
+        if (what_.empty()) { return {}; }
+        const std::string_view before = text.substr(0, std::min(position_, text.size()));
+        const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+        const std::size_t line_end = before.rfind('\n');
+        const std::size_t column = before.size() - (line_end == std::string_view::npos ? 0 : line_end + 1);
+        return "line " + std::to_string(line) + ", column " +
+               std::to_string(std::max<std::size_t>(column, 1)) + ": " + reason();
+    }
+
+private:
+    // Of the library's own sentence, what is behind the last dash, and no more than fits a line.
+    std::string reason() const {
+        constexpr std::size_t shown_bytes_most = 120;
+        const std::size_t dash = what_.rfind(" - ");
+        const std::string reason = dash == std::string::npos ? what_ : what_.substr(dash + 3);
+        return printable(reason.substr(0, shown_bytes_most));
+    }
+
+    std::size_t position_ = 0;
+    std::string what_;
+};
+
+std::string syntax_error_in(const std::string& text) {
+    if (text.empty()) { return "the file is empty"; }
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+        return "the text is UTF-16: save it as UTF-8";
+    }
+    ErrorFinder finder;
+    static_cast<void>(Json::sax_parse(text, &finder));
+    return finder.told(text);
+}
 
 // JSON has no NaN, no infinity and no 1e999, but programs write them. Put in quotes they parse, and the error
 // can name the key that holds one.
@@ -89,9 +147,14 @@ Result<JsonDocument> parse_json_document(std::string_view text, const std::strin
     LimitedParse limited;
     std::optional<Json> document = limited.parse(text);
     const bool plain = document.has_value();
-    if (!plain && limited.refusal().empty()) { document = limited.parse(quote_non_finite(text)); }
+    std::string quoted;
+    if (!plain && limited.refusal().empty()) {
+        quoted = quote_non_finite(text);
+        document = limited.parse(quoted);
+    }
     if (!limited.refusal().empty()) { return malformed(limited.refusal()); }
-    if (!document || !document->is_object()) { return malformed("not a JSON object"); }
+    if (!document) { return malformed("no JSON: " + syntax_error_in(quoted)); }
+    if (!document->is_object()) { return malformed("not a JSON object"); }
     const auto schema = document->find("schema");
     if (schema == document->end()) { return malformed("schema is missing"); }
     if (!schema->is_string()) { return malformed("schema is not text"); }

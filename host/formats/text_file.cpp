@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::size_t piece_bytes = std::size_t{1} << 18;
 
+// What libarchive says of compressed bytes, beside EILSEQ: ARCHIVE_ERRNO_MISC of a header that is not
+// installed.
+constexpr int not_of_the_system = -1;
+
 archive* handle(void* pointer) { return static_cast<archive*>(pointer); }
 
 Error error_of(archive* file) {
@@ -25,8 +29,15 @@ Error error_of(archive* file) {
             return {ErrorCode::permission_denied, "permission denied"};
         case ENOSPC:
             return {ErrorCode::disk_full, "disk full"};
+        case EISDIR:
+            return {ErrorCode::failed, "it is a directory"};
         case EIO:
             return {ErrorCode::storage_failed, std::move(message)};
+        case not_of_the_system:
+        case EILSEQ:
+            // "No progress is possible" tells nobody that the file is short.
+            return malformed("its compressed text is damaged or cut off (" + message +
+                             "): fetch or write the file again");
         default:
             return {ErrorCode::failed, std::move(message)};
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -151,9 +152,16 @@ TEST(ModelJson, ANumberThatIsNotFiniteIsNamedHoweverItIsWritten) {
 }
 
 TEST(ModelJson, WhatIsNoModelIsRefused) {
-    EXPECT_EQ(refusal_of(""), "model 'm.json': not a JSON object");
+    EXPECT_EQ(refusal_of(""), "model 'm.json': no JSON: the file is empty");
     EXPECT_EQ(refusal_of("[1, 2]"), "model 'm.json': not a JSON object");
-    EXPECT_EQ(refusal_of(std::string(full_example, 200)), "model 'm.json': not a JSON object");
+    EXPECT_EQ(refusal_of("{\n  \"schema\": \"gyrolog-model/1\",\n  // the rate\n}"),
+              "model 'm.json': no JSON: line 3, column 3: invalid literal; last read: "
+              "'\"gyrolog-model/1\",<U+000A> "
+              " /'; expected string literal");
+    EXPECT_THAT(refusal_of(std::string(full_example, 200)),
+                testing::HasSubstr("line 5, column 63: invalid string: missing closing quote"));
+    EXPECT_EQ(refusal_of("\xFF\xFE{"), "model 'm.json': no JSON: the text is UTF-16: save it as UTF-8");
+    EXPECT_LT(refusal_of("{\"" + std::string(1'000'000, 'a') + "\"; 1}").size(), 300U);
     EXPECT_EQ(refusal_of(std::string(100'000, '[')), "model 'm.json': nested more than 32 deep");
     Json json = example();
     json["schema"] = "gyrolog-model/2";

@@ -197,7 +197,9 @@ TEST(RecordingCsv, AMalformedLineIsNamedWithItsColumn) {
                 HasSubstr("line 3, column 'gx_dps': 'abc' is no number"));
     EXPECT_THAT(refusal("t_s,gx_dps\n0,1\n1,2x\n"), HasSubstr("line 3, column 'gx_dps'"));
     EXPECT_THAT(refusal("t_s,gx_dps\n0,inf\n"), HasSubstr("line 2, column 'gx_dps'"));
-    EXPECT_THAT(refusal("t_s,gx_dps\n0,1\n1\n"), HasSubstr("line 3: 1 fields where line 1 names 2"));
+    EXPECT_THAT(
+        refusal("t_s,gx_dps\n0,1\n1\n"),
+        HasSubstr("line 3: 1 field where line 1 names 2 columns; the first without one is column 'gx_dps'"));
     EXPECT_THAT(refusal("t_s,gx_dps\n0,1,\n"), HasSubstr("line 2: 3 fields where line 1 names 2"));
     EXPECT_THAT(refusal("t_s,gx_dps\n0,1\n,1\n"), HasSubstr("line 3, column 't_s': no time stamp"));
 }
