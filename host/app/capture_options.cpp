@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -35,13 +36,16 @@ void CaptureOptions::declare(CLI::App& app) {
         ->expected(1)
         ->take_all()
         ->capture_default_str();
-    app.add_option("--duration", duration, "Stop after this time: 90s, 15m, 6h, 1d")->type_name("T");
+    app.add_option("--duration", duration, "Stop after this time: 90s, 15m, 6h, 1d")
+        ->type_name("T")
+        ->check(gyrolog::duration());
     app.add_option("--samples", samples, "Stop after this many samples")
         ->type_name("N")
-        ->check(positive_number());
+        ->check(whole_number(1));
     app.add_option("--rate", rate_hz, "Output rate of the sensor")->type_name("HZ")->check(positive_number());
     app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")
-        ->type_name("DPS");
+        ->type_name("DPS")
+        ->check(whole_number(1, std::numeric_limits<std::uint16_t>::max()));
     app.add_option("--dlpf", dlpf, "The sensor's low-pass filter: bandwidth, or off")->type_name("HZ|off");
     app.add_option("--on-unplug", on_unplug,
                    "When the board is lost: wait for it and go on in FILE.2, or exit")
@@ -49,11 +53,14 @@ void CaptureOptions::declare(CLI::App& app) {
         ->check(CLI::IsMember({"wait", "exit"}))
         ->capture_default_str();
     app.add_option("--rotate-size", rotate_size, "Go on in the next file after so many bytes: 500M, 2G")
-        ->type_name("SIZE");
+        ->type_name("SIZE")
+        ->check(size());
     app.add_option("--rotate-every", rotate_every, "Go on in the next file after this time: 15m, 6h")
-        ->type_name("T");
+        ->type_name("T")
+        ->check(gyrolog::duration());
     app.add_option("--min-free", min_free, "End before the disk has less room than this; 0 fills it")
         ->type_name("SIZE")
+        ->check(size_or_none())
         ->capture_default_str();
     app.add_flag("--force", force, "Replace a file that exists");
 }

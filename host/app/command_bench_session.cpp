@@ -57,6 +57,9 @@ ExitCode bench_session(Console& console, BenchSessionOptions options) {
     if (const Status fine = check_output_paths(read, written); !fine.ok()) {
         return report_error(console, "", fine.error());
     }
+    if (const Status fine = check_ending(written[0], "a capture", capture_endings); !fine.ok()) {
+        return report_error(console, "", fine.error());
+    }
     const CaptureResult captured = capture_to_file(console, "", options.capture, options.path, true);
     if (!captured.file_written) {
         if (captured.code == ExitCode::no_device) {

@@ -20,7 +20,8 @@ struct CaptureCommandOptions {
 };
 
 // Nothing that the board is made of or that denoising knows is written over.
-Status check_paths(const CaptureCommandOptions& options, const std::vector<std::string>& devices) {
+Status check_paths(const CaptureCommandOptions& options) {
+    const std::vector<std::string>& devices = options.capture.devices;
     std::vector<std::string> files;
     files.reserve(devices.size());
     for (const std::string& uri : devices) { files.push_back(file_of_device(uri)); }
@@ -31,7 +32,8 @@ Status check_paths(const CaptureCommandOptions& options, const std::vector<std::
         options.capture.denoise.wanted() ? options.capture.denoise.output_of(options.path) : "";
     const NamedPath written[] = {
         {"--output", options.path}, {"--denoise-out", denoised}, {"--json", options.json}};
-    return check_output_paths(read, written);
+    GYROLOG_CHECK(check_output_paths(read, written));
+    return check_ending(written[0], "a capture", capture_endings);
 }
 
 Status check_denoise(const CaptureCommandOptions& options, std::size_t boards) {
@@ -47,13 +49,13 @@ Status check_denoise(const CaptureCommandOptions& options, std::size_t boards) {
 }
 
 ExitCode capture(Console& console, const CaptureCommandOptions& options) {
+    if (const Status fine = check_paths(options); !fine.ok()) {
+        return report_error(console, "capture", fine.error());
+    }
     const auto devices = choose_devices(options.capture.devices);
     if (!devices.ok()) {
         report_error(console, "capture", devices.error());
         return exit_code_of_opening(devices.error());
-    }
-    if (const Status fine = check_paths(options, *devices); !fine.ok()) {
-        return report_error(console, "capture", fine.error());
     }
     if (const Status fine = check_denoise(options, devices->size()); !fine.ok()) {
         return report_error(console, "capture", fine.error());

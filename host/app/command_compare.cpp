@@ -16,6 +16,7 @@
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
+#include "host/base/counted.hpp"
 #include "host/base/file_output.hpp"
 #include "host/formats/comparison_json.hpp"
 #include "host/formats/comparison_text.hpp"
@@ -60,7 +61,7 @@ Result<Recording> comparable_recording(const CompareRequest& request, const std:
         cut_to(recording, duration_s);
     }
     if (const auto refusal = comparison_refusal(recording)) {
-        return Error{ErrorCode::failed, "compare '" + path + "': " + *refusal};
+        return Error{ErrorCode::failed, "'" + path + "': " + *refusal};
     }
     return recording;
 }
@@ -76,7 +77,7 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
     }
     const SensorModel& model = file.model;
     if (const auto refusal = simulation_refusal(model)) {
-        return Error{ErrorCode::failed, "simulate '" + request.other_path + "': " + *refusal};
+        return Error{ErrorCode::failed, "model '" + request.other_path + "': " + *refusal};
     }
     GYROLOG_TRY(Recording recording, comparable_recording(request, request.recording_path));
     ModelComparisonOptions options = request.simulations;
@@ -106,10 +107,10 @@ Result<Comparison> with_recording(const CompareRequest& request) {
 }
 
 Status write_plot(const Comparison& comparison, const std::string& path) {
-    const Rendering rendering = render(ComparisonFigure{
-        comparison,
-        {fmt::format("{:.6g} Hz", comparison.rate_hz), format_duration(comparison.duration_s),
-         format_count(comparison.samples) + " samples"}});
+    const Rendering rendering = render(
+        ComparisonFigure{comparison,
+                         {fmt::format("{:.6g} Hz", comparison.rate_hz),
+                          format_duration(comparison.duration_s), counted(comparison.samples, "sample")}});
     if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
     return write_file(path, rendering.png);
 }
@@ -158,15 +159,16 @@ Action setup_compare(CLI::App& app) {
         ->type_name("FILE");
     app.add_option("--simulations", request->simulations.simulations,
                    "How many simulations make the band: of 39 their extremes hold 95 %, more are smoother")
-        ->check(CLI::Range(simulations_min, std::size_t{10'000}))
+        ->check(whole_number(simulations_min, 10'000))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--seed", request->simulations.seed, "Other simulations of the same kind")
         ->type_name("N")
-        ->check(seed_number())
+        ->check(whole_number(0))
         ->capture_default_str();
     app.add_option("--duration", request->duration, "Compare the first part of a recording only")
-        ->type_name("T");
+        ->type_name("T")
+        ->check(duration());
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());

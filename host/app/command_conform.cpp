@@ -3,7 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "host/app/command.hpp"
+#include "host/app/device_choice.hpp"
 #include "host/app/former_id.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/stop_signal.hpp"
 #include "host/conform/conformance.hpp"
@@ -26,6 +28,12 @@ ExitCode fail_to_open(Console& console, const Error& error) {
 }
 
 ExitCode conform(Console& console, const ConformOptions& options) {
+    const std::string made_of = file_of_device(options.device);
+    const NamedPath read[] = {{"--device", made_of}};
+    const NamedPath paths[] = {{"--json", options.json}, {"--transcript", options.transcript}};
+    if (const Status fine = check_output_paths(read, paths); !fine.ok()) {
+        return report_error(console, "conform", fine.error());
+    }
     auto opened = open_source(options.device, {}, false);
     if (!opened.ok()) { return fail_to_open(console, opened.error()); }
     console.err << "gyrolog conform: talking to " << opened->source->identity().uri

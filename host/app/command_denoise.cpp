@@ -333,23 +333,10 @@ Status write_results(Console& console, const Request& request, const DenoiseRun&
     return results.finish();
 }
 
-Status check(const Request& request) {
-    for (const char* ending : {".csv", ".csv.gz", ".csv.xz", ".csv.zst", ".csv.bz2"}) {
-        if (request.output.empty() || request.output.ends_with(ending)) { return {}; }
-    }
-    std::error_code none;
-    const auto there = std::filesystem::status(request.output, none);
-    if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
-        !std::filesystem::is_directory(there)) {
-        return {};
-    }
-    return invalid_argument("'" + request.output +
-                            "': a denoised recording is text; end its name in .csv (.gz, .xz, .zst)");
-}
-
 ExitCode denoise_command(Console& console, const Request& request) {
     const auto fail = [&](const Error& error) { return report_error(console, "denoise", error); };
-    if (const Status fine = check(request); !fine.ok()) { return fail(fine.error()); }
+    const Status named = check_ending({"--output", request.output}, "a denoised recording", text_endings);
+    if (!named.ok()) { return fail(named.error()); }
     std::vector<NamedPath> read;
     for (const std::string& path : request.input.paths) { read.push_back({"RECORDING", path}); }
     read.push_back({"--calibration", request.calibration});
@@ -383,7 +370,7 @@ void add_filter_options(CLI::App& app, Request& request) {
         ->check(CLI::IsMember({"varying", "steady"}))
         ->capture_default_str();
     app.add_option("--window", request.choice.window, "Of the wavelet: samples it looks back")
-        ->check(CLI::Range(std::size_t{14}, std::size_t{65536}))
+        ->check(whole_number(14, 65536))
         ->type_name("N")
         ->capture_default_str();
     app.add_flag("--no-watch", request.choice.watch_off, "Do not leave units out that fail");
@@ -411,7 +398,8 @@ void add_input_options(CLI::App& app, Request& request) {
         ->capture_default_str();
     app.add_option("--duration", request.duration,
                    "The first part only; of a simulated array its length (60s)")
-        ->type_name("T");
+        ->type_name("T")
+        ->check(duration());
     app.add_option("--rate", request.input.rate_hz, "Sampling rate, in place of what time stamps say")
         ->type_name("HZ")
         ->check(positive_number());

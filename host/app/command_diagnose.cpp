@@ -65,20 +65,20 @@ Action setup_diagnose(CLI::App& app) {
     app.add_option("--average", request.average,
                    "Look at means of N samples: all of a long recording, for what is slow")
         ->type_name("N")
-        ->check(CLI::Range(1, average_most))
+        ->check(whole_number(1, average_most))
         ->capture_default_str();
     app.add_option("--simulations", request.simulations, "How many simulations tell a gap from chance")
         ->type_name("N")
-        ->check(CLI::Range(simulations_least, simulations_most))
+        ->check(whole_number(simulations_least, simulations_most))
         ->capture_default_str();
     app.add_option("--seed", request.seed, "Other simulations of the same kind")
         ->type_name("N")
-        ->check(seed_number())
+        ->check(whole_number(0))
         ->capture_default_str();
     app.add_option("--threads", request.threads,
                    "0: all processors, as far as memory allows; the answer is the same")
         ->type_name("N")
-        ->check(CLI::Range(0U, threads_most))
+        ->check(whole_number(0, threads_most))
         ->capture_default_str();
     app.add_option("--lsb-dps", request.lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")

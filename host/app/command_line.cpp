@@ -25,6 +25,19 @@ constexpr std::array commands{
     Command{"export", "Write a recording or its noise for other programs", setup_export},
 };
 
+// A word that is empty is a shell's variable that was never set, and no option's absence.
+std::string name_of_empty(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options()) {
+        if (std::ranges::find(option->results(), "") != option->results().end()) {
+            return option->get_name();
+        }
+    }
+    for (const CLI::App* command : app.get_subcommands()) {
+        if (std::string name = name_of_empty(*command); !name.empty()) { return name; }
+    }
+    return {};
+}
+
 }  // namespace
 
 std::string program_and(const char* command) {
@@ -37,11 +50,17 @@ ExitCode report_error(Console& console, const char* command, const Error& error)
 }
 
 ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
-    if (!arguments.empty() && !arguments.front().starts_with('-') &&
-        std::ranges::none_of(commands, [&](const Command& c) { return arguments.front() == c.name; })) {
-        console.err << "gyrolog: there is no command '" << arguments.front()
-                    << "'\nrun `gyrolog --help` to see what there is\n";
+    std::string called = "gyrolog";
+    const auto refuse = [&](const std::string& problem) {
+        console.err << called << ": " << problem << "\nrun `" << called << " --help` to see what there is\n";
         return ExitCode::usage;
+    };
+    if (!arguments.empty() && !arguments.front().starts_with('-')) {
+        const auto is_named = [&](const Command& command) { return arguments.front() == command.name; };
+        if (std::ranges::none_of(commands, is_named)) {
+            return refuse("there is no command '" + arguments.front() + "'");
+        }
+        called = program_and(arguments.front().c_str());
     }
     CLI::App app{
         "gyrolog: an inertial test bench. Without a command it finds the board, captures with a live view,\n"
@@ -65,9 +84,9 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
     } catch (const CLI::Success& wanted) {  // --help, --version
         app.exit(wanted, console.out, console.err);
         return ExitCode::ok;
-    } catch (const CLI::ParseError& wrong) {
-        console.err << "gyrolog: " << wrong.what() << "\nrun `gyrolog --help` to see what there is\n";
-        return ExitCode::usage;
+    } catch (const CLI::ParseError& wrong) { return refuse(wrong.what()); }
+    if (const std::string name = name_of_empty(app); !name.empty()) {
+        return refuse(name + " is given and empty: fill it in, or leave it out");
     }
     return action(console);
 }

@@ -8,6 +8,7 @@
 
 #include "host/app/command.hpp"
 #include "host/app/former_id.hpp"
+#include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
 #include "host/usb/usb_board.hpp"
 
@@ -50,6 +51,10 @@ std::string list_text(const UsbSurvey& survey) {
 }
 
 ExitCode list(Console& console, const ListOptions& options) {
+    const NamedPath written[] = {{"--json", options.json}};
+    if (const Status fine = check_output_paths({}, written); !fine.ok()) {
+        return report_error(console, "list", fine.error());
+    }
     auto usb = UsbContext::create();
     if (!usb.ok()) { return report_error(console, "list", usb.error()); }
     const auto survey = survey_usb(**usb);
@@ -57,8 +62,8 @@ ExitCode list(Console& console, const ListOptions& options) {
     ResultOutput results(console);
     if (options.json != "-") { results.show(list_text(*survey)); }
     results.json(options.json, [&] { return list_json(*survey); });
-    if (const Status written = results.finish(); !written.ok()) {
-        return report_error(console, "list", written.error());
+    if (const Status done = results.finish(); !done.ok()) {
+        return report_error(console, "list", done.error());
     }
     for (const UsbBoard& board : survey->boards) {
         warn_of_former_id(console, "list", board.uri(), board.vendor_id, board.product_id);

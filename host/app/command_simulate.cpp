@@ -13,6 +13,7 @@
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/simulation_run.hpp"
+#include "host/base/counted.hpp"
 #include "host/capture/append_file.hpp"
 #include "host/formats/effect_catalogue.hpp"
 #include "host/formats/json.hpp"
@@ -48,27 +49,15 @@ struct Story {
     std::vector<std::string> warnings;
 };
 
-bool is_text(const std::string& path) {
-    for (const char* ending : {".csv", ".csv.gz", ".csv.xz", ".csv.zst", ".csv.bz2"}) {
-        if (path.ends_with(ending)) { return true; }
-    }
-    std::error_code none;
-    const auto there = std::filesystem::status(path, none);
-    return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
-           !std::filesystem::is_directory(there);
-}
-
 Status check(const SimulateOptions& options) {
     if (options.model.empty()) {
         return invalid_argument(
             "give the MODEL to simulate (.json), or --effects to see what a model may list");
     }
     if (options.output.empty()) { return invalid_argument("give the recording to write with -o"); }
-    if (!options.makes_capture() && !is_text(options.output)) {
-        return invalid_argument(
-            "'" + options.output +
-            "' has none of the endings that tell the format: .csv (.gz, .xz, .zst), .pcapng");
-    }
+    std::vector<const char*> endings(text_endings.begin(), text_endings.end());
+    endings.push_back(".pcapng");
+    GYROLOG_CHECK(check_ending({"--output", options.output}, "a recording", endings));
     if (options.makes_capture() && !options.like.empty()) {
         return invalid_argument(
             "--like with a capture: the virtual board makes its own time stamps; write a .csv instead");
@@ -189,8 +178,8 @@ std::string made_up(const RecordedWorld& like) {
 
 void tell(Console& console, const SimulateOptions& options, const Story& story,
           const SimulationOutcome& outcome) {
-    console.err << fmt::format("  {}: {} samples in {}, seed {}{}\n", options.output,
-                               format_count(outcome.samples),
+    console.err << fmt::format("  {}: {} in {}, seed {}{}\n", options.output,
+                               counted(outcome.samples, "sample"),
                                format_duration(static_cast<double>(outcome.instants) / outcome.rate_hz),
                                options.seed, outcome.interrupted ? "; stopped early, whole up to there" : "");
     const auto effects = effect_names(story.file.model);
@@ -200,8 +189,9 @@ void tell(Console& console, const SimulateOptions& options, const Story& story,
                                    made_up(*story.like));
     }
     if (outcome.instants != outcome.samples) {
-        console.err << fmt::format("  missing: {} samples in {} dropouts\n",
-                                   format_count(outcome.instants - outcome.samples), outcome.dropouts);
+        console.err << fmt::format("  missing: {} in {}\n",
+                                   counted(outcome.instants - outcome.samples, "sample"),
+                                   counted(outcome.dropouts, "dropout"));
     }
     for (const std::string& note : story.file.notes) { console.err << "  " << note << '\n'; }
 }
@@ -311,6 +301,10 @@ ExitCode make_capture(Console& console, const SimulateOptions& options, const St
 }
 
 ExitCode show_effects(Console& console, const SimulateOptions& options) {
+    const NamedPath paths[] = {{"--json", options.json}};
+    if (const Status fine = check_output_paths({}, paths); !fine.ok()) {
+        return report_error(console, "simulate", fine.error());
+    }
     ResultOutput results(console);
     if (options.json.empty()) { results.show(effect_catalogue_text()); }
     results.json(options.json, effect_catalogue_json);
@@ -352,10 +346,11 @@ Action setup_simulate(CLI::App& app) {
         ->type_name("FILE");
     app.add_option("--duration", options->duration,
                    "Length: 90s, 15m, 6h, 7d; without it 1h, or with --like that recording's")
-        ->type_name("T");
+        ->type_name("T")
+        ->check(duration());
     app.add_option("--seed", options->seed, "Another sensor of the same kind")
         ->type_name("N")
-        ->check(seed_number())
+        ->check(whole_number(0))
         ->capture_default_str();
     app.add_option("--like", options->like,
                    "Take time stamps, holes, temperature and reference motion from this recording")

@@ -1,10 +1,13 @@
 #include "host/app/option_check.hpp"
 
 #include <charconv>
-#include <cstdint>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
+
+#include "host/app/quantity.hpp"
+#include "host/base/result.hpp"
 
 namespace gyrolog {
 namespace {
@@ -27,6 +30,15 @@ CLI::Validator number_where(bool (*holds)(double, double, double), double lowest
             ""};
 }
 
+template <typename Number>
+CLI::Validator understood_by(Result<Number> (*parse)(std::string_view)) {
+    return {[parse](const std::string& text) -> std::string {
+                const auto parsed = parse(text);
+                return parsed.ok() ? "" : parsed.error().message;
+            },
+            ""};
+}
+
 }  // namespace
 
 CLI::Validator number_from_to(double lowest, double highest, const std::string& unit) {
@@ -36,16 +48,31 @@ CLI::Validator number_from_to(double lowest, double highest, const std::string& 
 }
 
 CLI::Validator positive_number() {
-    return number_where([](double x, double, double) { return x > 0.0; }, 0.0, 0.0, "must be more than 0");
+    return number_where([](double x, double, double) { return x > 0.0 && std::isfinite(x); }, 0.0, 0.0,
+                        "must be a finite number above 0");
 }
 
-CLI::Validator seed_number() {
-    return {[](const std::string& text) -> std::string {
-                std::uint64_t seed = 0;
+CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest) {
+    return {[=](const std::string& text) -> std::string {
+                std::uint64_t number = 0;
                 const char* const end = text.data() + text.size();
-                const auto [read_to, error] = std::from_chars(text.data(), end, seed);
-                if (error == std::errc() && read_to == end) { return ""; }
-                return fmt::format("'{}' is no whole number from 0 to 18446744073709551615", text);
+                const auto [read_to, error] = std::from_chars(text.data(), end, number);
+                const bool whole = error == std::errc() && read_to == end;
+                if (whole && number >= lowest && number <= highest) { return ""; }
+                return fmt::format("'{}' is no whole number from {} to {}", text, lowest, highest);
+            },
+            ""};
+}
+
+CLI::Validator duration() { return understood_by(parse_duration_s); }
+
+CLI::Validator size() { return understood_by(parse_bytes); }
+
+CLI::Validator size_or_none() {
+    return {[](const std::string& text) -> std::string {
+                if (text == "0") { return ""; }
+                const auto parsed = parse_bytes(text);
+                return parsed.ok() ? "" : parsed.error().message + "; or 0";
             },
             ""};
 }

@@ -1,6 +1,8 @@
 // What CLI11 checks about an option's text, told in our own words.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -10,11 +12,21 @@ namespace gyrolog {
 // A number from `lowest` to `highest`; `unit` ends the message: "must be from 0.0001 to 10000000 Hz".
 CLI::Validator number_from_to(double lowest, double highest, const std::string& unit = "");
 
-// More than 0.
+// More than 0, and finite.
 CLI::Validator positive_number();
 
-// A whole number from 0 to 2^64 - 1.
-CLI::Validator seed_number();
+// Without a sign, a point or a loss: what does not fit is refused, not cut down to what does.
+CLI::Validator whole_number(std::uint64_t lowest,
+                            std::uint64_t highest = std::numeric_limits<std::uint64_t>::max());
+
+// "90", "15m": what parse_duration_s() understands.
+CLI::Validator duration();
+
+// "500M", "2G": what parse_bytes() understands.
+CLI::Validator size();
+
+// The same, or 0.
+CLI::Validator size_or_none();
 
 // A name that ends in .png: figures have no other form.
 CLI::Validator png_file();

@@ -22,9 +22,9 @@ Error storage_error(int number) {
             return {ErrorCode::disk_full, "disk full"};
         case ENOENT:
         case ENOTDIR:
-            return {ErrorCode::not_found, "no such folder"};
+            return {ErrorCode::not_found, "no such directory"};
         case EISDIR:
-            return {ErrorCode::storage_failed, "it is a folder"};
+            return {ErrorCode::storage_failed, "it is a directory"};
         case EACCES:
         case EPERM:
             return {ErrorCode::permission_denied, "permission denied"};

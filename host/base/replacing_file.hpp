@@ -14,7 +14,7 @@ namespace gyrolog {
 // the file that it replaces. A symbolic link is replaced, not followed. A path that is no regular file (a
 // pipe, /dev/stdout) is written directly.
 //
-// The errors' messages are the reason alone: not_found (no such folder), permission_denied, disk_full,
+// The errors' messages are the reason alone: not_found (no such directory), permission_denied, disk_full,
 // storage_failed.
 class ReplacingFile {
 public:

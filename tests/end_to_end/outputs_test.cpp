@@ -149,14 +149,72 @@ TEST_F(Outputs, AreAllWrittenWhereNobodyReadsTheReport) {
 }
 
 TEST_F(Outputs, AFileThatCannotBeWrittenCostsNoOther) {
+    if (!has_full_disk()) { GTEST_SKIP() << needs_full_disk; }
     make_inputs();
     const std::string plot = folder_.path("a.png");
-    const ProgramResult result =
-        run_gyrolog({"analyze", text_, "--json", folder_.path("no/a.json"), "--plot", plot});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, HasSubstr("no/a.json': no such folder"));
+    const std::string full = folder_.path("full.json");
+    fs::create_symlink("/dev/full", full);
+    const ProgramResult result = run_gyrolog({"analyze", text_, "--json", full, "--plot", plot});
+    EXPECT_EQ(result.exit_code, 6);
+    EXPECT_THAT(result.err, HasSubstr("full.json': disk full"));
     EXPECT_THAT(result.out, HasSubstr("20000 samples"));
     EXPECT_GT(read_whole_file(plot).size(), 1000U);
+}
+
+// Before anything is read and computed: whatever the recording is, the directory is what is told of.
+TEST_F(Outputs, AreTriedBeforeTheWorkIsDone) {
+    make_inputs();
+    const std::string no_json = folder_.path("no/a.json");
+    const std::string no_plot = folder_.path("no/a.png");
+    const std::string no_text = folder_.path("no/a.csv");
+    const std::string no_capture = folder_.path("no/a.pcapng");
+    std::ofstream(folder_.path("bad.csv")) << "no recording";
+    const std::string bad = folder_.path("bad.csv");
+    const auto before = names();
+    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+             {"--device", "sim:", "-o", no_capture},
+             {"list", "--json", no_json},
+             {"capture", "--device", "sim:", "-o", no_capture},
+             {"capture", "--device", "sim:", "-o", folder_.path("a.pcapng"), "--json", no_json},
+             {"capture", "--device", "sim:", "-o", folder_.path("a.pcapng"), "--denoise", "kalman",
+              "--denoise-out", no_text},
+             {"info", bad, "--json", no_json},
+             {"check", bad, "--json", no_json},
+             {"recover", bad, "-o", no_capture},
+             {"recover", bad, "-o", folder_.path("a.pcapng"), "--json", no_json},
+             {"analyze", bad, "--json", no_json},
+             {"analyze", bad, "--plot", no_plot},
+             {"analyze", bad, "--histogram", no_plot},
+             {"analyze", bad, "--model", no_json},
+             {"analyze", "--curve", bad, "--json", no_json},
+             {"analyze", "--curve", bad, "--plot", no_plot},
+             {"analyze", "--curve", bad, "--model", no_json},
+             {"compare", bad, bad, "--json", no_json},
+             {"compare", bad, model_, "--plot", no_plot},
+             {"diagnose", bad, "--model", model_, "--json", no_json},
+             {"diagnose", bad, "--model", model_, "--plot", no_plot},
+             {"diagnose", bad, "--model", model_, "--model-out", no_json},
+             {"diagnose", "--curve", bad, "--json", no_json},
+             {"diagnose", "--curve", bad, "--plot", no_plot},
+             {"diagnose", "--curve", bad, "--model", model_, "--model-out", no_json},
+             {"denoise", bad, "-o", no_text},
+             {"denoise", bad, "--json", no_json},
+             {"denoise", bad, "--plot", no_plot},
+             {"simulate", bad, "-o", no_text},
+             {"simulate", bad, "-o", no_capture},
+             {"simulate", bad, "-o", folder_.path("a.csv"), "--model-out", no_json},
+             {"simulate", bad, "-o", folder_.path("a.csv"), "--json", no_json},
+             {"export", bad, "-o", no_text},
+             {"conform", "--device", "sim:", "--json", no_json},
+             {"conform", "--device", "sim:", "--transcript", folder_.path("no/a.txt")}}) {
+        std::string line;
+        for (const std::string& word : command) { line += word + " "; }
+        const ProgramResult result = run_gyrolog(command);
+        EXPECT_EQ(result.exit_code, 1) << line << result.err;
+        EXPECT_THAT(result.err, HasSubstr("/no/a.")) << line;
+        EXPECT_THAT(result.err, HasSubstr("': no such directory")) << line;
+        EXPECT_EQ(names(), before) << line;
+    }
 }
 
 TEST_F(Outputs, AFullDiskBehindStandardOutputIsSaid) {
@@ -166,7 +224,15 @@ TEST_F(Outputs, AFullDiskBehindStandardOutputIsSaid) {
          std::vector<std::vector<std::string>>{{"info", capture_},
                                                {"check", capture_},
                                                {"analyze", text_},
+                                               {"analyze", text_, "--json", "-"},
+                                               {"analyze", "--curve", curve_},
+                                               {"recover", capture_, "-o", folder_.path("r.pcapng")},
+                                               {"compare", text_, text_},
+                                               {"diagnose", text_, "--model", model_, "--simulations", "20"},
+                                               {"denoise", text_},
+                                               {"conform", "--device", "sim:"},
                                                {"--help"},
+                                               {"check", "--help"},
                                                {"simulate", "--effects"}}) {
         std::vector<std::string> command{gyrolog_path()};
         command.insert(command.end(), arguments.begin(), arguments.end());

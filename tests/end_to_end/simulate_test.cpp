@@ -281,7 +281,7 @@ TEST_F(Refusals, SayWhatIsWrongAndWriteNothing) {
         {{model_, "-o", output_, "--like", output_}, 2, "--like and --output are the same file"},
         {{model_, "-o", output_, "--model-out", model_}, 2, "MODEL and --model-out are the same file"},
         {{model_, "-o", output_, "--model-out", output_}, 2, "are the same file"},
-        {{model_, "-o", folder_.path("no/where.csv")}, 1, "no such folder"},
+        {{model_, "-o", folder_.path("no/where.csv")}, 1, "no such directory"},
         {{model_, "-o", output_, "--model-out", folder_.path("no/where.json")}, 1, "where.json"},
         {{model_, "-o", output_, "--rate", "0"}, 2, "must be from"},
     };

@@ -1,0 +1,460 @@
+// What a new user gets wrong, and what the program says of it: a table of command, exit code and message.
+// Each message names the file, the place in it where there is one, and what to do; a wrong input writes
+// nothing.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/needs.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* model_text = R"({
+  "schema": "gyrolog-model/1",
+  "rate_hz": 100.0, "full_scale_dps": 500.0, "lsb_dps": 0.015, "saturation_dps": 500.0,
+  "axes": {
+    "x": {"N": 0.005, "B": 0.002, "K": 1e-4, "bias": 0.3},
+    "y": {"N": 0.005, "B": 0.002, "K": 1e-4, "bias": 0.3},
+    "z": {"N": 0.005, "B": 0.002, "K": 1e-4, "bias": 0.3}
+  },
+  "M": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  "latency_s": 0.0, "timestamp_jitter_s": 2e-5,
+  "sd_rel": {"N": 0.005}, "sd_abs": {"M": 2e-4},
+  "ref_noise_dps": 0.02, "acc_noise_g": 0.003, "temp_noise_C": 0.03,
+  "effects": []
+}
+)";
+
+std::string with(std::string text, const std::string& old, const std::string& now) {
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    return at == std::string::npos ? text : text.replace(at, old.size(), now);
+}
+
+void write(const std::string& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+std::string noise(std::size_t bytes) {
+    std::mt19937 random(20261124);
+    std::string text(bytes, '\0');
+    for (char& byte : text) { byte = static_cast<char>(random() & 0xFFU); }
+    return text;
+}
+
+// All tests run in one folder with these files, by names without a path.
+class WrongInput : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        folder_ = new TemporaryFolder;
+        before_ = fs::current_path();
+        fs::current_path(folder_->path(""));
+        fs::create_directory("dir");
+        fs::create_directory("out");
+        ASSERT_EQ(
+            run_gyrolog({"capture", "--device", "sim:rate=100,seed=7", "--duration", "20s", "-o", "c.pcapng"})
+                .exit_code,
+            0);
+        ASSERT_EQ(run_gyrolog({"export", "c.pcapng", "-o", "c.csv"}).exit_code, 0);
+        ASSERT_EQ(run_gyrolog({"export", "c.pcapng", "-o", "c.csv.xz"}).exit_code, 0);
+        write_captures();
+        write_texts();
+        write_models();
+    }
+    static void TearDownTestSuite() {
+        fs::current_path(before_);
+        delete folder_;
+    }
+
+    static void write_captures() {
+        const std::string whole = read_whole_file("c.pcapng");
+        write("empty.pcapng", "");
+        write("noise.pcapng", noise(5000));
+        std::string damaged = whole;
+        std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(damaged.size() / 2), 200, '\x55');
+        write("damaged.pcapng", damaged);
+        write("cut.pcapng", whole.substr(0, whole.size() * 2 / 3 + 1));
+    }
+
+    static void write_texts() {
+        const std::string whole = read_whole_file("c.csv");
+        const std::string compressed = read_whole_file("c.csv.xz");
+        write("empty.csv", "");
+        write("noise.csv", noise(5000));
+        write("torn.csv.xz", compressed.substr(0, compressed.size() / 2));
+        std::string returns = whole;
+        std::ranges::replace(returns, '\n', '\r');
+        write("cr.csv", returns);
+        std::string semicolons = whole;
+        std::ranges::replace(semicolons, ',', ';');
+        write("semicolons.csv", semicolons);
+        write("utf16.csv", std::string("\xFF\xFEt\0_\0s\0", 8));
+        write("word.csv", "t_s,gx_dps\n0,1\n1,two\n2,3\n");
+        write("short.csv", "t_s,gx_dps,gy_dps\n0,1,2\n1,2\n2,3,4\n");
+        write("long.csv", "t_s,gx_dps,gy_dps\n0,1,2\n1,2,3,4\n2,3,4\n");
+        write("unit.csv", "t_s,gx_furlong\n0,1\n1,2\n2,3\n");
+        write("nostamps.csv", "gx_dps\n1\n2\n3\n");
+        write("backwards.csv", "t_s,gx_dps\n0,1\n2,2\n1,3\n3,3\n");
+        write("header.csv", "t_s,gx_dps\n");
+        write("twice.csv", "t_s,gx_dps,gx_dps\n0,1,1\n1,1,1\n");
+        write("curve.csv", "tau_s,x_dps\n1,0.01\n2,0.007\n4,0.005\n8,0.0035\n16,0.0025\n32,0.0018\n");
+        write("fewpoints.csv", "tau_s,x_dps\n1,0.01\n2,0.007\n");
+        write("counts.csv", "t_s,gx_lsb\n0,1\n1,2\n2,1\n3,2\n4,1\n");
+    }
+
+    static void write_models() {
+        const std::string model = model_text;
+        write("m.json", model);
+        write("empty.json", "");
+        write("noise.json", noise(5000));
+        write("list.json", "[1]");
+        write("nocomma.json", with(model, "\"rate_hz\": 100.0,", "\"rate_hz\": 100.0"));
+        write("comment.json", with(model, "  \"rate_hz\"", "  // of the sensor\n  \"rate_hz\""));
+        write("utf16.json", std::string("\xFF\xFE{\0}\0", 6));
+        write("future.json", with(model, "gyrolog-model/1", "gyrolog-model/9"));
+        write("noschema.json", with(model, "\"schema\": \"gyrolog-model/1\",", ""));
+        write("gremlins.json", with(model, "\"effects\": []",
+                                    R"("effects": [{"effect": "gremlins", "axes": ["x"], "params": {}}])"));
+        write("words.json", with(model, "\"x\": {\"N\": 0.005", "\"x\": {\"N\": \"much\""));
+        write("nan.json", with(model, "\"x\": {\"N\": 0.005", "\"x\": {\"N\": NaN"));
+        write("negative.json", with(model, "\"x\": {\"N\": 0.005", "\"x\": {\"N\": -0.005"));
+    }
+
+    static TemporaryFolder* folder_;
+    static fs::path before_;
+};
+
+TemporaryFolder* WrongInput::folder_ = nullptr;
+fs::path WrongInput::before_;
+
+// Words are separated by one space each; "" is the empty word of an unset variable.
+struct Row {
+    const char* command;
+    int exit_code;
+    const char* said;
+};
+
+std::vector<std::string> words_of(const std::string& command) {
+    std::vector<std::string> words;
+    std::istringstream text(command);
+    for (std::string word; text >> word;) { words.push_back(word == "\"\"" ? "" : word); }
+    return words;
+}
+
+std::set<std::string> names_here() {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(".")) { names.insert(entry.path().filename().string()); }
+    return names;
+}
+
+void expect_told(const std::vector<Row>& rows) {
+    const auto before = names_here();
+    for (const Row& row : rows) {
+        const ProgramResult result = run_gyrolog(words_of(row.command));
+        const std::string told = result.out + result.err;
+        EXPECT_EQ(result.exit_code, row.exit_code) << "gyrolog " << row.command << '\n' << told;
+        EXPECT_THAT(told, HasSubstr(row.said)) << "gyrolog " << row.command;
+        EXPECT_LT(told.size(), 4000U) << "gyrolog " << row.command;
+        if (row.exit_code > 0 && row.exit_code < 5) {
+            EXPECT_EQ(result.out, "") << "gyrolog " << row.command;
+        }
+        EXPECT_EQ(names_here(), before) << "gyrolog " << row.command;
+    }
+}
+
+constexpr const char* duration_forms = "is no duration: write 90, 90s, 15m, 6h or 1d";
+constexpr const char* device_forms =
+    "a device is usb:, usb:SERIAL, tty:PATH, sim:KEY=VALUE,... or replay:FILE";
+
+TEST_F(WrongInput, OfTheProgramAndOfAnyCommand) {
+    expect_told({
+        {"frobnicate", 2, "gyrolog: there is no command 'frobnicate'\nrun `gyrolog --help`"},
+        {"analyse c.csv", 2, "there is no command 'analyse'"},
+        {"\"\"", 2, "there is no command ''"},
+        {"--plott", 2, "gyrolog: The following argument was not expected: --plott"},
+        {"--device nonsense", 2, "nonsense has no ':'; a device is usb:"},
+        {"-o x.csv", 2, "--output 'x.csv' has none of the endings of a capture: .pcapng"},
+        {"--duration -5", 2, duration_forms},
+        {"list extra", 2, "not expected: extra\nrun `gyrolog list --help`"},
+        {"list --json", 2, "--json: 1 required FILE missing"},
+        {"list --json \"\"", 2, "--json is given and empty: fill it in, or leave it out"},
+        {"list --json dir", 1, "write 'dir': it is a directory"},
+        {"analyze --plott", 2, "not expected: --plott\nrun `gyrolog analyze --help`"},
+    });
+}
+
+TEST_F(WrongInput, OfCommandsThatReadACapture) {
+    for (const std::string command : {"info", "check"}) {
+        const auto row = [&](const std::string& rest, int code, const char* said) {
+            const std::string line = command + rest;
+            expect_told({{line.c_str(), code, said}});
+        };
+        row("", 2, "FILE is required");
+        row(" \"\"", 2, "FILE is given and empty");
+        row(" none.pcapng", 1, "open 'none.pcapng': No such file or directory");
+        row(" dir", 1, "open 'dir': not a regular file");
+        row(" empty.pcapng", 1, "read capture 'empty.pcapng': the file is empty");
+        row(" noise.pcapng", 1, "open 'noise.pcapng': not a capture: neither pcapng nor pcap");
+        row(" c.csv", 1, "open 'c.csv': not a capture: neither pcapng nor pcap");
+        row(" m.json", 1, "open 'm.json': not a capture");
+        row(" -", 2, "FILE '-': standard input is read by its name, /dev/stdin");
+        row(" c.pcapng c.pcapng", 2, "not expected: c.pcapng");
+        row(" c.pcapng --json c.pcapng", 2, "FILE and --json are the same file 'c.pcapng'");
+        row(" c.pcapng --json dir", 1, "write 'dir': it is a directory");
+    }
+    expect_told({
+        {"check damaged.pcapng", 5, "\n  damaged: something that was captured is gone\n"},
+        {"check cut.pcapng", 0, "\n  nothing is missing before the torn tail; what came after it"},
+        {"recover", 2, "FILE is required"},
+        {"recover c.pcapng", 2, "--output is required"},
+        {"recover none.pcapng -o r.pcapng", 1, "open 'none.pcapng': No such file or directory"},
+        {"recover dir -o r.pcapng", 1, "open 'dir': not a regular file"},
+        {"recover empty.pcapng -o r.pcapng", 1, "'empty.pcapng': it holds no intact block of a capture"},
+        {"recover noise.pcapng -o r.pcapng", 1, "recover 'noise.pcapng': not a capture"},
+        {"recover c.csv -o r.pcapng", 1, "recover 'c.csv': not a capture"},
+        {"recover c.pcapng -o m.json", 2, "write 'm.json': it exists; choose another name"},
+        {"recover c.pcapng -o c.pcapng", 2, "FILE and --output are the same file"},
+        {"recover c.pcapng -o -", 2, "--output '-': only --json goes to standard output"},
+    });
+    const std::string check = run_gyrolog({"check", "damaged.pcapng"}).out;
+    EXPECT_TRUE(check.ends_with("  damaged: something that was captured is gone\n")) << check;
+}
+
+TEST_F(WrongInput, OfCapture) {
+    expect_told({
+        {"capture", 2, "--output is required"},
+        {"capture -o \"\"", 2, "--output is given and empty"},
+        {"capture -o x.csv --device sim:", 2, "'x.csv' has none of the endings of a capture: .pcapng"},
+        {"capture -o x --device sim:", 2, "'x' has none of the endings of a capture: .pcapng"},
+        {"capture -o - --device sim:", 2, "--output '-': only --json goes to standard output"},
+        {"capture -o dir --device sim:", 1, "write 'dir': it is a directory"},
+        {"capture -o c.pcapng --device sim: --samples 5", 2, "choose another name or --force"},
+        {"capture -o c.pcapng --device replay:c.pcapng --force", 2,
+         "--device and --output are the same file"},
+        {"capture -o x.pcapng --device usbb:", 2, "device 'usbb:': usbb is no kind of device"},
+        {"capture -o x.pcapng --device usb", 2, device_forms},
+        {"capture -o x.pcapng --device tty:", 2, "nothing stands behind the ':'"},
+        {"capture -o x.pcapng --device tty:/dev/no_such_tty", 3, "/dev/no_such_tty"},
+        {"capture -o x.pcapng --device tty:/dev/null", 2, "open serial port '/dev/null': not a terminal"},
+        {"capture -o x.pcapng --device sim:rat=5", 2, "rat=5: there is no such option; there are model rate"},
+        {"capture -o x.pcapng --device sim:rate=abc", 2, "rate=abc: wants a rate in Hz up to 32000"},
+        {"capture -o x.pcapng --device sim:rate=-1", 2, "rate=-1: wants a rate in Hz up to 32000"},
+        {"capture -o x.pcapng --device sim:rate", 2, "rate is not KEY=VALUE"},
+        {"capture -o x.pcapng --device sim:model=none.json", 1, "read model 'none.json': no such file"},
+        {"capture -o x.pcapng --device sim:model=c.csv", 1, "model 'c.csv': no JSON: line 1"},
+        {"capture -o x.pcapng --device replay:none.pcapng", 1, "open 'none.pcapng': No such file"},
+        {"capture -o x.pcapng --device replay:c.csv", 1, "open 'c.csv': not a capture"},
+        {"capture -o x.pcapng --device sim: --duration \"\"", 2, duration_forms},
+        {"capture -o x.pcapng --device sim: --duration 0", 2, duration_forms},
+        {"capture -o x.pcapng --device sim: --duration -5s", 2, duration_forms},
+        {"capture -o x.pcapng --device sim: --duration nan", 2, duration_forms},
+        {"capture -o x.pcapng --device sim: --duration 1e99", 2, duration_forms},
+        {"capture -o x.pcapng --device sim: --duration soon", 2, "--duration: 'soon' is no duration"},
+        {"capture -o x.pcapng --device sim: --samples 0", 2, "'0' is no whole number from 1 to"},
+        {"capture -o x.pcapng --device sim: --samples -3", 2, "'-3' is no whole number from 1 to"},
+        {"capture -o x.pcapng --device sim: --samples 1.5", 2, "'1.5' is no whole number from 1 to"},
+        {"capture -o x.pcapng --device sim: --samples 99999999999999999999", 2,
+         "is no whole number from 1 to"},
+        {"capture -o x.pcapng --device sim: --full-scale 0", 2,
+         "--full-scale: '0' is no whole number from 1"},
+        {"capture -o x.pcapng --device sim: --full-scale 70000", 2,
+         "'70000' is no whole number from 1 to 65535"},
+        {"capture -o x.pcapng --device sim: --rate nan", 2, "--rate: nan must be a finite number above 0"},
+        {"capture -o x.pcapng --device sim: --rate inf", 2, "--rate: inf must be a finite number above 0"},
+        {"capture -o x.pcapng --device sim: --rate -1", 2, "--rate: -1 must be a finite number above 0"},
+        {"capture -o x.pcapng --device sim: --rate \"\"", 2, "--rate: '' is no number"},
+        {"capture -o x.pcapng --device sim: --rate 1e9", 2, "--rate 1e+09: out of range"},
+        {"capture -o out/x.pcapng --device sim: --rate 8000 --samples 9", 2, "does not have this rate"},
+        {"capture -o x.pcapng --device sim: --dlpf wide", 2,
+         "--dlpf 'wide': write a bandwidth in Hz (5, 10,"},
+        {"capture -o x.pcapng --device sim: --min-free lots", 2, "'lots' is no size: write 64k, 500M, 2G"},
+        {"capture -o x.pcapng --device sim: --min-free 900000T", 6, "(--min-free); make room, or choose"},
+        {"capture -o x.pcapng --device sim: --rotate-size 0", 2, "--rotate-size: '0' is no size"},
+        {"capture -o x.pcapng --device sim: --rotate-every x", 2, "--rotate-every: 'x' is no duration"},
+        {"capture -o x.pcapng --device sim: --on-unplug panic", 2, "panic not in {wait,exit}"},
+        {"capture -o x.pcapng --device sim: --denoise-out y.csv", 2, "add --denoise METHOD"},
+        {"capture -o x.pcapng --device sim: --nonsense", 2, "run `gyrolog capture --help`"},
+        {"capture -o out/lost.pcapng --device sim:rate=100,unplug=1 --duration 9s --on-unplug exit", 4,
+         "the board is lost, what came before is saved"},
+        {"capture -o out/holes.pcapng --device sim:rate=1000,fault=drop_packet@1 --duration 9s", 5,
+         "run `gyrolog check out/holes.pcapng`"},
+    });
+}
+
+TEST_F(WrongInput, OfAnalyze) {
+    expect_told({
+        {"analyze", 2, "give a RECORDING, or --curve with an Allan curve"},
+        {"analyze \"\"", 2, "RECORDING is given and empty"},
+        {"analyze -", 2, "RECORDING '-': standard input is read by its name, /dev/stdin"},
+        {"analyze none.csv", 1, "read 'none.csv': no such file"},
+        {"analyze none.pcapng", 1, "open 'none.pcapng': No such file"},
+        {"analyze dir", 1, "read 'dir': it is a directory"},
+        {"analyze empty.csv", 1, "read 'empty.csv': empty: line 1 must name the columns, such as t_s,gx_dps"},
+        {"analyze empty.pcapng", 1, "read capture 'empty.pcapng': the file is empty"},
+        {"analyze noise.csv", 1, "read 'noise.csv': this is no text, and no capture"},
+        {"analyze noise.pcapng", 1, "open 'noise.pcapng': not a capture"},
+        {"analyze m.json", 1, "read 'm.json': this is JSON, a model or a report perhaps, and no table"},
+        {"analyze torn.csv.xz", 1, "read 'torn.csv.xz': its compressed text is damaged or cut off"},
+        {"analyze cr.csv", 1, "line 1: the lines end in carriage returns alone: end them in line feeds"},
+        {"analyze semicolons.csv", 1,
+         "line 1: the columns are separated by semicolons: separate them by commas"},
+        {"analyze utf16.csv", 1, "read 'utf16.csv': the text is UTF-16: save it as UTF-8 or ASCII"},
+        {"analyze word.csv", 1, "line 3, column 'gx_dps': 'two' is no number; leave the field empty"},
+        {"analyze short.csv", 1,
+         "line 3: 2 fields where line 1 names 3 columns; the first without one is column "
+         "'gy_dps'"},
+        {"analyze long.csv", 1,
+         "line 3: 4 fields where line 1 names 3 columns; the last of them is column 'gy_dps'"},
+        {"analyze unit.csv", 1, "line 1: no gyro column"},
+        {"analyze nostamps.csv", 2, "no column t_s: give the sampling rate with --rate"},
+        {"analyze backwards.csv", 1, "the time stamps step back by 1 s at row 3: cut the recording there"},
+        {"analyze header.csv", 1, "read 'header.csv': no samples after the header line"},
+        {"analyze twice.csv", 1, "line 1: column 'gx_dps' appears twice"},
+        {"analyze c.csv c.csv", 2, "not expected: c.csv"},
+        {"analyze c.csv --rate nan", 2, "--rate: nan must be from 0.0001 to 10000000 Hz"},
+        {"analyze c.csv --rate -1", 2, "--rate: -1 must be from 0.0001"},
+        {"analyze c.csv --rate 1e300", 2, "--rate: 1e300 must be from 0.0001"},
+        {"analyze c.csv --rate \"\"", 2, "--rate: '' is no number"},
+        {"analyze c.csv --rate fast", 2, "--rate: 'fast' is no number"},
+        {"analyze c.csv --confidence 95", 2, "--confidence: 95 must be from 0.01 to 0.9999"},
+        {"analyze c.csv --m 0", 2, "'0' is no list of whole numbers from 1 up: write 1,10,100"},
+        {"analyze c.csv --m 1,,2", 2, "'1,,2' is no list of whole numbers from 1 up"},
+        {"analyze c.csv --lsb-dps inf", 2, "--lsb-dps: inf must be a finite number above 0"},
+        {"analyze c.csv --deviation best", 2, "best not in {overlapping,"},
+        {"analyze c.csv --plot a.jpg", 2, "'a.jpg' does not end in .png, and figures are PNG only"},
+        {"analyze c.csv --json c.csv", 2, "RECORDING and --json are the same file 'c.csv'"},
+        {"analyze c.csv --model -", 2, "--model '-': only --json goes to standard output"},
+        {"analyze c.csv --model \"\"", 2, "--model is given and empty"},
+        {"analyze c.csv --model dir", 1, "write 'dir': it is a directory"},
+        {"analyze --curve none.csv", 1, "read 'none.csv': no such file"},
+        {"analyze --curve c.csv", 1,
+         "line 1: no column tau_s; it must name the columns, such as tau_s,x_dps"},
+        {"analyze --curve fewpoints.csv", 1, "column 'x_dps': 2 points; a model needs"},
+        {"analyze --curve curve.csv c.csv", 2, "give a RECORDING or --curve, not both"},
+        {"analyze --curve curve.csv --m 1", 2, "--curve excludes --m"},
+    });
+}
+
+TEST_F(WrongInput, OfCommandsThatReadAModel) {
+    for (const std::string command : {"simulate % -o s.csv --duration 1s", "diagnose c.csv --model %",
+                                      "denoise c.csv --model %", "export % -o s.yaml"}) {
+        const auto row = [&](const std::string& model, const char* said) {
+            const std::string line = with(command, "%", model);
+            expect_told({{line.c_str(), 1, said}});
+        };
+        row("none.json", "read model 'none.json': no such file");
+        row("empty.json", "model 'empty.json': no JSON: the file is empty");
+        row("noise.json", "model 'noise.json': no JSON: line 1, column 1");
+        row("list.json", "model 'list.json': not a JSON object");
+        row("nocomma.json", "model 'nocomma.json': no JSON: line 3, column 35: unexpected string literal");
+        row("comment.json", "model 'comment.json': no JSON: line 3, column 3: invalid literal");
+        row("utf16.json", "model 'utf16.json': no JSON: the text is UTF-16: save it as UTF-8");
+        row("future.json", "schema is 'gyrolog-model/9', not 'gyrolog-model/1'");
+        row("noschema.json", "model 'noschema.json': schema is missing");
+        row("words.json", "model 'words.json': axes.x.N is not a finite number");
+        row("nan.json", "model 'nan.json': axes.x.N is not a finite number");
+        row("negative.json", "model 'negative.json': axes.x.N is negative");
+    }
+    expect_told({
+        {"simulate gremlins.json -o s.csv", 1, "effect 'gremlins' cannot be simulated by this version"},
+        {"simulate c.csv -o s.csv", 1, "model 'c.csv': no JSON: line 1"},
+        {"simulate c.pcapng -o s.csv", 1, "model 'c.pcapng': no JSON: line"},
+        {"simulate dir -o s.csv", 1, "read model 'dir': it is a directory"},
+        {"simulate", 2, "give the MODEL to simulate (.json), or --effects"},
+        {"simulate m.json", 2, "give the recording to write with -o"},
+        {"simulate m.json -o s.txt", 2, "'s.txt' has none of the endings of a recording: .csv"},
+        {"simulate m.json -o -", 2, "'-' has none of the endings"},
+        {"simulate m.json -o s.csv --duration \"\"", 2, duration_forms},
+        {"simulate m.json -o s.csv --duration nan", 2, duration_forms},
+        {"simulate m.json -o s.csv --rate 0", 2, "--rate: 0 must be from 0.0001"},
+        {"simulate m.json -o s.csv --seed -1", 2, "--seed: '-1' is no whole number from 0"},
+        {"simulate m.json -o s.csv --seed 1.5", 2, "--seed: '1.5' is no whole number"},
+        {"simulate m.json -o s.csv --like none.csv", 1, "--like: read 'none.csv': no such file"},
+        {"simulate m.json -o s.csv --like m.json", 1, "--like: read 'm.json': this is JSON"},
+        {"simulate m.json -o s.csv --model-out m.json", 2, "MODEL and --model-out are the same file"},
+    });
+}
+
+TEST_F(WrongInput, OfCompareDiagnoseAndDenoise) {
+    expect_told({
+        {"compare", 2, "RECORDING is required"},
+        {"compare c.csv", 2, "WITH is required"},
+        {"compare none.csv m.json", 1, "read 'none.csv': no such file"},
+        {"compare c.csv dir", 1, "read 'dir': it is a directory"},
+        {"compare c.csv word.csv", 1, "read 'word.csv': line 3, column 'gx_dps'"},
+        {"compare c.csv future.json", 1, "model 'future.json': schema is 'gyrolog-model/9'"},
+        {"compare c.csv m.json --simulations 1", 2, "--simulations: '1' is no whole number from"},
+        {"compare c.csv m.json --duration soon", 2, duration_forms},
+        {"compare c.csv m.json --json c.csv", 2, "RECORDING and --json are the same file"},
+        {"diagnose", 2, "give a RECORDING, or --curve with an Allan curve"},
+        {"diagnose c.csv", 2, "give the --model that the recording is to be held against"},
+        {"diagnose none.csv --model m.json", 1, "read 'none.csv': no such file"},
+        {"diagnose word.csv --model m.json", 1, "line 3, column 'gx_dps': 'two' is no number"},
+        {"diagnose c.csv --model c.pcapng", 1, "model 'c.pcapng': no JSON"},
+        {"diagnose c.csv --model m.json --model-out m.json", 2, "--model and --model-out are the same file"},
+        {"diagnose c.csv --model m.json --model-out -", 2, "--model-out '-': only --json goes to standard"},
+        {"diagnose c.csv --model m.json --average 0", 2, "'0' is no whole number from 1 to 100000"},
+        {"diagnose c.csv --model m.json --simulations 1e9", 2, "'1e9' is no whole number from 20 to 10000"},
+        {"diagnose c.csv --model m.json --threads -1", 2, "'-1' is no whole number from 0 to 1024"},
+        {"diagnose --curve curve.csv --average 5", 2, "--curve excludes --average"},
+        {"denoise", 2, "RECORDING is required"},
+        {"denoise none.csv", 1, "read 'none.csv': no such file"},
+        {"denoise m.json", 1, "read 'm.json': this is JSON"},
+        {"denoise torn.csv.xz", 1, "its compressed text is damaged or cut off"},
+        {"denoise c.csv -o d.txt", 2, "'d.txt' has none of the endings of a denoised recording: .csv"},
+        {"denoise c.csv -o c.csv", 2, "RECORDING and --output are the same file"},
+        {"denoise c.csv --method magic", 2, "magic not in {kalman,wavelet,joint}"},
+        {"denoise c.csv --bandwidth -1", 2, "--bandwidth: -1 must be from 1e-06"},
+        {"denoise c.csv --window 3", 2, "'3' is no whole number from 14 to 65536"},
+        {"denoise c.csv --still x", 2, "wants two times in seconds from the first sample, FROM,TO"},
+        {"denoise c.csv --still 100,200", 2, "the recording has no sample there, it lasts 20"},
+        {"denoise c.csv --duration 0", 2, duration_forms},
+        {"denoise c.csv --calibration none.csv", 1, "read 'none.csv': no such file"},
+        {"denoise c.csv --saturation nan", 2, "--saturation: nan must be a finite number above 0"},
+    });
+}
+
+TEST_F(WrongInput, OfExportAndConform) {
+    expect_told({
+        {"export", 2, "RECORDING is required"},
+        {"export c.csv", 2, "--output is required"},
+        {"export none.csv -o e.csv", 1, "read 'none.csv': no such file"},
+        {"export dir -o e.csv", 1, "read 'dir': it is a directory"},
+        {"export unit.csv -o e.csv", 1, "line 1: no gyro column"},
+        {"export counts.csv -o e.yaml", 2, "give the scale of counts with --lsb-dps"},
+        {"export c.csv -o e", 2, "'e' has none of the endings that tell the format: .csv"},
+        {"export c.csv -o e.xls", 2, "'e.xls' has none of the endings that tell the format: .csv"},
+        {"export c.csv -o -", 2, "--output '-': only --json goes to standard output"},
+        {"export c.csv -o c.csv", 2, "RECORDING and --output are the same file"},
+        {"export m.json -o e.csv", 2, "a model has no samples for a .csv: `gyrolog simulate` makes"},
+        {"conform --device", 2, "--device: 1 required URI missing"},
+        {"conform --device usbb:", 2, "device 'usbb:': usbb is no kind of device"},
+        {"conform --device tty:/dev/no_such_tty", 3, "/dev/no_such_tty"},
+        {"conform --device replay:c.pcapng", 2,
+         "conform wants a device that answers: usb:, tty:PATH or sim:"},
+        {"conform --device sim:breach=nothing", 2, "breach=nothing: there is no such breach; there are"},
+        {"conform --device sim:unplug=2", 4, "gyrolog conform: "},
+        {"conform --device sim:breach=checksum", 7, "does not conform"},
+        {"conform --device sim: --transcript -", 2, "--transcript '-': only --json goes to standard output"},
+    });
+    if (!has_full_disk()) { GTEST_SKIP() << needs_full_disk; }
+    fs::create_symlink("/dev/full", "full.mat");
+    expect_told({{"export c.csv -o full.mat", 6, "disk full"}});
+}
+
+}  // namespace
+}  // namespace gyrolog
