@@ -154,6 +154,12 @@ bool may_come_back(ErrorCode code) {
     }
 }
 
+// Of a board that did not begin. A stranger's bytes are kept, for whoever wants to know what it is; what a
+// board says when it refuses a request is in the error.
+bool is_worth_nothing(const Error& error, const LinkReport& link) {
+    return link.bytes.total == 0 || error.code == ErrorCode::invalid_argument;
+}
+
 class Session {
 public:
     Session(ByteSource& source, const CaptureRequest& request, const CaptureObserver& observe,
@@ -190,7 +196,7 @@ public:
         const std::optional<Error> refused = thread_.state().storage_error;
         Status closed = refused ? Status(*refused) : Status();
         outcome_.link = thread_.link();
-        if (!began.ok() && outcome_.link.bytes.total == 0) { writer_.drop(); }
+        if (!began.ok() && is_worth_nothing(began.error(), outcome_.link)) { writer_.drop(); }
         const Status last = writer_.close();
         if (closed.ok()) { closed = last; }
         if (!began.ok()) {
