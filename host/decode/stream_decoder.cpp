@@ -130,8 +130,7 @@ LinkReport StreamDecoder::report() const {
         while (dropout != report.dropouts.end() && dropout->run <= join.run_before) {
             merged.push_back(*dropout++);
         }
-        merged.push_back(
-            {join.run_before, join.end_index, samples_in(report.joins, joins_, i), join.cause});
+        merged.push_back({join.run_before, join.end_index, samples_in(report.joins, joins_, i), join.cause});
     }
     merged.insert(merged.end(), dropout, report.dropouts.end());
     report.dropouts = std::move(merged);

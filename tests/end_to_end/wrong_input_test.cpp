@@ -178,7 +178,7 @@ void expect_told(const std::vector<Row>& rows) {
 
 constexpr const char* duration_forms = "is no duration: write 90, 90s, 15m, 6h or 1d";
 constexpr const char* device_forms =
-    "a device is usb:, usb:SERIAL, tty:PATH, sim:KEY=VALUE,... or replay:FILE";
+    "a device is usb:, usb:SERIAL, tty:PATH[,speed=BAUD], sim:KEY=VALUE,... or replay:FILE";
 
 TEST_F(WrongInput, OfTheProgramAndOfAnyCommand) {
     expect_told({

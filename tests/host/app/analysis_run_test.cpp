@@ -9,6 +9,7 @@
 
 #include "host/app/command_line.hpp"
 #include "host/app/stage_clock.hpp"
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -120,9 +121,10 @@ TEST(AnalyzeFiles, AModelOfAnArrayOfGyrosIsRefused) {
 TEST(AnalyzeFiles, TheReportIsShownBeforeAFileThatCannotBeWritten) {
     const TemporaryFolder folder;
     const std::string recording = write_text_recording(folder, "gx_dps,gy_dps");
+    const FileSizeLimit full(0);
     for (const char* option : {"--json", "--plot", "--histogram", "--model"}) {
-        const std::string path = folder.path(std::string("missing/out") +
-                                             (option[2] == 'p' || option[2] == 'h' ? ".png" : ".json"));
+        const std::string path =
+            folder.path(std::string("out") + (option[2] == 'p' || option[2] == 'h' ? ".png" : ".json"));
         const CommandResult result = run({"analyze", recording, option, path});
         EXPECT_NE(result.exit_code, ExitCode::ok) << option;
         EXPECT_NE(result.out.find("angle random walk"), std::string::npos) << option;
