@@ -58,7 +58,7 @@ Judgement known_types(const Dialogue& dialogue) {
 }
 
 // By the rule that has the message's table.
-Judgement malformed(const Dialogue& dialogue, unsigned type, const char* expected) {
+Judgement ill_formed(const Dialogue& dialogue, unsigned type, const char* expected) {
     Findings findings;
     for (const TranscriptEntry& entry : dialogue.entries()) {
         if (!entry.is_frame(type)) { continue; }
@@ -223,8 +223,8 @@ bool same_device(const TranscriptEntry& a, const TranscriptEntry& b) {
 }
 
 Judgement hello_rule(const Dialogue& dialogue) {
-    Judgement form = malformed(dialogue, glp_frame_hello,
-                               "72 bytes; major version not 0, tick_bits 32 to 64, tick_hz not 0");
+    Judgement form = ill_formed(dialogue, glp_frame_hello,
+                                "72 bytes; major version not 0, tick_bits 32 to 64, tick_hz not 0");
     if (form.state != JudgementState::pass) { return form; }
     Findings findings;
     const TranscriptEntry* first = nullptr;
@@ -282,8 +282,8 @@ bool off_scale(double full_scale, double per_lsb) {
 }
 
 Judgement config_rule(const Dialogue& dialogue) {
-    Judgement form = malformed(dialogue, glp_frame_config,
-                               "40 bytes; samples_per_frame, rate, decimation and scales not 0");
+    Judgement form = ill_formed(dialogue, glp_frame_config,
+                                "40 bytes; samples_per_frame, rate, decimation and scales not 0");
     if (form.state != JudgementState::pass) { return form; }
     const auto hello = dialogue.hello();
     Findings findings;
@@ -341,7 +341,7 @@ struct RunSoFar {
 };
 
 Judgement status_rule(const Dialogue& dialogue) {
-    Judgement form = malformed(dialogue, glp_frame_status, "48 bytes; streaming 0 or 1");
+    Judgement form = ill_formed(dialogue, glp_frame_status, "48 bytes; streaming 0 or 1");
     if (form.state != JudgementState::pass) { return form; }
     Findings findings;
     RunSoFar now;
@@ -421,11 +421,11 @@ Judgement event_rule(const Dialogue& dialogue) {
 }
 
 Judgement event_text(const Dialogue& dialogue) {
-    return malformed(dialogue, glp_frame_event, "text_bytes of at most 96, and as many bytes behind the 24");
+    return ill_formed(dialogue, glp_frame_event, "text_bytes of at most 96, and as many bytes behind the 24");
 }
 
 Judgement reply_rule(const Dialogue& dialogue) {
-    Judgement form = malformed(dialogue, glp_frame_reply, "8 bytes");
+    Judgement form = ill_formed(dialogue, glp_frame_reply, "8 bytes");
     if (form.state != JudgementState::pass) { return form; }
     Findings findings;
     for (std::size_t i = 0; i < dialogue.exchanges.size(); ++i) {

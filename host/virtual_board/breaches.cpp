@@ -346,10 +346,19 @@ void quick_wrap(BreachedLine& line, RawFrame& frame) {
     line.send(frame);
 }
 
-// The time of sending: every other frame waits for the main loop.
+// The time of sending, which is that of the last sample: every other frame waits for the main loop. The frame
+// before tells the period.
 void ticks_when_sent(BreachedLine& line, RawFrame& frame) {
-    if (frame.type == glp_frame_samples && line.noted++ % 2 == 1 && frame.payload[24] > 1) {
-        set_field(frame.payload, 0, 8, (field(frame.payload, 0, 8) + 30'000) & 0xFFFFFFFF);
+    if (frame.type == glp_frame_samples) {
+        const RawFrame honest = frame;
+        const std::uint64_t ticks = field(frame.payload, 0, 8);
+        const std::uint64_t index = field(frame.payload, 8, 8);
+        if (line.noted++ % 2 == 1 && index > field(line.kept->payload, 8, 8)) {
+            const std::uint64_t since = (ticks - field(line.kept->payload, 0, 8)) & 0xFFFFFFFF;
+            const std::uint64_t period = since / (index - field(line.kept->payload, 8, 8));
+            set_field(frame.payload, 0, 8, (ticks + (frame.payload[24] - 1U) * period) & 0xFFFFFFFF);
+        }
+        line.kept = honest;
     }
     line.send(frame);
 }
