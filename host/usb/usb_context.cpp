@@ -1,5 +1,6 @@
 #include "host/usb/usb_context.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <utility>
@@ -78,10 +79,9 @@ void UsbContext::judge(int code) {
     }
     failure_ = {ErrorCode::device_lost, usb_error("wait for what USB brings", code).message};
     // The youngest first: a stream tells the end of all.
-    const std::vector<EventFailureListener*> all = std::exchange(listeners_, {});
-    for (auto listener = all.rbegin(); listener != all.rend(); ++listener) {
-        (*listener)->on_event_failure(*failure_);
-    }
+    std::vector<EventFailureListener*> all = std::exchange(listeners_, {});
+    std::ranges::reverse(all);
+    for (EventFailureListener* listener : all) { listener->on_event_failure(*failure_); }
 }
 
 void UsbContext::remove(EventFailureListener& listener) { std::erase(listeners_, &listener); }
