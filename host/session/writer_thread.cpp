@@ -102,12 +102,14 @@ void WriterThread::write_last() {
 }
 
 // A live board's last frames tell how its stream ended; a file that is played has all the rest ready. To the
-// transfer, so the rate is the one of the last publication, or nominal.
-bool WriterThread::enough_of_what_waits() const {
-    if (!sink_.source_waits()) { return false; }
+// transfer, so the rate is the one of the last publication, or nominal. Once it is enough it stays so: a rate
+// that is known better a moment later would let a piece from farther on through.
+bool WriterThread::enough_of_what_waits() {
+    if (ended_ || !sink_.source_waits()) { return ended_; }
     std::optional<double> rate_hz = rate_hz_;
     if (!rate_hz && decoder_.config()) { rate_hz = decoder_.config()->rate_mHz * 1e-3; }
-    return enough(instants_ + instants_in_joins_, rate_hz);
+    ended_ = enough(instants_ + instants_in_joins_, rate_hz);
+    return ended_;
 }
 
 void WriterThread::take(const Transfer& transfer) {
@@ -193,7 +195,7 @@ void WriterThread::publish() {
     state_.has_hello = hello_came_;
     state_.has_config = config_came_;
     state_.frameless_s = last_frame_ns_ ? static_cast<double>(last_data_ns_ - *last_frame_ns_) * 1e-9 : 0.0;
-    state_.enough = enough(instants, progress_.rate_hz);
+    state_.enough = ended_ || enough(instants, progress_.rate_hz);
     changed_.notify_all();
 }
 

@@ -116,7 +116,7 @@ private:
     // By the times of arrival.
     double silent_s() const;
     bool enough(std::uint64_t instants, const std::optional<double>& rate_hz) const;
-    bool enough_of_what_waits() const;
+    bool enough_of_what_waits();
     void on_reply(const ReceivedFrame& /*frame*/, const glp_reply& reply) override;
 
     TransferQueue& queue_;
@@ -142,6 +142,7 @@ private:
     std::uint64_t instants_ = 0;
     std::uint64_t instants_in_joins_ = 0;  // as published
     std::optional<double> rate_hz_;        // as published
+    bool ended_ = false;                   // of a source that waits: what comes now is left
     std::optional<std::uint64_t> next_index_;
     std::int64_t last_samples_ns_ = 0;
     std::optional<std::int64_t> last_frame_ns_;
