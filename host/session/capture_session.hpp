@@ -110,8 +110,9 @@ using CaptureObserver = std::function<bool(const CaptureProgress&)>;
 
 // Errors are those before the stream began: the file could not be made, the source not started, no HELLO
 // came, the board refused the configuration, the caller ended it. The file is then removed, unless bytes of
-// the stream are in it. A file that is to be replaced is, when the first samples are there. Once the stream
-// has begun, whatever ends it, the file is closed and readable and the outcome says what happened.
+// the stream are in it and the board refused nothing. A file that is to be replaced is, when the first
+// samples are there. Once the stream has begun, whatever ends it, the file is closed and readable and the
+// outcome says what happened.
 //
 // A board that is lost: its file is closed, the source's reconnect() is tried, and with a board that is back
 // the handshake begins again, with the configuration that the board last told. The pause counts towards the
