@@ -19,15 +19,30 @@
 
 namespace gyrolog {
 
+// In the order of what stays open.
 enum class Verdict {
     none,        // the recording could have come from the model
-    known,       // the causes explain the gap
-    unexplained  // they do not, or there are none
+    known,       // with the causes in it, the model could have made the recording, or nearly
+    partly,      // the causes explain a part of the gap that is worth having
+    unexplained  // there is a gap, and no cause explains such a part
+};
+
+// Which side has the effect.
+enum class Sense {
+    recording_has,  // the model lacks it
+    model_has       // the recording lacks it
 };
 
 struct Span {
     double from = 0.0;
     double to = 0.0;
+};
+
+// A share of the gap's square, with its 95 % interval.
+struct Share {
+    double value = 0.0;
+    double lo = 0.0;
+    double hi = 0.0;
 };
 
 // A place is where a gap lies. What does not apply is empty.
@@ -80,16 +95,33 @@ struct Rival {
 
 struct Cause {
     Finding finding;
-    double score = 0.0;  // the probability that the cause is right
+    Sense sense = Sense::recording_has;
+    // The probability that the cause is right, against all that could stand in its place: rivals, shapes
+    // without a name, nothing. What else is left of the gap has no part in it.
+    double score = 0.0;
     // What this recording cannot tell apart from the cause, the cause itself first; empty where there is
     // nothing.
     std::vector<Rival> tie_group;
-    double shrink_alone = 0.0;
+    Share share;             // what returns when this cause alone is taken out of the model again
     std::string decided_by;  // the recording that would break the tie, with the length it needs; or ""
 };
 
+// The unnamed is what was modelled without an effect: a free density, drift, mean or noise level, or stretches
+// of time that were masked.
+struct Unnamed {
+    std::string form;  // "density", "drift", "temperature", "rate", "level", "masked"
+    Place where;
+    double share = 0.0;  // of the gap's square
+};
+
+// What nothing describes.
+struct Left {
+    Place where;
+    double size = 0.0;  // rms of the standardised differences there; 1 is the floor
+};
+
 // The gap is the distance between the recording and the model's simulations, in units of the distance between
-// two simulations.
+// two simulations (calibration/measured_gap.hpp).
 struct Gap {
     double value = 0.0;
     double floor = 1.0;
@@ -136,17 +168,6 @@ struct BetterShape {
     double evidence_nats = 0.0;     // by how much its log Bayes factor is more
 };
 
-// Split-half validation fits the causes to one half of the recording and asks the other half
-// (calibration/split_half_validation.hpp).
-struct SplitHalfResult {
-    // The effects that were fitted to one half and judged by the other.
-    std::vector<std::string> judged;
-    // The log Bayes factor for more of the effect that is left most. By chance it is below 0.
-    double evidence_left_nats = 0.0;
-    // By how much the likelihood falls short of its maximum, beyond what the parameters' own error does.
-    double excess_nats = 0.0;
-};
-
 // A long recording is seen in two passes (multiscale/long_diagnosis.hpp).
 struct Pass {
     double duration_s = 0.0;
@@ -176,10 +197,15 @@ struct Diagnosis {
     // Noise of the model that held part of the causes, and what it is with them in the model.
     std::vector<NoiseRefit> noise_refits;
     Place where;  // of the gap; with Verdict::known, of the first cause
-    Place left;   // with Verdict::unexplained and causes: of what they leave
-    Gap gap_before, gap_after;
-    double shrink = 0.0, shrink_lo = 0.0, shrink_hi = 0.0;  // share of the gap that is closed, 95 % interval
-    SplitHalfResult split_half;                             // with Verdict::known
+    std::vector<Unnamed> unnamed;
+    std::vector<Left> left;  // the largest first
+    // The gaps of the first model, of the model with the causes, and of that with the unnamed forms as well,
+    // measured by simulating, on data that the fit did not use.
+    Gap gap_before, gap_named, gap_after;
+    Share shrink;                   // the share of the gap that the causes close
+    double shrink_modelled = 0.0;   // that the causes and the unnamed forms close
+    // Effects that were measured on the data that they were fitted to: half a recording does not tell them.
+    std::vector<std::string> not_held_out;
     std::string held_out;  // the name of the second recording that the gap was measured on; empty without one
     std::vector<GapDomain> domains;
     std::vector<Untestable> untestable;
