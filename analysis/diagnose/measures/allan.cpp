@@ -58,7 +58,8 @@ const Measure measures::allan{.name = "Allan deviation",
                               .shown_y = deviation_dps,
                               .locate = locate_averaging_times,
                               .log_x = true,
-                              .log_y = true};
+                              .log_y = true,
+                              .in_halves = false};
 
 void add_allan_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     curves.push_back(allan_curve(observation, axis));

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <variant>
 
@@ -17,6 +18,8 @@ namespace {
 constexpr std::size_t codes_around = 6;  // on either side
 constexpr double code_count_least = 8.0;
 constexpr double log_mean_most = 40.0;
+
+double square(double value) { return value * value; }
 
 // How often each code of the converter was shown, from codes_around below the least to as far above the
 // largest.
@@ -110,20 +113,37 @@ double most_surprising_code(const std::vector<double>& counts) {
     return deviate_of(surprise);
 }
 
+// Of even codes over odd ones, in standard deviations. Noise of s codes leaves, by where the bias lies
+// between two codes, a balance of up to 2 exp(-pi^2 s^2 / 2) of all (the first term of the Fourier series of
+// a sampled normal density); that place is not known.
+double balance_of(const std::vector<double>& counts) {
+    double balance = 0.0;
+    double all = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t code = 0; code < counts.size(); ++code) {
+        const auto at = static_cast<double>(code);
+        balance += code % 2 == 0 ? counts[code] : -counts[code];
+        all += counts[code];
+        sum += counts[code] * at;
+        squares += counts[code] * at * at;
+    }
+    if (!(all > 0.0)) { return 0.0; }
+    constexpr double rounding_variance = 1.0 / 12.0;
+    const double mean = sum / all;
+    const double variance = std::max(squares / all - mean * mean - rounding_variance, 0.0);
+    const double of_place = std::sqrt(2.0) * all * std::exp(-0.5 * square(std::numbers::pi) * variance);
+    return std::fabs(balance) / std::hypot(std::sqrt(all), of_place);
+}
+
 GapCurve codes_curve(const Observation& observation, std::size_t axis) {
     const double lsb_rad_s = observation.prediction().model().lsb_rad_s;
     GapCurve curve{&measures::codes, axis, axis, {1.0, 2.0}, {0.0, 0.0}};
     // What moves shows each code for as long as the motion has it.
     if (!(lsb_rad_s > 0.0) || observation.prediction().moves()) { return curve; }
     const std::vector<double> counts = count_codes(observation.recording(), axis, lsb_rad_s);
-    double balance = 0.0;
-    double all = 0.0;
-    for (std::size_t code = 0; code < counts.size(); ++code) {
-        balance += code % 2 == 0 ? counts[code] : -counts[code];
-        all += counts[code];
-    }
     curve.value[0] = most_surprising_code(counts);
-    curve.value[1] = std::fabs(balance) / std::sqrt(std::max(all, 1.0));
+    curve.value[1] = balance_of(counts);
     return curve;
 }
 
@@ -138,7 +158,10 @@ const Measure measures::codes{.name = "converter's codes",
                               .y_name = "excess (its sd)",
                               .shown_x = as_it_is,
                               .shown_y = as_it_is,
-                              .locate = locate_codes};
+                              .locate = locate_codes,
+                              // Of a largest deviate.
+                              .least_sd = 0.5,
+                              .is_normal_far_out = false};
 
 void add_codes_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     curves.push_back(codes_curve(observation, axis));

@@ -5,6 +5,7 @@
 #include "analysis/diagnose/measures/codes.hpp"
 #include "analysis/diagnose/measures/courses.hpp"
 #include "analysis/diagnose/measures/cross_axis.hpp"
+#include "analysis/diagnose/measures/model_parameters.hpp"
 #include "analysis/diagnose/measures/narrow_lines.hpp"
 #include "analysis/diagnose/measures/noise_level.hpp"
 #include "analysis/diagnose/measures/period.hpp"
@@ -22,9 +23,10 @@ using AddCurves = void (*)(const Observation& observation, std::size_t axis, std
 
 // In the order of the report.
 constexpr AddCurves of_each_axis[] = {
-    add_allan_curve,       add_spectrum_curve,    add_narrow_curve,          add_course_curves,
-    add_amplitude_curves,  add_repeats_curve,     add_period_curve,          add_codes_curve,
-    add_temperature_curve, add_cross_axis_curves, add_reference_rate_curves, add_rate_change_curves};
+    add_allan_curve,           add_spectrum_curve,    add_narrow_curve,          add_course_curves,
+    add_amplitude_curves,      add_repeats_curve,     add_period_curve,          add_codes_curve,
+    add_temperature_curve,     add_cross_axis_curves, add_reference_rate_curves, add_rate_change_curves,
+    add_model_parameter_curves};
 
 }  // namespace
 

@@ -34,6 +34,10 @@ struct Measure {
     // The simulations' standard deviation at a point counts as no less. Where no simulation differs from
     // another, rounding is no scale.
     double least_sd = 1e-6;
+    bool in_halves = true;  // false: of the whole recording only
+    // False: a count that takes samples for independent. Far out it says less than a normal deviate: in a sum
+    // with other measures Student's tail bounds it.
+    bool is_normal_far_out = true;
 };
 
 struct GapCurve {

@@ -54,6 +54,7 @@ std::vector<double> whitened_sums(const Observation& observation, std::size_t ax
     for (std::size_t i = from_bin; i < end_bin; ++i) {
         const double expected = seen.density[i] * prediction.rate_hz();
         for (std::size_t k = prediction.bins()[i].first; k < prediction.bins()[i].end; ++k) {
+            if (!prediction.bins()[i].has(k)) { continue; }
             sums.push_back(sums.back() + square(static_cast<double>(seen.cosines[k])) / expected);
         }
     }

@@ -68,7 +68,8 @@ const Measure measures::repeats{.name = "repeated samples",
                                 .shown_x = as_it_is,
                                 .shown_y = as_it_is,
                                 .locate = locate_repeats,
-                                .least_sd = 1.0};
+                                .least_sd = 1.0,
+                                .is_normal_far_out = false};
 
 void add_repeats_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     if (observation.prediction().world().recording().samples_per_row != 1) { return; }

@@ -1,0 +1,51 @@
+#include "analysis/diagnose/measures/model_parameters.hpp"
+
+#include "analysis/diagnose/measures/shown_values.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+// In stated standard deviations the likelihood charges half the square. What a recording hardly tells stays
+// near 0 in every simulation, and is off by no more than the model says.
+constexpr double least_sd_of_stated = 1.0;
+
+// It is of no frequency and no time.
+void locate_nowhere(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& /*where*/) {}
+
+}  // namespace
+
+const Measure measures::noise_coefficients{.name = "noise coefficients",
+                                           .x_name = "1 N, 2 B, 3 K",
+                                           .y_name = "off the model (stated sd)",
+                                           .shown_x = as_it_is,
+                                           .shown_y = as_it_is,
+                                           .locate = locate_nowhere,
+                                           .least_sd = least_sd_of_stated};
+const Measure measures::motion_parameters{.name = "gains, latency and clock",
+                                          .x_name = "parameter",
+                                          .y_name = "off the model (stated sd)",
+                                          .shown_x = as_it_is,
+                                          .shown_y = as_it_is,
+                                          .locate = locate_nowhere,
+                                          .least_sd = least_sd_of_stated};
+
+void add_model_parameter_curves(const Observation& observation, std::size_t axis,
+                                std::vector<GapCurve>& curves) {
+    const AxisObservation& seen = observation.axis(axis);
+    curves.push_back({&measures::noise_coefficients,
+                      axis,
+                      axis,
+                      {1.0, 2.0, 3.0},
+                      {seen.noise.z.begin(), seen.noise.z.end()}});
+    const UncertainMean& uncertain = observation.prediction().uncertain(axis);
+    if (uncertain.empty()) { return; }
+    GapCurve motion{&measures::motion_parameters, axis, axis, {}, {}};
+    for (std::size_t u = 0; u < uncertain.size(); ++u) {
+        motion.x.push_back(static_cast<double>(u + 1));
+        motion.value.push_back(seen.uncertain_fit[u] / uncertain[u].sd);
+    }
+    curves.push_back(std::move(motion));
+}
+
+}  // namespace gyrolog
