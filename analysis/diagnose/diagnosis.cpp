@@ -1,65 +1,29 @@
 #include "analysis/diagnose/diagnosis.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <numeric>
-#include <set>
-#include <span>
+#include <functional>
 #include <thread>
+#include <utility>
 
-#include "analysis/diagnose/calibration/cause_shares.hpp"
-#include "analysis/diagnose/calibration/evidence_tail.hpp"
 #include "analysis/diagnose/calibration/gap_domains.hpp"
-#include "analysis/diagnose/calibration/gap_reference.hpp"
 #include "analysis/diagnose/calibration/gap_summary.hpp"
-#include "analysis/diagnose/calibration/null_simulations.hpp"
+#include "analysis/diagnose/calibration/half_fit.hpp"
+#include "analysis/diagnose/calibration/measured_gap.hpp"
+#include "analysis/diagnose/calibration/null_judgement.hpp"
+#include "analysis/diagnose/calibration/own_start.hpp"
 #include "analysis/diagnose/calibration/parametric_bootstrap.hpp"
-#include "analysis/diagnose/calibration/replicates.hpp"
-#include "analysis/diagnose/calibration/split_half_validation.hpp"
 #include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
-#include "analysis/diagnose/likelihood/noise_refit.hpp"
-#include "analysis/diagnose/likelihood/observed_line.hpp"
+#include "analysis/diagnose/measures/unreferenced_motion.hpp"
+#include "analysis/diagnose/selection/better_shape.hpp"
+#include "analysis/diagnose/selection/cause_probability.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
-#include "analysis/diagnose/selection/nonparametric_alternatives.hpp"
-#include "analysis/numerics/distributions.hpp"
-#include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-// What the causes leave is called unexplained where chance leaves it in fewer than so many of the recordings
-// in which chance has a gap,
-constexpr double unexplained_share = 0.5;
-// unless it is so little of the gap, 4 % of its size, that the approximations of a fit may leave it, and
-// chance nearly.
-constexpr double tolerated_share = 1.6e-3;
-constexpr double tolerated_above_p = 1e-6;
-// A shape of no known origin takes the place of causes that it beats by this,
-constexpr double shape_wins_nats = 8.0;
-// and by this share of their gain: the approximations of a fit may lose as much.
-constexpr double shape_wins_share = 0.04;
-// As many effects together fit anything.
-constexpr std::size_t many_effects = 5;
-// How often a cause is right that does not explain the gap: something else is there that it may stand for.
-constexpr double part_of_unexplained = 0.2;
-constexpr double tie_nats = 4.0;
-constexpr std::size_t tie_most = 4;
-// A difference of this evidence is no tie any more, whatever chance does to it.
-constexpr double decided_nats = 8.0;
-constexpr std::size_t simulations_after_most = 50;
-// Their tail, of five, is known to half of its length. Where it says that chance hardly leaves so much, but
-// might, so many times more are asked; of what moves fewer, each measured anew.
-constexpr std::size_t times_more_in_doubt = 4;
-constexpr std::size_t times_more_in_motion = 2;
-constexpr double faint_line_share = 0.5;
-// Of the Allan variance at a second, which is the white noise's density: none is thirty times as strong
-// as its model.
-constexpr double square_of_motion = 1000.0;
 
 // What a simulation and its observation hold at once.
 constexpr double bytes_per_sample_and_thread = 160.0;
@@ -71,19 +35,20 @@ unsigned affordable_threads(std::size_t samples, double bytes_most) {
     return affordable < processors ? static_cast<unsigned>(affordable) : processors;
 }
 
-bool are_alike(const GapCurve& a, const GapCurve& b) {
-    return a.measure == b.measure && a.axis == b.axis && a.other == b.other &&
-           a.value.size() == b.value.size();
-}
-
+// The steps, in their order: predict, look for effects, judge the null, select causes, judge what they leave
+// and measure how far each closes the gap, leave out those that close nothing, decide, report.
 class Diagnoser {
 public:
     Diagnoser(std::shared_ptr<const Recording> recording, const SensorModel& model,
               const DiagnosisOptions& options)
         : recording_(std::move(recording)), options_(options), answer_() {
         const auto world = std::make_shared<const RecordedWorld>(recording_);
+        OwnStart start =
+            with_own_start(std::make_shared<const Prediction>(world, model), recording_, options_.seed);
+        prediction_ = std::move(start.prediction);
+        faint_lines_hz_ = std::move(start.faint_lines_hz);
         answer_.warnings = world->warnings();
-        prediction_ = with_own_start(std::make_shared<const Prediction>(world, model), recording_);
+        append_new(answer_.warnings, start.warnings);
         if (options_.threads == 0) {
             options_.threads = affordable_threads(prediction_->length(), options_.simulations_bytes_most);
         }
@@ -92,19 +57,22 @@ public:
     std::optional<Diagnosis> run(const std::string& model_name) {
         describe(model_name);
         if (!told("looking for effects", 0.0)) { return std::nullopt; }
-        first_ = examine(prediction_, recording_, options_.seed, options_.threads);
-        warn_of_motion();
-        for (const CatalogueEntry& entry : first_.catalogue) {
-            if (!entry.untestable.empty()) {
-                answer_.untestable.push_back({std::string(entry.effect->name), entry.untestable});
-            }
-        }
-        if (!simulate_before() || !search() || !simulate_after()) { return std::nullopt; }
-        withdraw_harmful_causes();
-        if (found_) { compare_shapes(); }
-        decide();
+        const Hypotheses first = examine(prediction_, recording_, options_.seed, options_.threads);
+        describe_tests(first);
+        NullSimulationOptions simulations =
+            simulation_options(options_.simulations, RandomPurpose::null_simulations);
+        simulations.on_progress = progress("simulating the model", 0.1, 0.5);
+        std::optional<NullJudgement> null = judge_null(first, simulations);
+        if (!null) { return std::nullopt; }
+        null_ = *std::move(null);
+        answer_.p_none = null_.p_none;
+        describe_gap_of_null();
+        answer_.corrected = prediction_->model();
+        const bool has_gap = answer_.p_none < options_.false_alarms_most;
+        if (has_gap && (!select(first) || !measure(first))) { return std::nullopt; }
+        describe_places();
+        if (has_gap) { decide(); }
         if (!widen_uncertainties()) { return std::nullopt; }
-        if (options_.holdout && !measure_on_holdout()) { return std::nullopt; }
         return std::move(answer_);
     }
 
@@ -113,80 +81,8 @@ private:
         return !options_.on_progress || options_.on_progress(what, share);
     }
 
-    // A turn-on bias is free; where the output clips, and where it lies between two codes, it matters. So is
-    // the phase that a line had at the first sample.
-    std::shared_ptr<const Prediction> with_own_start(const std::shared_ptr<const Prediction>& prediction,
-                                                     const std::shared_ptr<const Recording>& recording) {
-        SensorModel model = prediction->model();
-        for (EffectModel& entry : model.effects) {
-            if (!traits_of(entry.effect).is_line) { continue; }
-            const ObservedLine seen = observe_line(*prediction, recording, entry, options_.seed);
-            entry.params["phase_rad"] = seen.phase_rad;
-            if (recording == recording_ && seen.share < faint_line_share) { warn_of_faint(entry, seen); }
-        }
-        const Observation observation(prediction->with(model), recording, options_.seed);
-        return prediction->with(with_mean_of(observation, std::move(model)));
-    }
-
-    // The bias that leaves nothing of the observation's mean.
-    static SensorModel with_mean_of(const Observation& observation, SensorModel model) {
-        for (const std::size_t axis : observation.prediction().axes()) {
-            model.axes[axis].bias_rad_s += observation.axis(axis).mean_rad_s;
-        }
-        return model;
-    }
-
-    void warn_of_faint(const EffectModel& line, const ObservedLine& seen) {
-        const EffectValues values(line);
-        std::array<char, 160> text{};
-        (void)std::snprintf(text.data(), text.size(),
-                            "the model's %s at %.5g Hz has %.0f %% of its amplitude in the recording: one at "
-                            "that frequency among the causes takes it off again",
-                            line.effect.c_str(), values["f_hz"], 100.0 * seen.share);
-        answer_.warnings.emplace_back(text.data());
-    }
-
-    // Allan variance at a second: no drift is so fast, no vibration so slow.
-    double second_to_second_variance(std::size_t axis) const {
-        const std::vector<float>& residual = first_.observation->axis(axis).residual_rad_s;
-        const auto second = static_cast<std::size_t>(std::max(1.0, std::round(prediction_->rate_hz())));
-        double before = 0.0;
-        double squares = 0.0;
-        std::size_t seconds = 0;
-        for (; (seconds + 1) * second <= residual.size(); ++seconds) {
-            const auto from = residual.begin() + static_cast<std::ptrdiff_t>(seconds * second);
-            const double mean = std::accumulate(from, from + static_cast<std::ptrdiff_t>(second), 0.0) /
-                                static_cast<double>(second);
-            if (seconds > 0) { squares += 0.5 * (mean - before) * (mean - before); }
-            before = mean;
-        }
-        return seconds > 1 ? squares / static_cast<double>(seconds - 1) : 0.0;
-    }
-
-    // Without a reference, what turned is all noise.
-    void warn_of_motion() {
-        if (prediction_->moves()) { return; }
-        for (const std::size_t axis : prediction_->axes()) {
-            const double white = prediction_->parts(axis).back().sum();
-            if (!(second_to_second_variance(axis) > square_of_motion * white)) { continue; }
-            answer_.warnings.emplace_back(
-                "the rates stray far more than noise does: the sensor seems to have been turned, and without "
-                "a reference rate (columns ref_x_dps ... or ref_qw ...) nothing of that can be judged; use a "
-                "part at rest");
-            return;
-        }
-    }
-
-    void describe(const std::string& model_name) {
-        answer_.recording_name = recording_->name;
-        answer_.model_name = model_name;
-        answer_.rate_hz = recording_->rate_hz;
-        answer_.duration_s = recording_->duration_s();
-        answer_.samples = recording_->rows();
-        answer_.simulations = options_.simulations;
-        answer_.seed = options_.seed;
-        answer_.axes = prediction_->axes();
-        answer_.held_out = "";
+    std::function<bool(double)> progress(const char* what, double from, double share) const {
+        return [=, this](double of_step) { return told(what, from + share * of_step); };
     }
 
     NullSimulationOptions simulation_options(std::size_t simulations, RandomPurpose purpose) const {
@@ -198,278 +94,256 @@ private:
         return options;
     }
 
-    bool simulate_before() {
-        NullSimulationOptions options =
-            simulation_options(options_.simulations, RandomPurpose::null_simulations);
-        options.on_progress = [&](double share) { return told("simulating the model", 0.1 + 0.5 * share); };
-        std::optional<NullSimulations> null = simulate_null(prediction_, &first_.catalogue, options);
-        if (!null) { return false; }
-        before_ = gap_reference(null->curves);
-        evidence_tail_.emplace(best_evidence_nats(*null));
-        surprise_tail_.emplace(simulated_surprises_nats(null->curves));
-        const std::vector<GapCurve> curves = gap_curves(*first_.observation);
-        answer_.p_none = probability_of_none(curves);
-        before_curves_ = curves;
-        return true;
+    void describe(const std::string& model_name) {
+        answer_.recording_name = recording_->name;
+        answer_.model_name = model_name;
+        answer_.rate_hz = recording_->rate_hz;
+        answer_.duration_s = recording_->duration_s();
+        answer_.samples = recording_->rows();
+        answer_.simulations = options_.simulations;
+        answer_.seed = options_.seed;
+        answer_.axes = prediction_->axes();
     }
 
-    // Of the best effect, the worst curve and the stamps: three scans, each with its own chance.
-    double probability_of_none(const std::vector<GapCurve>& curves) const {
-        double evidence = -50.0;
-        double stamps = 0.0;
-        for (const std::optional<Finding>& finding : first_.findings) {
-            if (!finding) { continue; }
-            double& best = traits_of(finding->effect).is_in_stamps ? stamps : evidence;
-            best = std::max(best, finding->evidence_nats);
+    // Where nothing is found that could close it.
+    void describe_gap_of_null() {
+        answer_.floor_nats = null_.floor_nats;
+        answer_.excess_nats = std::max(null_.excess_nats, 0.0);
+        const double value = std::sqrt(1.0 + std::max(null_.excess_nats / null_.floor_nats, -1.0));
+        answer_.gap_before = answer_.gap_named = answer_.gap_after = {value, 1.0, value, value};
+    }
+
+    void describe_tests(const Hypotheses& first) {
+        for (const CatalogueEntry& entry : first.catalogue) {
+            if (entry.untestable.empty()) { continue; }
+            answer_.untestable.push_back({std::string(entry.effect->name), entry.untestable});
         }
-        const double p_effects = evidence_tail_->probability(evidence);
-        const double p_curves = surprise_tail_->probability(worst_surprise_nats(curves, before_));
-        const double p_stamps = std::exp(-stamps);
-        // The smallest of three: exact where they are independent, a little cautious where they are not.
-        const double least = std::min({p_effects, p_curves, p_stamps});
-        return -std::expm1(3.0 * std::log1p(-std::min(least, 1.0 - 1e-15)));
+        if (!seems_to_have_turned(*first.observation)) { return; }
+        answer_.warnings.emplace_back(
+            "the rates stray far more than noise does: the sensor seems to have been turned, and without "
+            "a reference rate (columns ref_x_dps ... or ref_qw ...) nothing of that can be judged; use a "
+            "part at rest");
     }
 
-    bool search() {
+    bool select(const Hypotheses& first) {
         SelectionOptions options;
-        // A single effect, in one recording of two hundred by chance.
-        options.evidence_min_nats = std::max(evidence_tail_->threshold_nats(0.005), 3.0);
+        options.evidence_min_nats = null_.evidence_min_nats;
         options.seed = options_.seed;
         options.threads = options_.threads;
-        options.on_progress = [&](double share) { return told("looking for causes", 0.6 + 0.2 * share); };
-        if (answer_.p_none >= options_.false_alarms_most) {
-            answer_.corrected = prediction_->model();
+        options.on_progress = progress("looking for causes", 0.6, 0.1);
+        std::optional<CauseSelection> found = select_causes(first, recording_, options);
+        if (!found) { return false; }
+        found_ = *std::move(found);
+        found_.corrected = with_mean_of(*found_.last.observation, std::move(found_.corrected));
+        return true;
+    }
+
+    // Without the causes that close nothing on data that the fit did not use, one after the other.
+    bool measure(const Hypotheses& first) {
+        while (!found_.causes.empty()) {
+            if (!judge_what_is_left() || !measure_causes(first)) { return false; }
+            const auto least = std::ranges::min_element(measured_.returning_nats);
+            if (*least > 0.0) { break; }
+            leave_out(static_cast<std::size_t>(least - measured_.returning_nats.begin()));
+        }
+        if (found_.causes.empty()) {
+            remainder_.reset();
             return true;
         }
-        std::optional<CauseSelection> result = select_causes(first_, recording_, options);
-        if (!result) { return false; }
-        // Causes have means, too.
-        answer_.corrected = with_mean_of(*result->last.observation, std::move(result->corrected));
-        answer_.noise_refits = result->noise_refits;
-        found_ = std::move(*result);
+        answer_.corrected = found_.corrected;
+        answer_.noise_refits = found_.noise_refits;
         return true;
     }
 
-    bool simulate_after() {
-        if (!found_ || found_->causes.empty()) { return true; }
-        after_curves_ = gap_curves(*found_->last.observation);
-        NullSimulationOptions options = simulation_options(
-            std::min(options_.simulations, simulations_after_most), RandomPurpose::simulations_after);
-        if (!judge_what_is_left(options)) { return false; }
-        if (answer_.p_left >= unexplained_below_p() || answer_.p_left < tolerated_above_p) { return true; }
-        const bool moves = prediction_->moves();
-        options.simulations *= moves ? times_more_in_motion : times_more_in_doubt;
-        options.purpose = RandomPurpose::simulations_in_doubt;
-        options.measure_anew = moves && can_be_measured_anew(*recording_);
-        return judge_what_is_left(options);
+    bool judge_what_is_left() {
+        RemainderOptions options;
+        options.simulations =
+            simulation_options(std::min(options_.simulations, options_.simulations_after_most),
+                               RandomPurpose::simulations_after);
+        options.simulations.on_progress = progress("simulating the corrected model", 0.7, 0.1);
+        options.doubted_below_p = left_from_p();
+        const auto prediction = prediction_->with(found_.corrected);
+        remainder_ = judge_remainder(prediction, Observation(prediction, recording_, options_.seed), options);
+        if (remainder_) { answer_.p_left = remainder_->p; }
+        return remainder_.has_value();
     }
 
-    double unexplained_below_p() const { return unexplained_share * options_.false_alarms_most; }
+    // What causes leave is by chance where its probability is more.
+    double left_from_p() const { return 0.5 * options_.false_alarms_most; }
 
-    bool judge_what_is_left(NullSimulationOptions options) {
-        options.on_progress = [&](double share) {
-            return told("simulating the corrected model", 0.8 + 0.2 * share);
-        };
-        std::optional<NullSimulations> null =
-            simulate_null(found_->last.prediction->with(answer_.corrected), nullptr, options);
-        if (!null) { return false; }
-        // An axis at rest may seem to move where it is measured anew, and has other curves then.
-        std::erase_if(null->curves, [&](const std::vector<GapCurve>& curves) {
-            return !std::ranges::equal(curves, after_curves_, are_alike);
-        });
-        if (null->curves.size() < options.simulations / 2) { return true; }
-        after_ = gap_reference(null->curves);
-        surprise_left_nats_ = worst_surprise_nats(after_curves_, *after_);
-        answer_.p_left =
-            EvidenceTail(simulated_surprises_nats(null->curves)).probability(surprise_left_nats_);
-        return true;
-    }
-
-    // Causes with which the model is farther from the recording than it was explain nothing.
-    void withdraw_harmful_causes() {
-        if (!after_ || answer_.p_left >= unexplained_below_p()) { return; }
-        const double before = summarise(before_curves_, before_).gap.value;
-        const double after = summarise(after_curves_, *after_).gap.value;
-        if (after <= before) { return; }
-        std::vector<std::string> effects;
-        for (const FoundCause& cause : found_->causes) { append_new(effects, {cause.finding.effect}); }
-        std::string text = "left out, since the gap would be ";
-        std::array<char, 60> gaps{};
-        (void)std::snprintf(gaps.data(), gaps.size(), "%.3g instead of %.3g with", after, before);
-        text += gaps.data();
-        for (const std::string& effect : effects) {
-            text += (effect == effects.front() ? " " : ", ") + effect;
+    bool measure_causes(const Hypotheses& first) {
+        GapTrial trial = options_.holdout ? trial_on_holdout() : trial_on_halves();
+        if (!options_.holdout) {
+            trial.stamps_before_nats = stamp_evidence_nats(first);
+            trial.stamps_named_nats = stamp_evidence_nats(found_.last);
         }
-        answer_.warnings.push_back(std::move(text));
-        found_->causes.clear();
-        found_->without_causes = answer_.corrected = prediction_->model();
-        answer_.noise_refits.clear();
-        answer_.p_left = 1.0;
-        after_.reset();
-        after_curves_.clear();
+        MeasuredGapOptions options;
+        options.simulations = std::min(options_.simulations, options.simulations);
+        options.paired_simulations = std::min(options_.simulations, options.paired_simulations);
+        options.seed = options_.seed;
+        options.threads = options_.threads;
+        options.on_progress = progress("measuring how far each cause closes the gap", 0.8, 0.1);
+        std::optional<MeasuredGap> measured = measure_gap(trial, options);
+        if (measured) { measured_ = *std::move(measured); }
+        return measured.has_value();
     }
 
-    Observation without(std::span<const FoundCause> left_out) const {
-        SensorModel model = found_->without_causes;
-        for (const FoundCause& cause : found_->causes) {
-            const bool is_left_out =
-                std::ranges::any_of(left_out, [&](const FoundCause& one) { return &one == &cause; });
-            if (!is_left_out) { model = with_cause(std::move(model), cause.finding); }
-        }
-        return {prediction_->with(model), recording_, options_.seed};
+    std::vector<Finding> findings() const {
+        std::vector<Finding> causes;
+        for (const FoundCause& found : found_.causes) { causes.push_back(found.finding); }
+        return causes;
     }
 
-    struct Worth {
-        double gain_nats = 0.0;
-        double evidence_nats = 0.0;
-    };
-
-    // `together_nats`: what the spectra's likelihood gains by all of them. One fitted beside others may have
-    // little that is its own, and much with them; what tails or codes gain is not in the spectra.
-    Worth worth_of(std::span<const FoundCause> causes, double together_nats) const {
-        Worth worth;
-        for (const FoundCause& cause : causes) {
-            worth.gain_nats += cause.finding.gain_nats;
-            worth.evidence_nats += cause.finding.evidence_nats;
-            worth.evidence_nats += found_->null_bias.of(cause.finding);
-        }
-        const double cost_nats = worth.gain_nats - worth.evidence_nats;
-        if (causes.size() > 1 && together_nats > worth.gain_nats) {
-            worth = {together_nats, together_nats - cost_nats};
-        }
-        return worth;
+    // The corrected model less its causes, which were added last.
+    static SensorModel without_causes(SensorModel corrected, const std::vector<Finding>& causes) {
+        std::size_t entries = 0;
+        for (const Finding& cause : causes) { entries += cause.entries.size(); }
+        corrected.effects.resize(corrected.effects.size() - entries);
+        return corrected;
     }
 
-    // In place of every cause, and of all of them.
-    void compare_shapes() {
-        const std::span<const FoundCause> all = found_->causes;
-        std::vector<std::span<const FoundCause>> places;
-        for (std::size_t i = 0; i < all.size(); ++i) { places.push_back(all.subspan(i, 1)); }
-        if (all.size() != 1) { places.push_back(all); }
-        const Observation with = without({});
-        std::vector<std::optional<BetterShape>> better(places.size());
-        parallel_for(places.size(), options_.threads, [&](std::size_t i) {
-            const Observation left = without(places[i]);
-            const std::optional<NonparametricFit> shape = best_nonparametric(left, with);
-            if (!shape) { return; }
-            const double together_nats = log_likelihood_nats(with) - log_likelihood_nats(left);
-            const Worth causes = worth_of(places[i], together_nats);
-            const double more_nats = shape->evidence_nats - causes.evidence_nats;
-            if (more_nats < std::max(shape_wins_nats, shape_wins_share * causes.gain_nats)) { return; }
-            std::vector<std::string> than;
-            for (const FoundCause& cause : places[i]) { than.push_back(cause.finding.effect); }
-            better[i] = BetterShape{shape->words, std::move(than), more_nats};
-        });
-        for (std::optional<BetterShape>& one : better) {
-            if (!one) { continue; }
-            if (!answer_.better_shape || one->evidence_nats > answer_.better_shape->evidence_nats) {
-                answer_.better_shape = std::move(one);
+    GapTrial trial_on_halves() {
+        GapTrial trial{recording_, {}, {}, findings(), 0.0, 0.0};
+        trial.without_causes = without_causes(found_.corrected, trial.causes);
+        answer_.not_held_out.clear();
+        for (const Finding& cause : trial.causes) {
+            if (!can_be_halved(cause.effect, *prediction_)) {
+                append_new(answer_.not_held_out, {cause.effect});
             }
         }
+        const auto base = prediction_->with(found_.without_causes);
+        for (const auto& [fitted, judging] :
+             {std::pair(Half::first, Half::second), std::pair(Half::second, Half::first)}) {
+            trial.folds.push_back(
+                {prediction_->of_half(judging),
+                 fitted_to_half(base->of_half(fitted), recording_, trial.causes, options_.seed)});
+        }
+        return trial;
     }
 
-    void describe_domains() {
-        const MeasuredGap before{before_curves_, before_};
-        if (!after_) {
+    // What happened at one time of the first recording did not happen in the second.
+    GapTrial trial_on_holdout() {
+        answer_.held_out = options_.holdout->name;
+        GapTrial trial{options_.holdout, {}, {}, findings(), 0.0, 0.0};
+        std::vector<std::optional<Finding>> lasting;
+        for (Finding& cause : trial.causes) {
+            const bool is_event = find_effect(cause.effect)->signature->event;
+            if (is_event) {
+                append_new(answer_.warnings, {cause.effect + " happened in the first recording: the second "
+                                                             "is judged without it"});
+                cause.entries.clear();
+                cause.sd.clear();
+            }
+            lasting.push_back(is_event ? std::nullopt : std::optional(cause));
+        }
+        const auto world = std::make_shared<const RecordedWorld>(options_.holdout);
+        const auto given = std::make_shared<const Prediction>(world, prediction_->model());
+        SensorModel corrected = without_causes(found_.corrected, findings());
+        for (const auto& cause : lasting) {
+            if (cause) { corrected = with_cause(std::move(corrected), *cause); }
+        }
+        const auto named = with_own_start(given->with(corrected), options_.holdout, options_.seed);
+        trial.without_causes = without_causes(named.prediction->model(), trial.causes);
+        trial.folds.push_back(
+            {with_own_start(given, options_.holdout, options_.seed).prediction, std::move(lasting)});
+        return trial;
+    }
+
+    void leave_out(std::size_t cause) {
+        const Finding& finding = found_.causes[cause].finding;
+        append_new(answer_.warnings,
+                   {finding.effect + " is left out: on data that the fit did not use the gap is no smaller "
+                                     "with it"});
+        SensorModel model = without_causes(std::move(found_.corrected), findings());
+        found_.causes.erase(found_.causes.begin() + static_cast<std::ptrdiff_t>(cause));
+        for (const FoundCause& left : found_.causes) { model = with_cause(std::move(model), left.finding); }
+        const Observation seen(prediction_->with(model), recording_, options_.seed);
+        found_.corrected = with_mean_of(seen, std::move(model));
+    }
+
+    void describe_places() {
+        answer_.where = farthest_place(null_.curves, null_.reference);
+        const JudgedCurves before{null_.curves, null_.reference};
+        if (!remainder_) {
             answer_.domains = gap_domains(before, nullptr, answer_.band_probability);
             return;
         }
-        const MeasuredGap after{after_curves_, *after_};
+        const JudgedCurves after{remainder_->curves, remainder_->reference};
         answer_.domains = gap_domains(before, &after, answer_.band_probability);
     }
 
     void decide() {
-        const GapSummary before = summarise(before_curves_, before_);
-        const GapSummary after = after_ ? summarise(after_curves_, *after_) : before;
-        answer_.gap_before = before.gap;
-        answer_.gap_after = after.gap;
-        describe_domains();
-        if (answer_.p_none >= options_.false_alarms_most) {
-            answer_.verdict = Verdict::none;
-            return;
+        const JudgedCurves last = remainder_ ? JudgedCurves{remainder_->curves, remainder_->reference}
+                                             : JudgedCurves{null_.curves, null_.reference};
+        answer_.left = places_that_stand_out(last.curves, last.reference);
+        answer_.better_shape = better_shape(found_, prediction_, recording_,
+                                            {.seed = options_.seed, .threads = options_.threads});
+        if (!found_.causes.empty()) {
+            answer_.gap_before = measured_.before;
+            answer_.gap_named = answer_.gap_after = measured_.named;
+            answer_.shrink = measured_.shrink;
+            answer_.shrink_modelled = measured_.shrink.value;
+            answer_.floor_nats = measured_.floor_nats;
+            answer_.excess_nats = measured_.excess_nats;
         }
-        const double excess_before = before.gap.value * before.gap.value - 1.0;
-        const double excess_after = std::max(after.gap.value * after.gap.value - 1.0, 0.0);
-        const bool next_to_chance =
-            answer_.p_left >= tolerated_above_p || surprise_left_nats_ < formulas_share * found_gain_nats();
-        const bool tolerable = excess_after < tolerated_share * excess_before && next_to_chance;
-        const bool explained = after_ && !answer_.better_shape && effects_found() < many_effects &&
-                               (answer_.p_left >= unexplained_below_p() || tolerable);
-        answer_.verdict = explained ? Verdict::known : Verdict::unexplained;
-        if (found_) {
-            for (const FoundCause& found : found_->causes) {
-                answer_.causes.push_back(cause_of(found, explained));
-            }
+        for (std::size_t i = 0; i < found_.causes.size(); ++i) {
+            Cause cause =
+                with_probability(found_.causes[i], measured_.returning_nats[i], answer_.better_shape, {});
+            cause.share = measured_.shares[i];
+            cause.sense = sense_of(cause.finding);
+            answer_.causes.push_back(std::move(cause));
         }
-        if (explained) {
-            validate_halves();
-            close_by_causes();
-        } else {
-            const double shrink = excess_before > 0.0 ? 1.0 - excess_after / excess_before : 0.0;
-            // What is not right may look right where it was fitted, and close nothing.
-            answer_.shrink = answer_.shrink_hi = std::clamp(shrink, 0.0, 1.0);
-            answer_.shrink_lo = 0.0;
-        }
-        share_among_causes(answer_);
+        std::ranges::stable_sort(answer_.causes, std::greater{},
+                                 [](const Cause& cause) { return cause.share.value; });
+        answer_.verdict = verdict();
+        if (answer_.verdict == Verdict::known) { answer_.where = answer_.causes.front().finding.where; }
         propose_recordings();
-        answer_.where = explained ? answer_.causes.front().finding.where : before.where;
-        if (!explained && after_ && !answer_.better_shape) { answer_.left = after.where; }
     }
 
-    double found_gain_nats() const {
-        double sum = 0.0;
-        for (const FoundCause& cause : found_->causes) { sum += cause.finding.gain_nats; }
-        return sum;
+    Verdict verdict() const {
+        const auto is_named = [&](const Cause& cause) {
+            return probability_of_tie(cause) >= options_.named_from_probability;
+        };
+        const auto explains = [&](const Cause& cause) {
+            return is_named(cause) && cause.share.value >= options_.small_share;
+        };
+        if (answer_.causes.empty()) { return Verdict::unexplained; }
+        const bool closed =
+            answer_.p_left >= left_from_p() || answer_.shrink.value > 1.0 - options_.small_share;
+        if (closed && std::ranges::all_of(answer_.causes, is_named)) { return Verdict::known; }
+        return std::ranges::any_of(answer_.causes, explains) ? Verdict::partly : Verdict::unexplained;
     }
 
-    std::size_t effects_found() const {
-        std::set<std::string> effects;
-        for (const FoundCause& cause : found_->causes) { effects.insert(cause.finding.effect); }
-        return effects.size();
+    // A line at the place of one that the model has, and the recording has not, takes it off.
+    Sense sense_of(const Finding& finding) const {
+        if (!finding.where.freq_hz || !traits_of(finding.effect).is_line) { return Sense::recording_has; }
+        const bool takes_off = std::ranges::any_of(faint_lines_hz_, [&](double f_hz) {
+            return finding.where.freq_hz->from <= f_hz && f_hz <= finding.where.freq_hz->to;
+        });
+        return takes_off ? Sense::model_has : Sense::recording_has;
     }
 
     // What would settle what is open.
     void propose_recordings() {
         for (const Cause& cause : answer_.causes) {
-            if (cause.decided_by.empty()) { continue; }
-            const Rival& rival = cause.tie_group[1];
-            std::string proposal =
-                telling_apart(cause.finding.effect) + rival.effect + ": " + cause.decided_by;
-            // What noise tells grows with the time that it is listened to.
-            if (traits_of(cause.finding.effect).is_noise) {
-                const double times = std::ceil(decided_nats / std::max(rival.evidence_below_best_nats, 0.5));
-                proposal += ", some " + std::to_string(std::max(2, static_cast<int>(times))) +
-                            " times as long as this one";
-            }
-            answer_.next_recordings.push_back(std::move(proposal));
+            std::string proposal = deciding_recording(cause);
+            if (!proposal.empty()) { answer_.next_recordings.push_back(std::move(proposal)); }
         }
-        if (answer_.verdict == Verdict::unexplained) {
-            answer_.next_recordings.emplace_back(
-                "what is not explained: a second recording under the same conditions tells whether it comes "
-                "back at the same place, and one under others (temperature, supply, mounting, sample rate) "
-                "what "
-                "it depends on");
-        }
+        if (answer_.verdict == Verdict::known) { return; }
+        answer_.next_recordings.emplace_back(
+            "what is not explained: a second recording under the same conditions tells whether it comes back "
+            "at the same place, and one under others (temperature, supply, mounting, sample rate) what it "
+            "depends on");
     }
 
-    void validate_halves() {
-        std::vector<Finding> causes;
-        for (const FoundCause& found : found_->causes) { causes.push_back(found.finding); }
-        answer_.split_half = validate_by_halves(prediction_->with(found_->without_causes), recording_, causes,
-                                                options_.seed, options_.threads);
-    }
-
-    // Of a gap that is not explained the causes are no more than a guess.
     bool widen_uncertainties() {
-        if (answer_.verdict != Verdict::known) { return true; }
+        if (answer_.causes.empty()) { return true; }
         BootstrapOptions options{.seed = options_.seed, .threads = options_.threads};
-        options.on_progress = [&](double share) {
-            return told("looking how well the parameters are known", share);
-        };
+        options.on_progress = progress("looking how well the parameters are known", 0.9, 0.1);
         std::vector<Finding> causes;
         for (const Cause& cause : answer_.causes) { causes.push_back(cause.finding); }
         std::optional<std::vector<Finding>> known = with_bootstrap_sd(
-            prediction_->with(found_->without_causes), answer_.corrected, std::move(causes), options);
+            prediction_->with(found_.without_causes), answer_.corrected, std::move(causes), options);
         if (!known) { return false; }
         for (std::size_t i = 0; i < known->size(); ++i) {
             answer_.causes[i].finding = std::move((*known)[i]);
@@ -477,123 +351,18 @@ private:
         return true;
     }
 
-    // Along what the causes change, the distance of a recording is sqrt(2 gain / parameters), a simulation's
-    // is 1 (twice a log likelihood ratio is chi-square with as many degrees of freedom as parameters). Of the
-    // distance, what the parameters' own error leaves is chi-square likewise; and what fits of the halves
-    // leave in excess of that.
-    void close_by_causes() {
-        double gain_nats = 0.0;
-        double parameters = 0.0;
-        for (const Cause& cause : answer_.causes) {
-            const double own = std::max(1, cause.finding.parameters);
-            gain_nats += cause.finding.gain_nats;
-            parameters += own;
-        }
-        const auto left = [&](double square) {
-            const double excess = 2.0 * answer_.split_half.excess_nats;
-            return std::clamp(1.0 - (square + excess) / (2.0 * gain_nats), 0.0, 1.0);
-        };
-        answer_.shrink = left(parameters);
-        answer_.shrink_lo = left(chi_squared_quantile(parameters, 0.975));
-        answer_.shrink_hi = left(chi_squared_quantile(parameters, 0.025));
-        const double along = std::sqrt(1.0 + 2.0 * gain_nats / parameters);
-        if (along > answer_.gap_before.value) {
-            const double sd = std::sqrt((2.0 * along * along - 1.0) / (2.0 * parameters)) / along;
-            answer_.gap_before = {along, 1.0, std::max(1.0, along - 1.96 * sd), along + 1.96 * sd};
-        }
-        const auto after = [&](double shrink) {
-            const double before = answer_.gap_before.value;
-            return std::sqrt(1.0 + (1.0 - shrink) * (before * before - 1.0));
-        };
-        answer_.gap_after = {after(answer_.shrink), 1.0, after(answer_.shrink_hi), after(answer_.shrink_lo)};
-    }
-
-    // The gap of a recording that had no part in the fit.
-    std::optional<GapSummary> gap_on_holdout(const std::shared_ptr<const RecordedWorld>& world,
-                                             const SensorModel& model) {
-        const auto prediction =
-            with_own_start(std::make_shared<const Prediction>(world, model), options_.holdout);
-        NullSimulationOptions options = simulation_options(
-            std::min(options_.simulations, simulations_after_most), RandomPurpose::holdout_simulations);
-        options.on_progress = [&](double share) { return told("judging the second recording", share); };
-        const std::optional<NullSimulations> null = simulate_null(prediction, nullptr, options);
-        if (!null) { return std::nullopt; }
-        const Observation observation(prediction, options_.holdout, options_.seed);
-        return summarise(gap_curves(observation), gap_reference(null->curves));
-    }
-
-    bool measure_on_holdout() {
-        const auto world = std::make_shared<const RecordedWorld>(options_.holdout);
-        const std::optional<GapSummary> before = gap_on_holdout(world, prediction_->model());
-        const SensorModel corrected = corrected_without_events();
-        const std::optional<GapSummary> after =
-            answer_.causes.empty() ? before : gap_on_holdout(world, corrected);
-        if (!before || !after) { return false; }
-        answer_.held_out = options_.holdout->name;
-        answer_.gap_before = before->gap;
-        answer_.gap_after = after->gap;
-        const auto excess = [](double gap) { return std::max(gap * gap - 1.0, 0.0); };
-        const double gap = excess(before->gap.value);
-        const auto closed = [&](double left) {
-            return gap > 0.0 ? std::clamp(1.0 - excess(left) / gap, 0.0, 1.0) : 0.0;
-        };
-        answer_.shrink = closed(after->gap.value);
-        answer_.shrink_lo = closed(after->gap.hi);
-        answer_.shrink_hi = closed(after->gap.lo);
-        share_among_causes(answer_);
-        return true;
-    }
-
-    // For another recording than that of the causes.
-    SensorModel corrected_without_events() {
-        for (const Cause& cause : answer_.causes) {
-            const std::string& effect = cause.finding.effect;
-            if (!is_event(effect)) { continue; }
-            append_new(answer_.warnings,
-                       {effect + " happened in the first recording: the second is judged without it"});
-        }
-        return without_events(answer_.corrected, prediction_->model().effects.size());
-    }
-
-    // The evidence of all effects as their probabilities, equal before the recording was seen.
-    Cause cause_of(const FoundCause& found, bool explained) const {
-        Cause cause{found.finding, 0.0, {}, 0.0, {}};
-        double sum = 1.0;
-        for (const Finding& rival : found.rivals) {
-            if (rival.effect == found.finding.effect) { continue; }
-            const double behind = found.finding.evidence_nats - rival.evidence_nats;
-            sum += std::exp(-behind);
-            if (behind < tie_nats && cause.tie_group.size() < tie_most) {
-                cause.tie_group.push_back({rival.effect, behind});
-            }
-        }
-        if (!cause.tie_group.empty()) {
-            cause.tie_group.insert(cause.tie_group.begin(), {found.finding.effect, 0.0});
-        }
-        cause.score = (explained ? 1.0 : part_of_unexplained) / sum;
-        const EffectSignature& signature = *find_effect(found.finding.effect)->signature;
-        if (!cause.tie_group.empty()) { cause.decided_by = signature.decided_by; }
-        return cause;
-    }
-
     std::shared_ptr<const Recording> recording_;
     DiagnosisOptions options_;
     std::shared_ptr<const Prediction> prediction_;
+    std::vector<double> faint_lines_hz_;
     Diagnosis answer_;
-    Hypotheses first_;
-    GapReference before_;
-    std::vector<GapCurve> before_curves_;
-    std::optional<EvidenceTail> evidence_tail_;
-    std::optional<EvidenceTail> surprise_tail_;
-    std::optional<CauseSelection> found_;
-    std::optional<GapReference> after_;
-    std::vector<GapCurve> after_curves_;
-    double surprise_left_nats_ = 0.0;
+    NullJudgement null_;
+    CauseSelection found_;
+    std::optional<Remainder> remainder_;
+    MeasuredGap measured_;
 };
 
 }  // namespace
-
-std::string telling_apart(const std::string& effect) { return "to tell " + effect + " from "; }
 
 void append_new(std::vector<std::string>& to, const std::vector<std::string>& from) {
     for (const std::string& sentence : from) {

@@ -21,6 +21,13 @@ struct DiagnosisOptions {
     std::size_t simulations = 200;
     // A gap is called where chance would have it no more often; what causes leave, half as often.
     double false_alarms_most = 0.01;
+    // Of the corrected model, to judge what it leaves.
+    std::size_t simulations_after_most = 50;
+    // Less is left of the gap's square where it is called known, and a cause closes more where it is called
+    // known in part (diagnosis.md's tenth).
+    double small_share = 0.1;
+    // A cause that is less likely right, with its ties, is named as a guess only.
+    double named_from_probability = 0.5;
     // 0: all processors, fewer where their simulations would take more than `simulations_bytes_most` at a
     // time. The result is the same for any number.
     unsigned threads = 0;
@@ -34,9 +41,6 @@ struct DiagnosisOptions {
 // the work was ended early.
 std::optional<Diagnosis> diagnose(std::shared_ptr<const Recording> recording, const SensorModel& model,
                                   const std::string& model_name, const DiagnosisOptions& options = {});
-
-// How the proposal of a next recording begins that would settle a tie of the effect.
-std::string telling_apart(const std::string& effect);
 
 // The function appends the sentences that are not there yet.
 void append_new(std::vector<std::string>& to, const std::vector<std::string>& from);

@@ -106,8 +106,8 @@ struct Cause {
     std::string decided_by;  // the recording that would break the tie, with the length it needs; or ""
 };
 
-// The unnamed is what was modelled without an effect: a free density, drift, mean or noise level, or stretches
-// of time that were masked.
+// The unnamed is what was modelled without an effect: a free density, drift, mean or noise level, or
+// stretches of time that were masked.
 struct Unnamed {
     std::string form;  // "density", "drift", "temperature", "rate", "level", "masked"
     Place where;
@@ -202,8 +202,11 @@ struct Diagnosis {
     // The gaps of the first model, of the model with the causes, and of that with the unnamed forms as well,
     // measured by simulating, on data that the fit did not use.
     Gap gap_before, gap_named, gap_after;
-    Share shrink;                   // the share of the gap that the causes close
-    double shrink_modelled = 0.0;   // that the causes and the unnamed forms close
+    Share shrink;                  // the share of the gap that the causes close
+    double shrink_modelled = 0.0;  // that the causes and the unnamed forms close
+    // A simulation's surprisal, and what the recording has more under the first model. Gaps are made of them.
+    double floor_nats = 0.0;
+    double excess_nats = 0.0;
     // Effects that were measured on the data that they were fitted to: half a recording does not tell them.
     std::vector<std::string> not_held_out;
     std::string held_out;  // the name of the second recording that the gap was measured on; empty without one

@@ -24,7 +24,7 @@ enum class RandomPurpose : std::uint32_t {
     null_bias_simulations,  // of the model with its main cause
     simulations_after,      // of the corrected model
     simulations_in_doubt,   // of the corrected model, once more
-    holdout_simulations,    // like the second recording
+    measured_gap_simulations,  // of the corrected model, for the parts of the data that judge
     bootstrap_simulations,
 };
 

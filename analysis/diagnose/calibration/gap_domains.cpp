@@ -22,7 +22,7 @@ struct Band {
 };
 
 // `shift`: by point, added to the reference before it is shown.
-Band band_of(const MeasuredGap& gap, std::size_t index, const std::vector<double>& shift, double width_sd,
+Band band_of(const JudgedCurves& gap, std::size_t index, const std::vector<double>& shift, double width_sd,
              double (*shown)(double)) {
     Band band;
     const GapCurve& curve = gap.curves[index];
@@ -38,7 +38,7 @@ Band band_of(const MeasuredGap& gap, std::size_t index, const std::vector<double
 
 }  // namespace
 
-std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap* after,
+std::vector<GapDomain> gap_domains(const JudgedCurves& before, const JudgedCurves* after,
                                    double band_probability) {
     const double width_sd = normal_quantile(0.5 * (1.0 + band_probability));
     const std::vector<double> surprises_before = surprises_nats(before.curves, before.reference);

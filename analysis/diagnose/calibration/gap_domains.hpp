@@ -9,7 +9,7 @@
 namespace gyrolog {
 
 // The curves of one observation with their reference.
-struct MeasuredGap {
+struct JudgedCurves {
     const std::vector<GapCurve>& curves;
     const GapReference& reference;
 };
@@ -17,7 +17,7 @@ struct MeasuredGap {
 // The function makes a domain of each curve. `after` is null where the model was not changed. The corrected
 // model leaves another residual of the same recording: its band is drawn where it lies as seen from the
 // recording. `band_probability`: of a simulation's point to lie in the band.
-std::vector<GapDomain> gap_domains(const MeasuredGap& before, const MeasuredGap* after,
+std::vector<GapDomain> gap_domains(const JudgedCurves& before, const JudgedCurves* after,
                                    double band_probability);
 
 }  // namespace gyrolog

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "analysis/numerics/distributions.hpp"
 
@@ -166,10 +167,11 @@ CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::
     // The simulations' mean and sd are themselves uncertain: Student's tail, not the normal one.
     const double degrees = reference.degrees_of_freedom;
     const auto places = static_cast<double>(gap.z.size() + gap.window_z.size());
-    const double at_one_place =
+    gap.at_one_place_nats =
         std::max(0.0, 0.5 * (degrees + 1.0) * std::log1p(worst * worst / degrees) - std::log(places));
-    gap.surprise_nats = std::max(at_one_place, gamma_surprise(gap.squares, reference.square_mean[index],
-                                                              reference.square_variance[index]));
+    gap.surprise_nats =
+        std::max(gap.at_one_place_nats,
+                 gamma_surprise(gap.squares, reference.square_mean[index], reference.square_variance[index]));
     return gap;
 }
 
@@ -177,6 +179,7 @@ namespace {
 
 struct Surprises {
     std::vector<double> own_nats;                                // by curve
+    std::vector<double> at_one_place_nats;                       // by curve
     std::map<const Measure*, std::vector<std::size_t>> of_axes;  // curves of one axis alone, by measure
     std::map<const Measure*, double> together_nats;              // where there are several
 };
@@ -187,6 +190,7 @@ Surprises surprises_of(const std::vector<GapCurve>& curves, const GapReference& 
     for (std::size_t c = 0; c < curves.size(); ++c) {
         gaps.push_back(gap_of(curves[c], reference, c));
         surprises.own_nats.push_back(gaps.back().surprise_nats);
+        surprises.at_one_place_nats.push_back(gaps.back().at_one_place_nats);
         if (curves[c].of_all_axes) { continue; }
         std::vector<std::size_t>& same = surprises.of_axes[curves[c].measure];
         const bool as_long = same.empty() || gaps[same.front()].z.size() == gaps[c].z.size();
@@ -218,6 +222,29 @@ double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReferen
     double worst = std::ranges::max(all.own_nats);
     for (const auto& [measure, together_nats] : all.together_nats) { worst = std::max(worst, together_nats); }
     return worst;
+}
+
+std::vector<double> measure_surprises_nats(const std::vector<GapCurve>& curves,
+                                           const GapReference& reference) {
+    const Surprises all = surprises_of(curves, reference);
+    // In the curves' order, so that sums are the same in every run.
+    std::vector<std::pair<const Measure*, std::vector<double>>> by_measure;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        auto same =
+            std::ranges::find(by_measure, curves[c].measure, [](const auto& one) { return one.first; });
+        if (same == by_measure.end()) { same = by_measure.insert(same, {curves[c].measure, {}}); }
+        const bool is_normal = curves[c].measure->is_normal_far_out;
+        same->second.push_back(is_normal ? all.own_nats[c] : all.at_one_place_nats[c]);
+    }
+    std::vector<double> surprises;
+    for (const auto& [measure, of_curves] : by_measure) {
+        const double choice_nats = std::log(static_cast<double>(of_curves.size()));
+        const auto together = all.together_nats.find(measure);
+        const bool has_together = measure->is_normal_far_out && together != all.together_nats.end();
+        surprises.push_back(std::max(
+            {std::ranges::max(of_curves) - choice_nats, 0.0, has_together ? together->second : 0.0}));
+    }
+    return surprises;
 }
 
 std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations) {

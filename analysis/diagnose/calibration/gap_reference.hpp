@@ -37,6 +37,7 @@ struct CurveDistance {
     // neighbouring points together; the largest. A point is judged by Student's t, the sum by a gamma
     // distribution with the simulations' mean and variance.
     double surprise_nats = 0.0;
+    double at_one_place_nats = 0.0;  // by Student's t alone
 };
 
 CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
@@ -49,6 +50,11 @@ inline constexpr double stands_out_nats = 7.0;
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
 // The largest of all surprises, of single curves and of axes together.
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
+// By measure that one observation has: the largest surprise of its curves, less ln of their number for the
+// choice, or that of all axes' curves together if that is larger. Of a measure that is not normal far out,
+// at one place.
+std::vector<double> measure_surprises_nats(const std::vector<GapCurve>& curves,
+                                           const GapReference& reference);
 // The worst surprise of every simulation against all the others: a new recording is not in its own reference
 // either.
 std::vector<double> simulated_surprises_nats(const SimulatedCurves& simulations);

@@ -1,39 +1,71 @@
 #include "analysis/diagnose/calibration/gap_summary.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <functional>
 #include <utility>
 
 namespace gyrolog {
 
-GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& reference) {
-    GapSummary summary;
+namespace {
+
+struct JudgedCurve {
+    const GapCurve* curve = nullptr;
+    CurveDistance distance;
+    double surprise_nats = 0.0;  // its own or that of all axes together
+};
+
+std::vector<JudgedCurve> judged(const std::vector<GapCurve>& curves, const GapReference& reference) {
     const std::vector<double> surprises = surprises_nats(curves, reference);
-    std::vector<CurveDistance> gaps;
-    std::size_t worst = 0;
+    std::vector<JudgedCurve> all;
     for (std::size_t c = 0; c < curves.size(); ++c) {
-        gaps.push_back(gap_of(curves[c], reference, c));
-        const auto rank = [&](std::size_t i) { return std::pair(surprises[i], gaps[i].surprise_nats); };
-        if (rank(c) > rank(worst)) { worst = c; }
+        all.push_back({&curves[c], gap_of(curves[c], reference, c), surprises[c]});
     }
-    const double value = gaps[worst].distance;
-    const auto points = static_cast<double>(std::max<std::size_t>(gaps[worst].z.size(), 1));
-    // Of a noncentral chi-square with as many degrees of freedom as points, its root.
-    const double sd = std::sqrt((2.0 * value * value - 1.0 > 0.0 ? 2.0 * value * value - 1.0 : 1.0) /
-                                (2.0 * points * value * value + 1e-12));
-    summary.gap = {value, 1.0, std::max(0.0, value - 1.96 * sd), value + 1.96 * sd};
-    for (std::size_t c = 0; c < curves.size(); ++c) {
-        if (curves[worst].of_all_axes) { summary.where.axes.push_back(curves[c].axis); }
-        if (curves[c].measure != curves[worst].measure || surprises[c] < stands_out_nats) { continue; }
-        if (curves[c].of_all_axes) { continue; }
-        summary.where.axes.push_back(curves[c].axis);
+    return all;
+}
+
+auto rank(const JudgedCurve& one) { return std::pair(one.surprise_nats, one.distance.surprise_nats); }
+
+Place place_of(const JudgedCurve& worst, const std::vector<JudgedCurve>& all) {
+    Place where;
+    for (const JudgedCurve& one : all) {
+        if (worst.curve->of_all_axes) { where.axes.push_back(one.curve->axis); }
+        if (one.curve->measure != worst.curve->measure || one.curve->of_all_axes) { continue; }
+        if (one.surprise_nats >= stands_out_nats) { where.axes.push_back(one.curve->axis); }
     }
-    if (summary.where.axes.empty()) { summary.where.axes.push_back(curves[worst].axis); }
-    std::vector<std::size_t>& axes = summary.where.axes;
-    std::ranges::sort(axes);
-    axes.erase(std::unique(axes.begin(), axes.end()), axes.end());
-    curves[worst].measure->locate(curves[worst], gaps[worst].z, summary.where);
-    return summary;
+    if (where.axes.empty()) { where.axes.push_back(worst.curve->axis); }
+    std::ranges::sort(where.axes);
+    where.axes.erase(std::unique(where.axes.begin(), where.axes.end()), where.axes.end());
+    worst.curve->measure->locate(*worst.curve, worst.distance.z, where);
+    return where;
+}
+
+}  // namespace
+
+Place farthest_place(const std::vector<GapCurve>& curves, const GapReference& reference) {
+    const std::vector<JudgedCurve> all = judged(curves, reference);
+    return place_of(*std::ranges::max_element(all, {}, rank), all);
+}
+
+std::vector<Left> places_that_stand_out(const std::vector<GapCurve>& curves, const GapReference& reference) {
+    const std::vector<JudgedCurve> all = judged(curves, reference);
+    std::vector<const JudgedCurve*> worst_of_measure;
+    for (const JudgedCurve& one : all) {
+        if (one.surprise_nats < stands_out_nats) { continue; }
+        const auto same = std::ranges::find(worst_of_measure, one.curve->measure,
+                                            [](const JudgedCurve* other) { return other->curve->measure; });
+        if (same == worst_of_measure.end()) {
+            worst_of_measure.push_back(&one);
+        } else if (rank(**same) < rank(one)) {
+            *same = &one;
+        }
+    }
+    std::vector<Left> places;
+    for (const JudgedCurve* worst : worst_of_measure) {
+        places.push_back({place_of(*worst, all), worst->distance.distance});
+    }
+    std::ranges::stable_sort(places, std::greater{}, &Left::size);
+    return places;
 }
 
 }  // namespace gyrolog

@@ -1,4 +1,4 @@
-// The gap summary tells how far the curves are off, and where.
+// The gap summary tells where curves are off.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,10 @@
 
 namespace gyrolog {
 
-struct GapSummary {
-    Gap gap;      // of the curve that is furthest off
-    Place where;  // of that curve
-};
+// The place of the curve that surprises most, on all axes whose curves of that measure stand out.
+Place farthest_place(const std::vector<GapCurve>& curves, const GapReference& reference);
 
-// The gap is the distance of the curve that surprises most, with its 95 % interval: that of the root of a
-// noncentral chi-square with as many degrees of freedom as the curve has points.
-GapSummary summarise(const std::vector<GapCurve>& curves, const GapReference& reference);
+// By measure with a curve that stands out: its place, and how far the curve is off. The largest first.
+std::vector<Left> places_that_stand_out(const std::vector<GapCurve>& curves, const GapReference& reference);
 
 }  // namespace gyrolog

@@ -1,14 +1,13 @@
 #include "analysis/diagnose/multiscale/joined_passes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "analysis/diagnose/calibration/cause_shares.hpp"
 #include "analysis/diagnose/diagnosis.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
+#include "analysis/diagnose/selection/cause_probability.hpp"
 
 namespace gyrolog {
 namespace {
@@ -24,8 +23,6 @@ double gain_nats(const Diagnosis& pass) {
     for (const Cause& cause : pass.causes) { sum += cause.finding.gain_nats; }
     return sum;
 }
-
-double excess(const Gap& gap) { return std::max(gap.value * gap.value - 1.0, 0.0); }
 
 // What is left where nothing was found is all of it.
 double p_left(const Diagnosis& pass) {
@@ -58,9 +55,10 @@ private:
         if (means_.verdict != beginning_.verdict) {
             return static_cast<int>(means_.verdict) > static_cast<int>(beginning_.verdict);
         }
-        if (means_.verdict == Verdict::known) { return gain_nats(means_) > gain_nats(beginning_); }
-        return means_.verdict == Verdict::unexplained &&
-               means_.gap_before.value > beginning_.gap_before.value;
+        if (means_.verdict == Verdict::unexplained) {
+            return means_.gap_before.value > beginning_.gap_before.value;
+        }
+        return gain_nats(means_) > gain_nats(beginning_);
     }
 
     void describe() {
@@ -84,12 +82,9 @@ private:
     void join_causes() {
         whole_.causes = beginning_.causes;
         whole_.causes.insert(whole_.causes.end(), means_.causes.begin(), means_.causes.end());
-        std::ranges::stable_sort(whole_.causes, std::ranges::greater{},
-                                 [](const Cause& cause) { return cause.finding.gain_nats; });
-        if (whole_.verdict == Verdict::known) { whole_.where = whole_.causes.front().finding.where; }
-        if (whole_.verdict != Verdict::unexplained) { return; }
         if (!whole_.better_shape) { whole_.better_shape = other().better_shape; }
-        whole_.left = whole_.better_shape ? Place{} : main_.causes.empty() ? main_.where : main_.left;
+        whole_.left.insert(whole_.left.end(), other().left.begin(), other().left.end());
+        std::ranges::stable_sort(whole_.left, std::ranges::greater{}, &Left::size);
     }
 
     const Diagnosis& other() const { return &main_ == &means_ ? beginning_ : means_; }
@@ -120,33 +115,46 @@ private:
         return noise.coefficient == 'B' ? of_model.B_rad_per_s : of_model.K_rad_per_s_sqrt_s;
     }
 
+    // Surprisals of passes add up, as those of measures do.
     void join_gaps() {
         if (!beginning_.held_out.empty() || !means_.held_out.empty()) {
             report_second_recording();
-            return;
+        } else {
+            add_passes();
         }
-        const bool known = whole_.verdict == Verdict::known;
-        const auto weight = [&](const Diagnosis& pass) {
-            if (pass.verdict == Verdict::none) { return 0.0; }
-            return known ? gain_nats(pass) : excess(pass.gap_before);
+        std::ranges::stable_sort(whole_.causes, std::ranges::greater{},
+                                 [](const Cause& cause) { return cause.share.value; });
+        if (whole_.verdict == Verdict::known) { whole_.where = whole_.causes.front().finding.where; }
+    }
+
+    void add_passes() {
+        const double sum_nats = beginning_.excess_nats + means_.excess_nats;
+        if (!(sum_nats > 0.0)) { return; }
+        const auto part = [&](const Diagnosis& pass) { return pass.excess_nats / sum_nats; };
+        whole_.excess_nats = sum_nats;
+        whole_.floor_nats = beginning_.floor_nats + means_.floor_nats;
+        const auto joined_share = [&](double Share::*end) {
+            return part(beginning_) * beginning_.shrink.*end + part(means_) * means_.shrink.*end;
         };
-        const std::array<double, 2> weights{weight(beginning_), weight(means_)};
-        const double sum = weights[0] + weights[1];
-        if (!(sum > 0.0)) { return; }
-        const auto joined = [&](double Diagnosis::*share) {
-            return (weights[0] * beginning_.*share + weights[1] * means_.*share) / sum;
+        whole_.shrink = {joined_share(&Share::value), joined_share(&Share::lo), joined_share(&Share::hi)};
+        whole_.shrink_modelled =
+            part(beginning_) * beginning_.shrink_modelled + part(means_) * means_.shrink_modelled;
+        for (Cause& cause : whole_.causes) {
+            const bool is_of_means =
+                &cause - whole_.causes.data() >= static_cast<std::ptrdiff_t>(beginning_.causes.size());
+            const double scale = part(is_of_means ? means_ : beginning_);
+            cause.share = {scale * cause.share.value, scale * cause.share.lo, scale * cause.share.hi};
+        }
+        const auto joined = [&](Gap Diagnosis::*gap, double Gap::*end) {
+            const auto nats = [&](const Diagnosis& pass) {
+                const double value = pass.*gap.*end;
+                return pass.floor_nats * value * value;
+            };
+            return std::sqrt((nats(beginning_) + nats(means_)) / whole_.floor_nats);
         };
-        whole_.shrink = joined(&Diagnosis::shrink);
-        whole_.shrink_lo = joined(&Diagnosis::shrink_lo);
-        whole_.shrink_hi = joined(&Diagnosis::shrink_hi);
-        share_among_causes(whole_);
-        const bool of_beginning = !(weights[1] > 0.0) ||
-                                  (weights[0] > 0.0 && beginning_.gap_before.value > means_.gap_before.value);
-        whole_.gap_before = of_beginning ? beginning_.gap_before : means_.gap_before;
-        const auto after = [&](double shrink) {
-            return std::sqrt(1.0 + (1.0 - shrink) * excess(whole_.gap_before));
-        };
-        whole_.gap_after = {after(whole_.shrink), 1.0, after(whole_.shrink_hi), after(whole_.shrink_lo)};
+        for (const auto gap : {&Diagnosis::gap_before, &Diagnosis::gap_named, &Diagnosis::gap_after}) {
+            whole_.*gap = {joined(gap, &Gap::value), 1.0, joined(gap, &Gap::lo), joined(gap, &Gap::hi)};
+        }
     }
 
     void report_second_recording() {
@@ -156,21 +164,17 @@ private:
         const Diagnosis& pass = of_means ? means_ : beginning_;
         whole_.held_out = pass.held_out;
         whole_.gap_before = pass.gap_before;
+        whole_.gap_named = pass.gap_named;
         whole_.gap_after = pass.gap_after;
         whole_.shrink = pass.shrink;
-        whole_.shrink_lo = pass.shrink_lo;
-        whole_.shrink_hi = pass.shrink_hi;
-        share_among_causes(whole_);
+        whole_.shrink_modelled = pass.shrink_modelled;
     }
 
     void join_words() {
-        whole_.split_half = beginning_.split_half;
-        append_new(whole_.split_half.judged, means_.split_half.judged);
-        std::erase_if(whole_.split_half.judged,
+        whole_.not_held_out = beginning_.not_held_out;
+        append_new(whole_.not_held_out, means_.not_held_out);
+        std::erase_if(whole_.not_held_out,
                       [&](const std::string& effect) { return !has_effect(whole_, effect); });
-        whole_.split_half.evidence_left_nats =
-            std::max(beginning_.split_half.evidence_left_nats, means_.split_half.evidence_left_nats);
-        whole_.split_half.excess_nats += means_.split_half.excess_nats;
         // What either pass can test is tested.
         whole_.untestable = beginning_.untestable;
         std::erase_if(whole_.untestable, [&](const Untestable& one) {

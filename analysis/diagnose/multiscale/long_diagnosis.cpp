@@ -115,7 +115,7 @@ public:
 
     std::optional<Diagnosis> run() {
         if (!look_at_beginning(model_) || !look_at_means()) { return std::nullopt; }
-        if (beginning_.verdict == Verdict::unexplained && means_.verdict == Verdict::known) {
+        if (beginning_.verdict >= Verdict::partly && means_.verdict == Verdict::known) {
             SensorModel with_slow = with_noise(model_, only(means_.noise_refits, false));
             for (const Cause& cause : means_.causes) {
                 with_slow = with_cause(std::move(with_slow), cause.finding);

@@ -1,11 +1,13 @@
 #include "analysis/diagnose/multiscale/joined_passes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/selection/cause_probability.hpp"
 #include "tests/analysis/simulate/simulated.hpp"
 
 namespace gyrolog {
@@ -38,17 +40,17 @@ Diagnosis pass(Verdict verdict, double gap, const std::vector<Cause>& causes, do
     pass.causes = causes;
     pass.corrected = typical_mpu9250();
     pass.gap_before = {gap, 1.0, gap - 0.1, gap + 0.1};
-    pass.gap_after = pass.gap_before;
+    pass.gap_named = pass.gap_after = pass.gap_before;
+    pass.floor_nats = 20.0;
     if (verdict == Verdict::none) { return pass; }
+    pass.excess_nats = pass.floor_nats * (gap * gap - 1.0);
+    if (verdict == Verdict::unexplained) { pass.left = {{Place{.axes = {0}}, gap}}; }
     pass.where.structure = "gap of " + std::to_string(static_cast<int>(gap));
     if (causes.empty()) { return pass; }
-    pass.shrink = 0.9;
-    pass.shrink_lo = verdict == Verdict::known ? 0.8 : 0.0;
-    pass.shrink_hi = 0.95;
-    pass.gap_after.value = std::sqrt(1.0 + 0.1 * (gap * gap - 1.0));
-    if (verdict == Verdict::unexplained) {
-        pass.left.structure = "left of " + std::to_string(static_cast<int>(gap));
-    }
+    pass.shrink = {0.9, 0.8, 0.95};
+    pass.shrink_modelled = 0.9;
+    pass.gap_named.value = pass.gap_after.value = std::sqrt(1.0 + 0.1 * (gap * gap - 1.0));
+    for (Cause& one : pass.causes) { one.share = {0.9, 0.8, 0.95}; }
     return pass;
 }
 
@@ -59,13 +61,17 @@ Diagnosis joined(const Diagnosis& beginning, const Diagnosis& means) {
 // Whatever the passes say.
 void expect_consistent(const Diagnosis& whole) {
     EXPECT_EQ(whole.verdict == Verdict::none, whole.causes.empty() &&
-                                                  whole.gap_after.value == whole.gap_before.value &&
+                                                  whole.gap_named.value == whole.gap_before.value &&
                                                   whole.where.structure.empty());
     const double before = whole.gap_before.value;
-    EXPECT_NEAR(whole.gap_after.value, std::sqrt(1.0 + (1.0 - whole.shrink) * (before * before - 1.0)), 1e-9);
-    double alone = 0.0;
-    for (const Cause& one : whole.causes) { alone += one.shrink_alone; }
-    EXPECT_NEAR(alone, whole.shrink, 1e-12);
+    EXPECT_NEAR(whole.gap_named.value, std::sqrt(1.0 + (1.0 - whole.shrink.value) * (before * before - 1.0)),
+                1e-9);
+    EXPECT_TRUE(std::ranges::is_sorted(whole.causes, std::ranges::greater{},
+                                       [](const Cause& one) { return one.share.value; }));
+    // Those of either pass close nine tenths of what the pass has of the whole.
+    double shares = 0.0;
+    for (const Cause& one : whole.causes) { shares += one.share.value; }
+    EXPECT_NEAR(shares, whole.shrink.value, 1e-12);
     EXPECT_EQ(whole.corrected.effects.size(), 0U) << "these findings have no entries";
     EXPECT_EQ(whole.samples, 1'000'000U);
     EXPECT_THAT(whole.passes, SizeIs(2));
@@ -91,19 +97,21 @@ TEST(JoinedPasses, SayWhatTheOneSaysThatExplainsLeast) {
             if (whole.verdict != Verdict::unexplained) { continue; }
             // With its place, and as rare as the rarer of both passes has it.
             EXPECT_LT(whole.p_left, 1e-3);
-            EXPECT_FALSE(whole.left.structure.empty());
+            EXPECT_FALSE(whole.left.empty());
             EXPECT_FALSE(whole.where.structure.empty());
         }
     }
 }
 
-TEST(JoinedPasses, CloseAsMuchAsTheirCausesGain) {
+// Surprisals add up.
+TEST(JoinedPasses, CloseAsMuchAsTheirPartsOfTheGapHave) {
     Diagnosis beginning = pass(Verdict::known, 5.0, {cause("spikes", 300.0)}, 0.3);
-    beginning.shrink = 0.98;
+    beginning.shrink.value = 0.98;
     const Diagnosis whole = joined(beginning, pass(Verdict::known, 3.0, {cause("rate_ramp", 100.0)}, 0.6));
-    EXPECT_NEAR(whole.shrink, 0.75 * 0.98 + 0.25 * 0.9, 1e-12);
-    EXPECT_EQ(whole.gap_before.value, 5.0);
+    EXPECT_NEAR(whole.shrink.value, 0.75 * 0.98 + 0.25 * 0.9, 1e-12);  // 24 to 8
+    EXPECT_NEAR(whole.gap_before.value, std::sqrt(0.5 * (25.0 + 9.0)), 1e-12);
     EXPECT_EQ(whole.causes.front().finding.effect, "spikes");
+    EXPECT_NEAR(whole.causes.front().share.value, 0.75 * 0.9, 1e-12);
 }
 
 TEST(JoinedPasses, TellOfASecondRecordingWhatWasMeasuredThere) {
@@ -113,7 +121,7 @@ TEST(JoinedPasses, TellOfASecondRecordingWhatWasMeasuredThere) {
     const Diagnosis whole = joined(beginning, means);
     EXPECT_EQ(whole.held_out, "second.csv");
     EXPECT_EQ(whole.gap_before.value, 2.0);
-    EXPECT_EQ(whole.gap_after.value, beginning.gap_after.value);
+    EXPECT_EQ(whole.gap_named.value, beginning.gap_named.value);
     Diagnosis both = means;
     both.held_out = "second.csv";
     EXPECT_EQ(joined(beginning, both).gap_before.value, 3.0);
@@ -135,24 +143,18 @@ TEST(JoinedPasses, HaveSlowNoiseAsTheMeansDo) {
     EXPECT_EQ(whole.noise_refits[1].stated, stated.B_rad_per_s);
 }
 
-// What one pass alone can test is tested; halves of a cause that is told no more are not told either.
-TEST(JoinedPasses, TellOfHalvesAndOfWhatCannotBeTested) {
+// What one pass alone can test is tested; a cause that is told no more is not held out either.
+TEST(JoinedPasses, TellOfWhatIsNotHeldOutAndOfWhatCannotBeTested) {
     Diagnosis beginning = pass(Verdict::known, 3.0, {cause("arw_scale", 200.0)}, 0.5);
     beginning.untestable = {{"temp_linear", "no temperature"}};
-    beginning.split_half.judged = {"arw_scale", "tone"};
-    beginning.split_half.evidence_left_nats = 1.0;
-    beginning.split_half.excess_nats = 3.0;
+    beginning.not_held_out = {"arw_scale", "tone"};
     beginning.warnings = {"of both", "of the beginning"};
     Diagnosis means = pass(Verdict::known, 4.0, {cause("gauss_markov", 300.0)}, 0.5);
     means.untestable = {{"temp_linear", "no temperature"}, {"heavy_tail", "means"}};
-    means.split_half.judged = {"gauss_markov"};
-    means.split_half.evidence_left_nats = 2.0;
-    means.split_half.excess_nats = 4.0;
+    means.not_held_out = {"gauss_markov"};
     means.warnings = {"of both"};
     const Diagnosis whole = joined(beginning, means);
-    EXPECT_THAT(whole.split_half.judged, ElementsAre("arw_scale", "gauss_markov"));
-    EXPECT_EQ(whole.split_half.evidence_left_nats, 2.0);
-    EXPECT_EQ(whole.split_half.excess_nats, 7.0);
+    EXPECT_THAT(whole.not_held_out, ElementsAre("arw_scale", "gauss_markov"));
     ASSERT_THAT(whole.untestable, SizeIs(1));
     EXPECT_EQ(whole.untestable.front().effect, "temp_linear");
     EXPECT_THAT(whole.warnings, ElementsAre("of both", "of the beginning"));

@@ -91,12 +91,9 @@ TEST(LongDiagnosis, FindsTheFastInTheBeginningAndTheSlowInTheMeans) {
     EXPECT_EQ(diagnosis.corrected.lsb_rad_s, fast_sensor().lsb_rad_s);
     EXPECT_NEAR(diagnosis.corrected.axes[1].noise.N_rad_per_sqrt_s,
                 fast_sensor().axes[1].noise.N_rad_per_sqrt_s, 1e-12);
-    double alone = 0.0;
-    for (const Cause& cause : diagnosis.causes) { alone += cause.shrink_alone; }
-    EXPECT_NEAR(alone, diagnosis.shrink, 1e-12);
-    const double before = diagnosis.gap_before.value;
-    EXPECT_NEAR(diagnosis.gap_after.value,
-                std::sqrt(1.0 + (1.0 - diagnosis.shrink) * (before * before - 1.0)), 1e-9);
+    for (const Cause& cause : diagnosis.causes) { EXPECT_GT(cause.share.value, 0.0); }
+    EXPECT_GT(diagnosis.shrink.value, 0.9);
+    EXPECT_LT(diagnosis.gap_named.value, 0.5 * diagnosis.gap_before.value);
 }
 
 // In means each is some three standard deviations.

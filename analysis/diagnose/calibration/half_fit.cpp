@@ -1,0 +1,38 @@
+#include "analysis/diagnose/calibration/half_fit.hpp"
+
+#include <string>
+#include <utility>
+
+#include "analysis/diagnose/estimators/catalogue.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
+#include "analysis/diagnose/likelihood/observation.hpp"
+#include "analysis/simulate/chain.hpp"
+
+namespace gyrolog {
+
+bool can_be_halved(const std::string& effect, const Prediction& prediction) {
+    return !find_effect(effect)->signature->slow && traits_of(effect, prediction).can_be_halved;
+}
+
+std::vector<std::optional<Finding>> fitted_to_half(const std::shared_ptr<const Prediction>& half,
+                                                   const std::shared_ptr<const Recording>& recording,
+                                                   const std::vector<Finding>& causes, std::uint64_t seed) {
+    std::vector<std::optional<Finding>> fits(causes.begin(), causes.end());
+    const int rounds = causes.size() > 1 ? 2 : 1;
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t i = 0; i < causes.size(); ++i) {
+            if (!can_be_halved(causes[i].effect, *half)) { continue; }
+            SensorModel model = half->model();
+            for (std::size_t other = 0; other < causes.size(); ++other) {
+                if (other != i && fits[other]) { model = with_cause(std::move(model), *fits[other]); }
+            }
+            const std::shared_ptr<const Prediction> with = half->with(model);
+            const MadeEstimator made = make_estimator(*find_effect(causes[i].effect), with);
+            fits[i] =
+                made.estimator ? made.estimator->find(Observation(with, recording, seed)) : std::nullopt;
+        }
+    }
+    return fits;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,81 @@
+#include "analysis/diagnose/selection/better_shape.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
+#include "analysis/diagnose/selection/nonparametric_alternatives.hpp"
+#include "analysis/parallel/parallel_for.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+using CauseSpan = std::span<const FoundCause>;
+
+struct Worth {
+    double gain_nats = 0.0;
+    double evidence_nats = 0.0;
+};
+
+// `together_nats`: what the spectra's likelihood gains by all of them. One fitted beside others may have
+// little that is its own, and much with them; what tails or codes gain is not in the spectra.
+Worth worth_of(CauseSpan causes, const NullBias& null_bias, double together_nats) {
+    Worth worth;
+    for (const FoundCause& cause : causes) {
+        worth.gain_nats += cause.finding.gain_nats;
+        worth.evidence_nats += cause.finding.evidence_nats + null_bias.of(cause.finding);
+    }
+    const double cost_nats = worth.gain_nats - worth.evidence_nats;
+    if (causes.size() > 1 && together_nats > worth.gain_nats) {
+        worth = {together_nats, together_nats - cost_nats};
+    }
+    return worth;
+}
+
+SensorModel model_without(const CauseSelection& selection, CauseSpan left_out) {
+    SensorModel model = selection.without_causes;
+    for (const FoundCause& cause : selection.causes) {
+        const bool is_left_out =
+            std::ranges::any_of(left_out, [&](const FoundCause& one) { return &one == &cause; });
+        if (!is_left_out) { model = with_cause(std::move(model), cause.finding); }
+    }
+    return model;
+}
+
+}  // namespace
+
+std::optional<BetterShape> better_shape(const CauseSelection& selection,
+                                        const std::shared_ptr<const Prediction>& given,
+                                        const std::shared_ptr<const Recording>& recording,
+                                        const ShapeOptions& options) {
+    const CauseSpan all = selection.causes;
+    std::vector<CauseSpan> places;
+    for (std::size_t i = 0; i < all.size(); ++i) { places.push_back(all.subspan(i, 1)); }
+    if (all.size() != 1) { places.push_back(all); }
+    const auto observed_without = [&](CauseSpan left_out) {
+        return Observation(given->with(model_without(selection, left_out)), recording, options.seed);
+    };
+    const Observation with = observed_without({});
+    std::vector<std::optional<BetterShape>> better(places.size());
+    parallel_for(places.size(), options.threads, [&](std::size_t i) {
+        const Observation left = observed_without(places[i]);
+        const std::optional<NonparametricFit> shape = best_nonparametric(left, with);
+        if (!shape) { return; }
+        const double together_nats = log_likelihood_nats(with) - log_likelihood_nats(left);
+        const Worth causes = worth_of(places[i], selection.null_bias, together_nats);
+        const double more_nats = shape->evidence_nats - causes.evidence_nats;
+        if (more_nats < std::max(options.wins_nats, options.wins_share * causes.gain_nats)) { return; }
+        std::vector<std::string> than;
+        for (const FoundCause& cause : places[i]) { than.push_back(cause.finding.effect); }
+        better[i] = BetterShape{shape->words, std::move(than), more_nats};
+    });
+    const auto best = std::ranges::max_element(
+        better, {}, [](const std::optional<BetterShape>& one) { return one ? one->evidence_nats : 0.0; });
+    return best == better.end() ? std::nullopt : std::move(*best);
+}
+
+}  // namespace gyrolog

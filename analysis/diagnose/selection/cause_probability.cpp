@@ -1,0 +1,68 @@
+#include "analysis/diagnose/selection/cause_probability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/diagnose/estimators/catalogue.hpp"
+#include "analysis/simulate/chain.hpp"
+
+namespace gyrolog {
+
+namespace {
+
+// A difference of this evidence is no tie any more, whatever chance does to it.
+constexpr double decided_nats = 8.0;
+
+}  // namespace
+
+Cause with_probability(const FoundCause& found, double returning_nats,
+                       const std::optional<BetterShape>& better_shape, const ProbabilityOptions& options) {
+    const std::string& effect = found.finding.effect;
+    Cause cause;
+    cause.finding = found.finding;
+    // In units of the cause's own likelihood: itself, then nothing, then every rival.
+    double sum = 1.0 + std::exp(-returning_nats);
+    for (const Finding& rival : found.rivals) {
+        if (rival.effect == effect) { continue; }
+        const double behind = found.finding.evidence_nats - rival.evidence_nats;
+        sum += std::exp(-behind);
+        if (behind < options.tie_nats && cause.tie_group.size() < options.ties_most) {
+            cause.tie_group.push_back({rival.effect, behind});
+        }
+    }
+    if (better_shape && std::ranges::count(better_shape->than, effect) > 0) {
+        sum += std::exp(better_shape->evidence_nats);
+    }
+    cause.score = 1.0 / sum;
+    if (!cause.tie_group.empty()) {
+        cause.tie_group.insert(cause.tie_group.begin(), {effect, 0.0});
+        cause.decided_by = find_effect(effect)->signature->decided_by;
+    }
+    return cause;
+}
+
+double probability_of_tie(const Cause& cause) {
+    if (cause.tie_group.empty()) { return cause.score; }
+    double sum = 0.0;
+    for (const Rival& rival : cause.tie_group) {
+        sum += cause.score * std::exp(-rival.evidence_below_best_nats);
+    }
+    return sum;
+}
+
+std::string telling_apart(const std::string& effect) { return "to tell " + effect + " from "; }
+
+std::string deciding_recording(const Cause& cause) {
+    if (cause.decided_by.empty()) { return {}; }
+    const Rival& rival = cause.tie_group[1];
+    std::string proposal = telling_apart(cause.finding.effect) + rival.effect + ": " + cause.decided_by;
+    // What noise tells grows with the time that it is listened to.
+    if (traits_of(cause.finding.effect).is_noise) {
+        const double times = std::ceil(decided_nats / std::max(rival.evidence_below_best_nats, 0.5));
+        proposal +=
+            ", some " + std::to_string(std::max(2, static_cast<int>(times))) + " times as long as this one";
+    }
+    return proposal;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,33 @@
+// A cause's probability compares it with whatever could stand in its place, the other causes in the model:
+// another effect, a shape without a name, nothing. Before the recording was seen all were as likely. What
+// else is left of the gap has no part in it.
+#pragma once
+
+#include <optional>
+
+#include "analysis/diagnose/report.hpp"
+#include "analysis/diagnose/selection/forward_selection.hpp"
+
+namespace gyrolog {
+
+struct ProbabilityOptions {
+    // Behind the best by less, a rival is a tie. (At 4 nats one is 55 times as likely as the other.)
+    double tie_nats = 4.0;
+    std::size_t ties_most = 4;
+};
+
+// `returning_nats`: the surprisal that returns without the cause, on data that the fit did not use: its
+// evidence against nothing.
+Cause with_probability(const FoundCause& found, double returning_nats,
+                       const std::optional<BetterShape>& better_shape, const ProbabilityOptions& options);
+
+// The probability that the cause or one of its ties is right.
+double probability_of_tie(const Cause& cause);
+
+// What would settle the cause's tie: a sentence, empty where there is none.
+std::string deciding_recording(const Cause& cause);
+
+// How the sentence begins.
+std::string telling_apart(const std::string& effect);
+
+}  // namespace gyrolog

@@ -1,0 +1,144 @@
+#include "analysis/diagnose/calibration/measured_gap.hpp"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/calibration/half_fit.hpp"
+#include "analysis/diagnose/estimators/catalogue.hpp"
+#include "analysis/diagnose/likelihood/observation.hpp"
+#include "tests/analysis/diagnose/observed.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint64_t samples = 16'000;
+
+Finding finding_of(const std::string& effect, const SensorModel& model,
+                   const std::shared_ptr<const Recording>& recording) {
+    const auto prediction = prediction_of(recording, model);
+    const MadeEstimator made = make_estimator(*find_effect(effect), prediction);
+    return made.estimator->find(Observation(prediction, recording, 1)).value();
+}
+
+GapTrial trial_of(const SensorModel& model, const std::shared_ptr<const Recording>& recording,
+                  std::vector<Finding> causes) {
+    const auto prediction = prediction_of(recording, model);
+    GapTrial trial{recording, {}, model, std::move(causes), 0.0, 0.0};
+    for (const auto& [fitted, judging] :
+         {std::pair(Half::first, Half::second), std::pair(Half::second, Half::first)}) {
+        trial.folds.push_back({prediction->of_half(judging),
+                               fitted_to_half(prediction->of_half(fitted), recording, trial.causes, 1)});
+    }
+    return trial;
+}
+
+MeasuredGap measured(const GapTrial& trial) {
+    MeasuredGapOptions options;
+    options.simulations = 24;
+    options.paired_simulations = 4;
+    return measure_gap(trial, options).value();
+}
+
+TEST(Halves, MakeUpTheWhole) {
+    const SensorModel model = calibrated_sensor();
+    const auto recording = recorded(model, samples, 50);
+    const auto whole = prediction_of(recording, model);
+    const auto energy = [&](Half half) {
+        const Observation seen(whole->of_half(half), recording, 1);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < seen.axis(0).power.size(); ++i) {
+            sum += seen.axis(0).power[i] * seen.prediction().bins()[i].count();
+        }
+        return sum;
+    };
+    const double all = energy(Half::both);
+    EXPECT_NEAR(energy(Half::first) + energy(Half::second), all, 1e-9 * all);
+}
+
+// Of two causes each returns what is its own, and both together close the gap.
+TEST(MeasuredGap, IsClosedByTheCausesThatAreThere) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel sensor = with_effect(model, "arw_scale", {{"factor", 1.3}}, {"x"});
+    sensor = with_effect(sensor, "bias_step", {{"at_s", 71.0}, {"step_dps", 0.03}}, {"y"});
+    const auto recording = recorded(sensor, samples, 51);
+    const MeasuredGap gap = measured(
+        trial_of(model, recording,
+                 {finding_of("arw_scale", model, recording), finding_of("bias_step", model, recording)}));
+    EXPECT_GT(gap.before.value, 3.0);
+    EXPECT_LT(gap.named.value, 1.5);
+    EXPECT_GT(gap.shrink.value, 0.95);
+    EXPECT_LE(gap.shrink.lo, gap.shrink.value);
+    EXPECT_GE(gap.shrink.hi, gap.shrink.value);
+    ASSERT_EQ(gap.shares.size(), 2U);
+    for (const Share& share : gap.shares) {
+        EXPECT_GT(share.value, 0.05);
+        EXPECT_LT(share.value, 0.95);
+    }
+    EXPECT_NEAR(gap.shares[0].value + gap.shares[1].value, 1.0, 0.1);
+}
+
+// One that is taken from another recording, where it is, makes this one's gap larger.
+TEST(MeasuredGap, GrowsByACauseThatIsNotThere) {
+    const SensorModel model = calibrated_sensor();
+    const SensorModel stepping = with_effect(model, "bias_step", {{"at_s", 71.0}, {"step_dps", 0.03}}, {"y"});
+    const Finding elsewhere = finding_of("bias_step", model, recorded(stepping, samples, 52));
+    GapTrial trial = trial_of(
+        model, recorded(with_effect(model, "arw_scale", {{"factor", 1.3}}, {"x"}), samples, 53), {elsewhere});
+    for (Fold& fold : trial.folds) { fold.causes = {elsewhere}; }
+    const MeasuredGap gap = measured(trial);
+    EXPECT_GT(gap.named.value, gap.before.value);
+    EXPECT_LT(gap.shrink.value, 0.0);
+    EXPECT_LT(gap.returning_nats.front(), -10.0);
+}
+
+// A change of noise in the coefficients of one half alone, which no law of nature would make: what either
+// half says is wrong for the other.
+TEST(MeasuredGap, OfWhatOnlyOneHalfHasIsNotClosed) {
+    SensorModel model = calibrated_sensor();
+    model.sd_rel = {{"N", 1e-4}, {"B", 1e-4}, {"K", 1e-4}};
+    Recording recording = *recorded(model, samples, 54);
+    CosineTransform transform(recording.rows());
+    for (Column& column : recording.columns) {
+        if (column.name != "gx") { continue; }
+        std::vector<double> values = column.values();
+        transform.forward(values);
+        for (std::size_t k = 1; k < values.size(); ++k) {
+            if (has_coefficient(Half::first, k)) { values[k] *= 1.3; }
+        }
+        transform.inverse(values);
+        column.data = values;
+        column.scale = 1.0;
+        column.offset = 0.0;
+    }
+    const auto changed = std::make_shared<const Recording>(std::move(recording));
+    const MeasuredGap gap = measured(trial_of(model, changed, {finding_of("arw_scale", model, changed)}));
+    EXPECT_LT(gap.shrink.value, 0.3);
+}
+
+// The square of the gap is 1 on average where the recording is a simulation of the model.
+TEST(MeasuredGap, OfASimulationIsTheFloor) {
+    constexpr int recordings = 24;
+    SensorModel model = calibrated_sensor();
+    double sum = 0.0;
+    double squares = 0.0;
+    for (int i = 0; i < recordings; ++i) {
+        const auto recording = recorded(model, samples, 600 + static_cast<std::uint64_t>(i));
+        const MeasuredGap gap = measured(trial_of(model, recording, {}));
+        EXPECT_EQ(gap.before.value, gap.named.value);
+        const double square = gap.before.value * gap.before.value;
+        sum += square;
+        squares += square * square;
+    }
+    const double mean = sum / recordings;
+    const double sd = std::sqrt((squares / recordings - mean * mean) / (recordings - 1));
+    EXPECT_NEAR(mean, 1.0, 4.0 * sd);
+    EXPECT_LT(sd, 0.1);
+}
+
+}  // namespace
+}  // namespace gyrolog
