@@ -111,9 +111,11 @@ struct EffectSignature {
     // An entry loses samples that the stamps do not tell of: where the others belong is read from the motion.
     bool (*hides_losses)(const EffectValues& effect) = nullptr;
 
-    // For the report: a sentence with {parameter} where a fitted value belongs, and the recording that would
-    // tell the effect from its rivals.
+    // For the report: a sentence with {parameter} where a fitted value belongs; what "the model has ... that
+    // the recording lacks", likewise; and the recording that would tell the effect from its rivals. They say
+    // what is seen, not what made it.
     std::string_view words{};
+    std::string_view noun{};
     std::string_view decided_by{};
 };
 

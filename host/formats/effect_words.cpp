@@ -159,6 +159,54 @@ std::string value_text(const Finding& finding, std::string_view name) {
                                                                                          : by_axis;
 }
 
+const EffectSignature* signature_of(std::string_view effect) {
+    const EffectDefinition* found = find_effect(effect);
+    return found == nullptr ? nullptr : found->signature;
+}
+
+// A cause of the model that no effect could add has a name of its own: "rrw_excess", "line_absent". The
+// effects that such names are about, by what stands before the last '_'.
+struct Stem {
+    std::string_view stem;
+    std::string_view effect;
+};
+constexpr std::array stems = {Stem{"arw", "arw_scale"}, Stem{"flicker", "flicker_missing"},
+                              Stem{"line", "tone"}, Stem{"rrw", "rrw_missing"}};
+
+// With places for values; the effect's name where nothing else is known.
+std::string noun_of(const Finding& finding) {
+    const std::string_view name = finding.effect;
+    const std::string_view stem = name.substr(0, name.rfind('_'));
+    const auto* other = std::ranges::find(stems, stem, &Stem::stem);
+    std::vector<std::string_view> effects{name, other == stems.end() ? stem : other->effect};
+    for (const EffectModel& entry : finding.entries) { effects.emplace_back(entry.effect); }
+    for (const std::string_view effect : effects) {
+        const EffectSignature* signature = signature_of(effect);
+        if (signature != nullptr && !signature->noun.empty()) { return std::string(signature->noun); }
+    }
+    return fmt::format("`{}`", finding.entries.empty() ? finding.effect : finding.entries.front().effect);
+}
+
+std::vector<std::string> params_in(std::string_view words) {
+    std::vector<std::string> names;
+    for (std::size_t open = words.find('{'); open != std::string_view::npos;
+         open = words.find('{', open + 1)) {
+        names.emplace_back(words.substr(open + 1, words.find('}', open) - open - 1));
+    }
+    return names;
+}
+
+bool has_value(const Finding& finding, const std::string& name) {
+    return std::ranges::any_of(finding.entries,
+                               [&](const EffectModel& entry) { return entry.params.contains(name); });
+}
+
+// "a line at {f_hz}" is "a line".
+std::string without_value(const std::string& noun) {
+    const std::size_t value = noun.find(" {");
+    return value == std::string::npos ? noun : noun.substr(0, noun.rfind(' ', value - 1));
+}
+
 }  // namespace
 
 std::string quantity_text(std::string_view name, double value, double sd, const EffectParam* param) {
@@ -183,11 +231,23 @@ std::string filled_words(std::string_view words, const Finding& finding) {
 }
 
 std::string effect_words(const Finding& finding) {
-    const EffectDefinition* effect = find_effect(finding.effect);
-    if (effect == nullptr || effect->signature == nullptr || effect->signature->words.empty()) {
-        return finding.effect;
+    const EffectSignature* signature = signature_of(finding.effect);
+    if (signature == nullptr || signature->words.empty()) { return finding.effect; }
+    return filled_words(signature->words, finding);
+}
+
+std::string cause_words(const Cause& cause) {
+    const Finding& finding = cause.finding;
+    if (cause.sense == Sense::recording_has) { return effect_words(finding); }
+    const std::string noun = noun_of(finding);
+    if (noun.find("{factor}") == std::string::npos && has_value(finding, "factor")) {
+        return fmt::format("The model has {}; the recording has {} times as much", without_value(noun),
+                           value_text(finding, "factor"));
     }
-    return filled_words(effect->signature->words, finding);
+    const bool is_known =
+        std::ranges::all_of(params_in(noun), [&](const auto& name) { return has_value(finding, name); });
+    return fmt::format("The model has {} that the recording lacks",
+                       is_known ? filled_words(noun, finding) : without_value(noun));
 }
 
 std::string axes_text(const std::vector<std::size_t>& axes) {

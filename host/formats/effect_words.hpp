@@ -23,6 +23,9 @@ std::string filled_words(std::string_view words, const Finding& finding);
 // The words of the effect's signature so filled; the effect's name where it has none.
 std::string effect_words(const Finding& finding);
 
+// These, or of what the model has too much: "The model has a line at 31 Hz that the recording lacks".
+std::string cause_words(const Cause& cause);
+
 // "x", "x and y", "x, y and z"; `axes` by number.
 std::string axes_text(const std::vector<std::size_t>& axes);
 

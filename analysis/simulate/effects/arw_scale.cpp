@@ -34,6 +34,7 @@ constexpr EffectSignature arw_scale_signature = {
     .spectral = arw_scale_fitted,
     .spectrum = arw_scale_spectrum,
     .words = "The white noise is {factor} times the model's",
+    .noun = "white noise",
     .decided_by = "any still recording of some minutes at another sample rate",
 };
 

@@ -28,6 +28,7 @@ constexpr EffectSignature asymmetry_signature = {
     .needs_reference = true,
     .linear = asymmetry_linear,
     .words = "The two directions have different gains, by {gain} either way",
+    .noun = "a gain that differs with the direction by {gain}",
     .decided_by = "the same plateaus in both directions, and slow reversals",
 };
 

@@ -32,7 +32,8 @@ constexpr EffectSignature bias_step_signature = {
     .method = EvidenceMethod::step,
     .place = PlaceKind::instant,
     .event = true,
-    .words = "The bias jumps once, {at_s} after the first sample, by {step_dps}.",
+    .words = "The output jumps once, {at_s} after the first sample, by {step_dps}.",
+    .noun = "a jump by {step_dps}",
     .decided_by =
         "a second recording of the same length at rest: a jump that was one event is not in it, "
         "noise that wanders is",

@@ -45,6 +45,7 @@ constexpr EffectSignature clock_jitter_signature = {
     .instant_sd_s =
         [](const EffectValues& effect) { return effect["in_stamps"] == 0.0 ? effect["sd_s"] : 0.0; },
     .words = "Single sampling times are off by {sd_s} (one sigma) beyond what the model says.",
+    .noun = "a jitter of the sampling times of {sd_s}",
     .decided_by = "stamps taken in the board's interrupt, or broadband motion under a reference rate",
 };
 

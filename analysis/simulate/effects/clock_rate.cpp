@@ -62,6 +62,7 @@ constexpr EffectSignature clock_rate_signature = {
     .structure = "timestamp_rate",
     .unjudged = leave_out_the_future,
     .words = "The sample clock is off by {rel} of its nominal rate.",
+    .noun = "an error of the sample clock of {rel}",
     .decided_by = "an hour of stamps from a disciplined clock, or a reference rate that never rests",
 };
 

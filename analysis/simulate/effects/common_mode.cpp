@@ -64,7 +64,8 @@ constexpr EffectSignature common_mode_signature = {
     .place = PlaceKind::structure,
     .structure = "cross_axis",
     .spectrum = common_mode_spectrum,
-    .words = "The axes share white noise of {N_dps_per_sqrt_hz}, as from the supply.",
+    .words = "The axes share white noise of {N_dps_per_sqrt_hz}.",
+    .noun = "white noise of {N_dps_per_sqrt_hz} in common to the axes",
     .decided_by = "a recording at rest of all three axes, with another supply",
 };
 

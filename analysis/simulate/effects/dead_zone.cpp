@@ -43,6 +43,7 @@ constexpr EffectSignature dead_zone_signature = {
     .needs_reference = true,
     .trials = dead_zone_trials,
     .words = "Rates up to {width_dps} have no answer",
+    .noun = "a dead zone of {width_dps}",
     .decided_by = "slow reversals through zero rate",
 };
 

@@ -83,6 +83,7 @@ constexpr EffectSignature dropped_signature = {
     .structure = "timestamp_gaps",
     .hides_losses = [](const EffectValues& effect) { return effect["in_stamps"] == 0.0; },
     .words = "Samples are lost {per_hour}, up to {longest} in a row.",
+    .noun = "a loss of samples at {per_hour}",
     .decided_by = "a recording with the board's sample counter, or with a reference rate that never rests",
 };
 

@@ -53,6 +53,7 @@ constexpr EffectSignature g_sensitivity_signature = {
     .words =
         "The rate follows the specific force: {x_dps_per_g} along x, {y_dps_per_g} along y, {z_dps_per_g} "
         "along z",
+    .noun = "a sensitivity to the specific force",
     .decided_by = "tilts to all six faces at rest",
 };
 

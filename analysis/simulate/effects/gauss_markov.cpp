@@ -67,7 +67,8 @@ constexpr EffectSignature gauss_markov_signature = {
     .trials = gauss_markov_trials,
     .spectral = gauss_markov_fitted,
     .spectrum = gauss_markov_spectrum,
-    .words = "The bias fluctuates by {sigma_dps} with a correlation time of {tau_s}",
+    .words = "The output fluctuates by {sigma_dps} with a correlation time of {tau_s}",
+    .noun = "a Gauss-Markov process of {sigma_dps} with a correlation time of {tau_s}",
     .decided_by = "a still recording of 50 correlation times or more",
 };
 

@@ -59,6 +59,7 @@ constexpr EffectSignature heavy_tail_signature = {
     .place = PlaceKind::amplitude,
     .degrees_of_freedom = degrees_of_freedom,
     .words = "Single samples stray further than normal noise does: Student's t with {nu} degrees of freedom.",
+    .noun = "tails of Student's t with {nu} degrees of freedom",
     .decided_by = "a longer recording at rest, of raw samples",
 };
 

@@ -37,6 +37,7 @@ constexpr EffectSignature latency_signature = {
     .whole_sensor = true,
     .trials = latency_trials,
     .words = "The sensor is {delay_s} late",
+    .noun = "a delay of {delay_s}",
     .decided_by = "broadband motion, up to a tenth of the sample rate",
 };
 

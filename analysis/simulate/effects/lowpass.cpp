@@ -293,6 +293,7 @@ constexpr EffectSignature lowpass_signature = {
     .spectral = lowpass_fitted,
     .spectrum = lowpass_spectrum,
     .words = "A low-pass filter of order {order} at {fc_hz} is missing in the model",
+    .noun = "a low-pass filter at {fc_hz}",
     .decided_by = "a recording at a higher sample rate, or one with fast motion",
 };
 

@@ -48,6 +48,7 @@ constexpr EffectSignature misalignment_signature = {
     .needs_reference = true,
     .linear = misalignment_linear,
     .words = "The axis picks up rates about other axes: {from_x} of x, {from_y} of y, {from_z} of z",
+    .noun = "cross-axis terms",
     .decided_by = "plateaus of several rates about one axis after the other",
 };
 

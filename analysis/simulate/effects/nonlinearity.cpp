@@ -34,6 +34,7 @@ constexpr EffectSignature nonlinearity_signature = {
     .needs_reference = true,
     .linear = nonlinearity_linear,
     .words = "The gain is not linear: {quadratic} even and {cubic} odd error at full scale",
+    .noun = "an error of linearity",
     .decided_by = "plateaus of many rates of both signs up to full scale",
 };
 

@@ -36,6 +36,7 @@ constexpr EffectSignature quantization_signature = {
     .structure = "code_grid",
     .spectrum = add_rounding,
     .words = "The numbers come in steps of {lsb_dps}.",
+    .noun = "a step of {lsb_dps}",
     .decided_by = "raw counts from the sensor's registers",
 };
 

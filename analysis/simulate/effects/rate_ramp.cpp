@@ -24,7 +24,8 @@ constexpr EffectSignature rate_ramp_signature = {
     .place = PlaceKind::time,
     .linear = rate_ramp_linear,
     .slow = true,
-    .words = "The bias drifts in proportion to time, by {ramp_dps_per_s}",
+    .words = "The output drifts in proportion to time, by {ramp_dps_per_s}",
+    .noun = "a drift of {ramp_dps_per_s}",
     .decided_by = "a second recording right after this one: a ramp goes on, a random walk does not",
 };
 

@@ -37,7 +37,8 @@ constexpr std::string_view rrw_missing_fitted[] = {"K_dps_sqrt_hz"};
 constexpr EffectSignature rrw_missing_signature = {
     .spectral = rrw_missing_fitted,
     .spectrum = rrw_missing_spectrum,
-    .words = "The bias wanders: a rate random walk of {K_dps_sqrt_hz} is missing in the model",
+    .words = "The output wanders: a rate random walk of {K_dps_sqrt_hz} is missing in the model",
+    .noun = "a rate random walk of {K_dps_sqrt_hz}",
     .decided_by = "a still recording at least three times as long, at a steady temperature",
 };
 

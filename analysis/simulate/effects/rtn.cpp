@@ -106,8 +106,9 @@ constexpr EffectSignature rtn_signature = {
     .place = PlaceKind::spectrum,
     .spectrum = rtn_spectrum,
     .words =
-        "The bias jumps to and fro between two levels {amplitude_dps} apart (popcorn noise) and stays "
+        "The output jumps to and fro between two levels {amplitude_dps} apart (popcorn noise) and stays "
         "{dwell_high_s} on the upper one and {dwell_low_s} on the lower one, on average.",
+    .noun = "telegraph noise of {amplitude_dps}",
     .decided_by =
         "a recording at rest that is ten times as long: two levels then show as two peaks in the "
         "distribution of short averages, Gauss-Markov noise as one",

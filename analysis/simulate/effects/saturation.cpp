@@ -60,6 +60,7 @@ constexpr EffectSignature saturation_signature = {
     .trials = saturation_trials,
     .unjudged = leave_out_clipped,
     .words = "The output is clipped at {limit_dps}",
+    .noun = "a limit at {limit_dps}",
     .decided_by = "plateaus of both signs up to full scale",
 };
 

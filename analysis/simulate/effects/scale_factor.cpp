@@ -22,6 +22,7 @@ constexpr EffectSignature scale_factor_signature = {
     .needs_reference = true,
     .linear = scale_factor_linear,
     .words = "The scale factor is off by {eps}",
+    .noun = "a scale factor error of {eps}",
     .decided_by = "plateaus of several rates of both signs about one axis after the other",
 };
 

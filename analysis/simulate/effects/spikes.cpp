@@ -131,6 +131,7 @@ constexpr EffectSignature spikes_signature = {
     .structure = "isolated_samples",
     .unjudged = unjudged,
     .words = "Single samples are off by {smallest_dps} to {largest_dps}, {per_hour}.",
+    .noun = "spikes of {smallest_dps} to {largest_dps}",
     .decided_by = "a longer recording at rest, of raw samples",
 };
 

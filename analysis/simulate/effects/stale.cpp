@@ -82,7 +82,8 @@ constexpr EffectSignature stale_signature = {
     .place = PlaceKind::structure,
     .structure = "duplicated_samples",
     .unjudged = leave_out_repeats,
-    .words = "The sensor is read faster than it updates: {eps} of the samples repeat the one before.",
+    .words = "Of the samples {eps} repeat the one before.",
+    .noun = "a share of repeated samples of {eps}",
     .decided_by = "raw counts of all axes and the temperature, read at the sensor's data-ready signal",
 };
 

@@ -31,7 +31,8 @@ constexpr EffectSignature temp_linear_signature = {
     .needs_temperature = true,
     .linear = temp_linear_linear,
     .slow = true,
-    .words = "The bias follows the temperature, {c1_dps_per_C}",
+    .words = "The output follows the temperature, {c1_dps_per_C}",
+    .noun = "a temperature coefficient of {c1_dps_per_C}",
     .decided_by = "one sweep of the temperature up and down by 5 degC or more",
 };
 

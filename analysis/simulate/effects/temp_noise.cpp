@@ -44,6 +44,7 @@ constexpr EffectSignature temp_noise_signature = {
     .needs_temperature = true,
     .white_gain = temp_noise_white_gain,
     .words = "The white noise's standard deviation changes by {per_C} with each degree.",
+    .noun = "a change of the white noise by {per_C} with each degree",
     .decided_by = "one sweep of the temperature up and down by 10 degC or more",
 };
 

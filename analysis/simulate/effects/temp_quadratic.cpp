@@ -44,7 +44,8 @@ constexpr EffectSignature temp_quadratic_signature = {
     .needs_temperature = true,
     .linear = temp_quadratic_linear,
     .slow = true,
-    .words = "The bias follows the temperature along a parabola, {c1_dps_per_C} and {c2_dps_per_C2}",
+    .words = "The output follows the temperature along a parabola, {c1_dps_per_C} and {c2_dps_per_C2}",
+    .noun = "a parabola over the temperature",
     .decided_by = "one sweep of the temperature up and down by 10 degC or more",
 };
 

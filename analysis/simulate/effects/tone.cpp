@@ -52,8 +52,9 @@ constexpr EffectSignature tone_signature = {
     .method = EvidenceMethod::line,
     .place = PlaceKind::spectrum,
     .words =
-        "A steady line stands at {f_hz}, {amplitude_dps} high; it comes from outside, mains or vibration, "
-        "and its true frequency may lie above half the sampling rate, folded.",
+        "A steady line stands at {f_hz}, {amplitude_dps} high; one above half the sampling rate that folds "
+        "to there would look the same.",
+    .noun = "a line at {f_hz}",
     .decided_by =
         "a recording at another sampling rate, which shows whether the line is folded and from where",
 };

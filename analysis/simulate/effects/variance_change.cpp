@@ -60,6 +60,7 @@ constexpr EffectSignature variance_change_signature = {
     .words =
         "From {at_s} after the start on the white noise changes within {ramp_s} to {factor} times its "
         "standard deviation.",
+    .noun = "a change of the white noise to {factor} times its standard deviation",
     .decided_by = "a second recording, with the same temperatures at other times",
 };
 

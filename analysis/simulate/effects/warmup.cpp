@@ -47,7 +47,8 @@ constexpr EffectSignature warmup_signature = {
     .event = true,
     .slow = true,
     .trials = warmup_trials,
-    .words = "The bias settles after turn-on: {a_dps} at first, with a time constant of {tau_s}",
+    .words = "The output settles: {a_dps} at first, with a time constant of {tau_s}",
+    .noun = "a settling of {a_dps} with a time constant of {tau_s}",
     .decided_by = "two or three cold starts of half an hour",
 };
 
