@@ -92,17 +92,24 @@ Json whole_place_json(const Place& place) {
     return json;
 }
 
+void put_share(Json& json, const std::string& key, const Share& share) {
+    json[key] = share.value;
+    json[key + "_lo"] = share.lo;
+    json[key + "_hi"] = share.hi;
+}
+
 Json cause_json(const Cause& cause) {
     const Finding& finding = cause.finding;
     Json json;
     json["effect"] = finding.effect;
+    json["sense"] = name_of(cause.sense);
     json["score"] = cause.score;
     json["tie_group"] = tie_group_json(cause);
     json["axes"] = axes_json(finding.where.axes);
     json["where"] = place_json(finding.where);
     put_params(json, finding);
-    json["shrink_alone"] = cause.shrink_alone;
-    json["sentence"] = effect_words(finding);
+    put_share(json, "share", cause.share);
+    json["sentence"] = cause_words(cause);
     json["gain_nats"] = finding.gain_nats;
     json["evidence_nats"] = finding.evidence_nats;
     for (const Rival& rival : cause.tie_group) {
@@ -111,6 +118,15 @@ Json cause_json(const Cause& cause) {
     if (!cause.decided_by.empty()) { json["decided_by"] = cause.decided_by; }
     return json;
 }
+
+Json unnamed_json(const Unnamed& unnamed) {
+    return {{"form", unnamed.form},
+            {"axes", axes_json(unnamed.where.axes)},
+            {"where", place_json(unnamed.where)},
+            {"share", unnamed.share}};
+}
+
+Json left_json(const Left& left) { return {{"where", whole_place_json(left.where)}, {"size", left.size}}; }
 
 Json domain_json(const GapDomain& domain) {
     Json json;
@@ -166,17 +182,23 @@ std::string_view name_of(Verdict verdict) {
             return "none";
         case Verdict::known:
             return "known";
+        case Verdict::partly:
+            return "partly";
         case Verdict::unexplained:
             return "unexplained";
     }
     return "";
 }
 
+std::string_view name_of(Sense sense) {
+    return sense == Sense::recording_has ? "recording_has" : "model_has";
+}
+
 std::string diagnosis_json(const Diagnosis& diagnosis) { return json_text(diagnosis_object(diagnosis)); }
 
 Json diagnosis_object(const Diagnosis& diagnosis) {
     Json json;
-    json["schema"] = "gyrolog-diagnosis/1";
+    json["schema"] = "gyrolog-diagnosis/2";
     json["verdict"] = name_of(diagnosis.verdict);
     json["p_none"] = diagnosis.p_none;
     json["p_left"] = diagnosis.p_left;
@@ -190,20 +212,18 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
                                 {"than", diagnosis.better_shape->than},
                                 {"evidence_nats", diagnosis.better_shape->evidence_nats}};
     }
+    json["unnamed"] = Json::array();
+    for (const Unnamed& one : diagnosis.unnamed) { json["unnamed"].push_back(unnamed_json(one)); }
+    json["left"] = Json::array();
+    for (const Left& one : diagnosis.left) { json["left"].push_back(left_json(one)); }
     json["where"] = whole_place_json(diagnosis.where);
-    const Json left = whole_place_json(diagnosis.left);
-    if (!left.empty()) { json["left"] = left; }
     json["gap_before"] = gap_json(diagnosis.gap_before);
+    json["gap_named"] = gap_json(diagnosis.gap_named);
     json["gap_after"] = gap_json(diagnosis.gap_after);
-    json["shrink"] = diagnosis.shrink;
-    json["shrink_lo"] = diagnosis.shrink_lo;
-    json["shrink_hi"] = diagnosis.shrink_hi;
+    put_share(json, "shrink", diagnosis.shrink);
+    json["shrink_modelled"] = diagnosis.shrink_modelled;
     json["held_out"] = diagnosis.held_out;
-    if (diagnosis.verdict == Verdict::known) {
-        json["halves"] = {{"judged", diagnosis.split_half.judged},
-                          {"evidence_left_nats", diagnosis.split_half.evidence_left_nats},
-                          {"excess_nats", diagnosis.split_half.excess_nats}};
-    }
+    json["not_held_out"] = diagnosis.not_held_out;
     put_circumstances(json, diagnosis);
     json["domains"] = Json::array();
     for (const GapDomain& domain : diagnosis.domains) { json["domains"].push_back(domain_json(domain)); }
