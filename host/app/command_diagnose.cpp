@@ -54,7 +54,8 @@ Action setup_diagnose(CLI::App& app) {
             ->type_name("FILE.csv");
     app.add_option("--json", request.json_path, "Write the diagnosis as JSON (- for standard output)")
         ->type_name("FILE");
-    app.add_option("--plot", request.plot_path, "Draw where they part, before and after the causes are added")
+    app.add_option("--plot", request.plot_path,
+                   "Draw the shares of the causes, and where recording and model part before and after them")
         ->type_name("FILE.png")
         ->check(png_file());
     app.add_option("--model-out", request.model_out_path, "Write the model with the causes added")

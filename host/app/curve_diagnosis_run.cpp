@@ -16,7 +16,6 @@
 #include "host/formats/curve_csv.hpp"
 #include "host/formats/curve_diagnosis_report.hpp"
 #include "host/formats/curve_effect.hpp"
-#include "host/formats/diagnosis_text.hpp"
 #include "host/formats/model_json.hpp"
 
 namespace gyrolog {
@@ -145,8 +144,7 @@ Status write_results(Console& console, const CurveDiagnosisRequest& request, con
         const Diagnosis diagnosis = as_diagnosis(report);
         std::vector<std::string> facts{
             fmt::format("bands: reading error of {:.3g} %, 95 %", 100.0 * report.options.reading_error)};
-        return write_diagnosis_plot(diagnosis, verdict_sentence(diagnosis, "curve"), std::move(facts),
-                                    request.plot_path);
+        return write_diagnosis_plot(diagnosis, "curve", std::move(facts), request.plot_path);
     });
     results.text(request.model_out_path, [&] { return format_model(*outcome.corrected); });
     return results.finish();

@@ -7,6 +7,7 @@
 #include "analysis/plot/diagnosis_figure.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/base/file_output.hpp"
+#include "host/formats/diagnosis_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -30,14 +31,12 @@ Result<ModelFile> read_single_model(const std::string& path) {
     return file;
 }
 
-Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string title, std::vector<std::string> facts,
+Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string_view of, std::vector<std::string> facts,
                             const std::string& path) {
-    if (title.size() > title_length_max && !diagnosis.causes.empty()) {
-        const std::size_t causes = diagnosis.causes.size();
-        const char* end = diagnosis.verdict == Verdict::known ? "the gap" : "a part of the gap";
+    std::string title = verdict_sentence(diagnosis, of);
+    if (title.size() > title_length_max) {
         facts.insert(facts.begin(), std::move(title));
-        title = causes == 1 ? fmt::format("{} explains {}", diagnosis.causes[0].finding.effect, end)
-                            : fmt::format("{} causes explain {}", causes, end);
+        title = short_verdict_sentence(diagnosis, of);
     }
     const Rendering rendering = render(DiagnosisFigure{diagnosis, std::move(title), std::move(facts)});
     if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }

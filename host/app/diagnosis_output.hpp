@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/diagnose/report.hpp"
@@ -15,8 +16,9 @@ namespace gyrolog {
 // cannot be simulated, and those of read_model_file().
 Result<ModelFile> read_single_model(const std::string& path);
 
-// A title that is too long for the picture gives way to the number of causes.
-Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string title, std::vector<std::string> facts,
+// The verdict is the title; one that is too long for the picture is the first fact, and the title has the
+// number of causes. `of`: what was diagnosed.
+Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string_view of, std::vector<std::string> facts,
                             const std::string& path);
 
 void tell_warnings(Console& console, const std::vector<std::string>& warnings);

@@ -105,8 +105,7 @@ std::vector<std::string> facts_of(const Diagnosis& diagnosis) {
         fmt::format("{:.6g} Hz, {}", diagnosis.rate_hz, format_duration(diagnosis.duration_s))};
     if (!diagnosis.passes.empty()) { facts.push_back(passes_text(diagnosis)); }
     for (const Cause& cause : diagnosis.causes) {
-        facts.push_back(
-            fmt::format("{}: {}", axes_text(cause.finding.where.axes), effect_words(cause.finding)));
+        facts.push_back(fmt::format("{}: {}", axes_text(cause.finding.where.axes), cause_words(cause)));
     }
     return facts;
 }
@@ -120,8 +119,7 @@ Status write_results(Console& console, const RecordingDiagnosisRequest& request,
     }
     results.text(request.json_path, [&] { return diagnosis_json(diagnosis); });
     results.file(request.plot_path, [&] {
-        return write_diagnosis_plot(diagnosis, verdict_sentence(diagnosis), facts_of(diagnosis),
-                                    request.plot_path);
+        return write_diagnosis_plot(diagnosis, "recording", facts_of(diagnosis), request.plot_path);
     });
     results.text(request.model_out_path, [&] { return format_model(diagnosis.corrected); });
     return results.finish();

@@ -75,11 +75,16 @@ TEST_F(DiagnoseCommand, FindsTheCauseAndWritesTextJsonFigureAndModel) {
         << err.str();
     EXPECT_THAT(out.str(), StartsWith("known: arw_scale on x, y and z"));
     const json answer = json::parse(read_whole_file(folder.path("d.json")));
-    EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
+    EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/2");
     EXPECT_EQ(answer["verdict"], "known");
     ASSERT_FALSE(answer["causes"].empty());
     EXPECT_EQ(answer["causes"][0]["effect"], "arw_scale");
     EXPECT_NEAR(answer["causes"][0]["params"]["factor"].get<double>(), 1.5, 0.1);
+    EXPECT_EQ(answer["causes"][0]["sense"], "recording_has");
+    EXPECT_GT(answer["causes"][0]["share"].get<double>(), 0.5);
+    for (const char* key : {"unnamed", "left", "gap_named", "shrink_modelled", "not_held_out"}) {
+        EXPECT_TRUE(answer.contains(key)) << key;
+    }
     EXPECT_EQ(answer["model"], "model.json");
     EXPECT_EQ(answer["simulations"], 20);
     EXPECT_EQ(read_whole_file(folder.path("d.png")).substr(1, 3), "PNG");

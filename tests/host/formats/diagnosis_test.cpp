@@ -1,4 +1,5 @@
 #include <cmath>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "host/formats/diagnosis_json.hpp"
 #include "host/formats/diagnosis_text.hpp"
 #include "host/formats/effect_words.hpp"
+#include "host/formats/place_text.hpp"
 #include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
@@ -66,17 +68,15 @@ Diagnosis known() {
     cause.finding = late_temperature();
     cause.score = 0.91;
     cause.tie_group = {{"temp_lag", 0.0}, {"temp_linear", 2.1}};
-    cause.shrink_alone = 0.88;
+    cause.share = {0.97, 0.9, 1.0};
     cause.decided_by = "one up-and-down sweep of 5 degC";
     diagnosis.causes = {cause};
     diagnosis.where.axes = {0};
     diagnosis.where.tau_s = Span{60.0, 900.0};
     diagnosis.gap_before = {4.1, 1.0, 3.6, 4.7};
-    diagnosis.gap_after = {1.1, 1.0, 0.9, 1.4};
-    diagnosis.shrink = 0.97;
-    diagnosis.shrink_lo = 0.93;
-    diagnosis.shrink_hi = 1.0;
-    diagnosis.held_out = "every other minute";
+    diagnosis.gap_named = diagnosis.gap_after = {1.1, 1.0, 0.9, 1.4};
+    diagnosis.shrink = {0.97, 0.93, 1.0};
+    diagnosis.shrink_modelled = 0.97;
     diagnosis.domains = {allan_domain()};
     diagnosis.untestable = {{"scale_factor", "the recording has no reference rate"},
                             {"rtn", "it is too short"},
@@ -86,14 +86,51 @@ Diagnosis known() {
     return diagnosis;
 }
 
+// The contract's example.
+Diagnosis partly() {
+    Diagnosis diagnosis = known();
+    diagnosis.verdict = Verdict::partly;
+    diagnosis.p_left = 1e-9;
+    diagnosis.causes[0].share = {0.62, 0.55, 0.68};
+    diagnosis.unnamed = {{"density", {}, 0.21}};
+    diagnosis.unnamed[0].where.axes = {2};
+    diagnosis.unnamed[0].where.freq_hz = Span{31.0, 31.8};
+    diagnosis.left = {{{}, 2.1}};
+    diagnosis.left[0].where.axes = {2};
+    diagnosis.left[0].where.time_s = Span{402.0, 409.0};
+    diagnosis.gap_before = {7.9, 1.0, 7.1, 8.8};
+    diagnosis.gap_named = {3.4, 1.0, 3.0, 3.9};
+    diagnosis.gap_after = {1.1, 1.0, 0.9, 1.4};
+    diagnosis.shrink = {0.83, 0.79, 0.86};
+    diagnosis.shrink_modelled = 0.97;
+    return diagnosis;
+}
+
+// A line of the model at 31 Hz that the recording has not.
+Diagnosis with_line_of_model() {
+    Diagnosis diagnosis = partly();
+    Cause cause;
+    cause.sense = Sense::model_has;
+    cause.score = 0.98;
+    cause.share = {0.2, 0.1, 0.3};
+    cause.finding.effect = "line_absent";
+    cause.finding.entries = {{"tone", {"z"}, {{"f_hz", 31.0}, {"amplitude_dps", 0.05}}, ""}};
+    cause.finding.sd = {{}};
+    cause.finding.where.axes = {2};
+    cause.finding.where.freq_hz = Span{30.9, 31.1};
+    diagnosis.causes.push_back(cause);
+    return diagnosis;
+}
+
 Diagnosis none() {
     Diagnosis diagnosis = known();
     diagnosis.verdict = Verdict::none;
     diagnosis.p_none = 0.43;
     diagnosis.causes.clear();
     diagnosis.where = {};
-    diagnosis.gap_before = diagnosis.gap_after = {1.02, 1.0, 0.8, 1.2};
-    diagnosis.shrink = diagnosis.shrink_lo = diagnosis.shrink_hi = 0.0;
+    diagnosis.gap_before = diagnosis.gap_named = diagnosis.gap_after = {1.02, 1.0, 0.8, 1.2};
+    diagnosis.shrink = {};
+    diagnosis.shrink_modelled = 0.0;
     for (GapDomain& domain : diagnosis.domains) {
         domain.after_lo.clear();
         domain.after_hi.clear();
@@ -156,13 +193,16 @@ void expect_numbers(const json& params, const std::string& where) {
 void expect_cause(const json& cause) {
     expect_keys(cause,
                 {{"effect", "string"},
+                 {"sense", "string"},
                  {"score", "number"},
                  {"tie_group", "array"},
                  {"axes", "array"},
                  {"where", "object"},
                  {"params", "object"},
                  {"sd", "object"},
-                 {"shrink_alone", "number"},
+                 {"share", "number"},
+                 {"share_lo", "number"},
+                 {"share_hi", "number"},
                  {"sentence", "string"},
                  {"gain_nats", "number"},
                  {"evidence_nats", "number"},
@@ -171,6 +211,7 @@ void expect_cause(const json& cause) {
                  {"tie?", "object"},
                  {"decided_by?", "string"}},
                 "cause");
+    EXPECT_TRUE(cause["sense"] == "recording_has" || cause["sense"] == "model_has") << cause["sense"];
     EXPECT_EQ(cause["tie_group"].at(0), cause["effect"]);
     expect_place(cause["where"], "cause.where");
     expect_numbers(cause["params"], "params.");
@@ -179,20 +220,51 @@ void expect_cause(const json& cause) {
 
 void expect_schema(const json& answer) {
     expect_keys(answer,
-                {{"schema", "string"},           {"verdict", "string"},   {"p_none", "number"},
-                 {"p_left", "number"},           {"causes", "array"},     {"where", "object"},
-                 {"gap_before", "object"},       {"gap_after", "object"}, {"shrink", "number"},
-                 {"shrink_lo", "number"},        {"shrink_hi", "number"}, {"held_out", "string"},
-                 {"recording", "string"},        {"model", "string"},     {"rate_hz", "number"},
-                 {"duration_s", "number"},       {"samples", "number"},   {"axes", "array"},
-                 {"simulations", "number"},      {"seed", "number"},      {"domains", "array"},
-                 {"band_probability", "number"}, {"untestable", "array"}, {"next_recordings", "array"},
-                 {"halves?", "object"},          {"warnings", "array"},   {"reported_by", "string"}},
+                {{"schema", "string"},
+                 {"verdict", "string"},
+                 {"p_none", "number"},
+                 {"p_left", "number"},
+                 {"causes", "array"},
+                 {"unnamed", "array"},
+                 {"left", "array"},
+                 {"where", "object"},
+                 {"gap_before", "object"},
+                 {"gap_named", "object"},
+                 {"gap_after", "object"},
+                 {"shrink", "number"},
+                 {"shrink_lo", "number"},
+                 {"shrink_hi", "number"},
+                 {"shrink_modelled", "number"},
+                 {"held_out", "string"},
+                 {"not_held_out", "array"},
+                 {"recording", "string"},
+                 {"model", "string"},
+                 {"rate_hz", "number"},
+                 {"duration_s", "number"},
+                 {"samples", "number"},
+                 {"axes", "array"},
+                 {"simulations", "number"},
+                 {"seed", "number"},
+                 {"domains", "array"},
+                 {"band_probability", "number"},
+                 {"untestable", "array"},
+                 {"next_recordings", "array"},
+                 {"warnings", "array"},
+                 {"reported_by", "string"}},
                 "answer");
-    EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
-    for (const char* gap : {"gap_before", "gap_after"}) {
+    EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/2");
+    for (const char* gap : {"gap_before", "gap_named", "gap_after"}) {
         expect_keys(answer[gap],
                     {{"value", "number"}, {"floor", "number"}, {"lo", "number"}, {"hi", "number"}}, gap);
+    }
+    for (const json& one : answer["unnamed"]) {
+        expect_keys(one, {{"form", "string"}, {"axes", "array"}, {"where", "object"}, {"share", "number"}},
+                    "unnamed");
+        expect_place(one["where"], "unnamed.where");
+    }
+    for (const json& one : answer["left"]) {
+        expect_keys(one, {{"where", "object"}, {"size", "number"}}, "left");
+        expect_place(one["where"], "left.where");
     }
     expect_place(answer["where"], "where");
     for (const json& cause : answer["causes"]) { expect_cause(cause); }
@@ -214,6 +286,8 @@ void expect_schema(const json& answer) {
 
 TEST(DiagnosisJson, HasEveryKeyOfTheContractWithItsType) {
     expect_schema(json::parse(diagnosis_json(known())));
+    expect_schema(json::parse(diagnosis_json(partly())));
+    expect_schema(json::parse(diagnosis_json(with_line_of_model())));
     expect_schema(json::parse(diagnosis_json(none())));
     Diagnosis several = known();
     several.verdict = Verdict::unexplained;
@@ -224,21 +298,59 @@ TEST(DiagnosisJson, HasEveryKeyOfTheContractWithItsType) {
     expect_schema(json::parse(diagnosis_json(Diagnosis{})));
 }
 
+// Every key of the contract with its value; what else is there may be there.
 TEST(DiagnosisJson, SaysTheContractsExample) {
-    const json answer = json::parse(diagnosis_json(known()));
-    EXPECT_EQ(answer["verdict"], "known");
-    EXPECT_EQ(answer["p_none"], 0.0002);
-    const json& cause = answer["causes"][0];
-    EXPECT_EQ(cause["effect"], "temp_lag");
-    EXPECT_EQ(cause["tie_group"], json({"temp_lag", "temp_linear"}));
-    EXPECT_EQ(cause["axes"], json({"x"}));
-    EXPECT_EQ(cause["where"], json::parse(R"({"temperature": true, "tau_s": [60, 900]})"));
-    EXPECT_EQ(cause["params"], json::parse(R"({"c1_dps_per_C": 0.021, "tau_s": 410})"));
-    EXPECT_EQ(cause["sd"], json::parse(R"({"c1_dps_per_C": 0.002, "tau_s": 60})"));
-    EXPECT_EQ(answer["where"], json::parse(R"({"axes": ["x"], "tau_s": [60, 900]})"));
-    EXPECT_EQ(answer["gap_after"], json::parse(R"({"value": 1.1, "floor": 1.0, "lo": 0.9, "hi": 1.4})"));
+    const json contract = json::parse(R"({
+        "schema": "gyrolog-diagnosis/2",
+        "verdict": "partly",
+        "p_none": 0.0002,
+        "causes": [
+          {
+            "effect": "temp_lag",
+            "sense": "recording_has",
+            "score": 0.91,
+            "tie_group": ["temp_lag", "temp_linear"],
+            "axes": ["x"],
+            "where": {"temperature": true, "tau_s": [60.0, 900.0]},
+            "params": {"c1_dps_per_C": 0.021, "tau_s": 410.0},
+            "sd": {"c1_dps_per_C": 0.002, "tau_s": 60.0},
+            "share": 0.62, "share_lo": 0.55, "share_hi": 0.68
+          }
+        ],
+        "unnamed": [{"form": "density", "axes": ["z"], "where": {"freq_hz": [31.0, 31.8]}, "share": 0.21}],
+        "left": [{"where": {"axes": ["z"], "time_s": [402.0, 409.0]}, "size": 2.1}],
+        "where": {"axes": ["x"], "tau_s": [60.0, 900.0]},
+        "gap_before": {"value": 7.9, "floor": 1.0, "lo": 7.1, "hi": 8.8},
+        "gap_named":  {"value": 3.4, "floor": 1.0, "lo": 3.0, "hi": 3.9},
+        "gap_after":  {"value": 1.1, "floor": 1.0, "lo": 0.9, "hi": 1.4},
+        "shrink": 0.83, "shrink_lo": 0.79, "shrink_hi": 0.86,
+        "shrink_modelled": 0.97
+    })");
+    const json answer = json::parse(diagnosis_json(partly()));
+    for (const auto& [key, value] : contract.items()) {
+        if (key != "causes") { EXPECT_EQ(answer.at(key), value) << key; }
+    }
+    ASSERT_EQ(answer["causes"].size(), 1U);
+    for (const auto& [key, value] : contract["causes"][0].items()) {
+        EXPECT_EQ(answer["causes"][0].at(key), value) << key;
+    }
     EXPECT_EQ(answer["domains"][0]["outside_before"], 2);
     EXPECT_EQ(answer["untestable"].size(), 3U);
+    EXPECT_EQ(answer["not_held_out"], json::array());
+}
+
+TEST(DiagnosisJson, NamesEveryVerdictAndSense) {
+    EXPECT_EQ(name_of(Verdict::none), "none");
+    EXPECT_EQ(name_of(Verdict::known), "known");
+    EXPECT_EQ(name_of(Verdict::partly), "partly");
+    EXPECT_EQ(name_of(Verdict::unexplained), "unexplained");
+    Diagnosis diagnosis = with_line_of_model();
+    diagnosis.not_held_out = {"rtn"};
+    const json answer = json::parse(diagnosis_json(diagnosis));
+    EXPECT_EQ(answer["causes"][0]["sense"], "recording_has");
+    EXPECT_EQ(answer["causes"][1]["sense"], "model_has");
+    EXPECT_EQ(answer["causes"][1]["sentence"], "The model has a line at 31 Hz that the recording lacks");
+    EXPECT_EQ(answer["not_held_out"], json({"rtn"}));
 }
 
 TEST(DiagnosisJson, PutsEveryKindOfPlaceUnderItsKeyInItsUnit) {
@@ -287,10 +399,26 @@ TEST(DiagnosisText, SaysTheVerdictInItsFirstLine) {
                 StartsWith("known: temp_lag on x and tone on y and z explain the gap\n"));
     two.causes[1].finding.where.axes = {0};
     EXPECT_EQ(verdict_sentence(two), "known: temp_lag and tone on x explain the gap");
+    EXPECT_EQ(short_verdict_sentence(two), "known: 2 causes explain the gap");
+    two.verdict = Verdict::partly;
+    two.shrink.value = 0.624;
+    EXPECT_EQ(verdict_sentence(two), "partly: temp_lag and tone on x explain 62 % of the gap");
     two.verdict = Verdict::unexplained;
-    EXPECT_THAT(verdict_sentence(two), HasSubstr("part of the gap, what makes the rest is not known"));
+    EXPECT_EQ(verdict_sentence(two),
+              "unexplained: there is a gap, and temp_lag and tone on x explain too little of it");
     two.causes.clear();
     EXPECT_EQ(verdict_sentence(two), "unexplained: there is a gap, and no known effect makes it");
+}
+
+TEST(DiagnosisText, OfManyCausesNamesTheFirstInItsFirstLine) {
+    Diagnosis many = known();
+    many.causes.assign(6, many.causes[0]);
+    many.causes[1].finding.effect = "tone";
+    many.causes[1].finding.where.axes = {1, 2};
+    EXPECT_EQ(verdict_sentence(many), "known: temp_lag on x, tone on y and z and 4 more explain the gap");
+    many.causes.resize(3);
+    EXPECT_EQ(verdict_sentence(many),
+              "known: temp_lag on x, tone on y and z and temp_lag on x explain the gap");
 }
 
 std::string joined(const std::string& text) {
@@ -305,32 +433,64 @@ std::string joined(const std::string& text) {
     return line;
 }
 
-TEST(DiagnosisText, TellsPlaceSizeAndHowFarTheGapCloses) {
+// What one asks first comes first.
+TEST(DiagnosisText, SaysItInTheOrderInWhichOneAsks) {
+    Diagnosis diagnosis = partly();
+    diagnosis.untestable = {{"latency", "the recording has no reference rate"}};
+    const std::string text = diagnosis_text(diagnosis);
+    std::size_t before = 0;
+    for (const char* part : {"partly: ", "\ngap\n", "\nexplained: ", "\n  1. temp_lag on x: ", "\nleft: ",
+                             "\nrecordings that would tell more\n", "\nparameters of the causes\n",
+                             "\nwhere (1 is the floor", "\nnot tested\n", "\nwarnings\n"}) {
+        const std::size_t at = text.find(part, before);
+        ASSERT_NE(at, std::string::npos) << part << "\n" << text;
+        before = at;
+    }
+}
+
+TEST(DiagnosisText, SaysWhetherThereIsAGapAndHowFarItIs) {
     const std::string text = joined(diagnosis_text(known()));
-    EXPECT_THAT(text, HasSubstr("x axis, averaging times 60 s to 15 min: the simulation is 4.1 times the "
-                                "floor away (3.6 to 4.7)."));
-    EXPECT_THAT(text,
-                HasSubstr("With it the gap falls to 1.1 times the floor: 97 % (93 % to 100 %) closed on "
-                          "data that the fit did not see (every other minute)."));
-    Diagnosis seen = known();
-    seen.held_out.clear();
-    EXPECT_THAT(joined(diagnosis_text(seen)),
-                HasSubstr("no half of the recording could judge the other's fit"));
-    seen.split_half.judged = {"temp_lag"};
-    EXPECT_THAT(
-        joined(diagnosis_text(seen)),
-        HasSubstr("closed; temp_lag, fitted to one half of the recording, leaves no more in the other than "
-                  "chance does."));
-    seen.split_half.evidence_left_nats = 7.25;
-    seen.split_half.excess_nats = 6.0;
-    EXPECT_THAT(joined(diagnosis_text(seen)),
-                HasSubstr("leaves more in the other than chance does (7.25 nats), which is counted."));
-    EXPECT_THAT(text, HasSubstr("`temp_linear` (2.1 nats less) fits nearly as well; one up-and-down sweep of "
-                                "5 degC would decide."));
     EXPECT_THAT(text, HasSubstr("1 of 5000 would differ as much (p = 0.0002)"));
+    EXPECT_THAT(text, HasSubstr("The recording is 4.1 times as far from a simulation as two simulations are "
+                                "from each other (3.6 to 4.7). It differs most here: x axis, averaging times "
+                                "60 s to 15 min."));
+}
+
+TEST(DiagnosisText, HasALineForEachCauseWithItsShareAndProbability) {
+    const std::string text = joined(diagnosis_text(partly()));
+    EXPECT_THAT(text,
+                HasSubstr("explained: 83 % of the gap (79 % to 86 %), measured by simulating, on parts of "
+                          "the recording that the fit did not use 1. temp_lag on x: 62 % of the gap (55 % "
+                          "to 68 %), probability 91 %. The output follows the temperature late, 0.0210 ± "
+                          "0.0020 deg/s per degC with a lag of 6.8 ± 1.0 min and a play of 0 degC. This "
+                          "recording cannot tell it from `temp_linear`."));
+    EXPECT_THAT(text, Not(HasSubstr("may overlap")));
+    EXPECT_THAT(text, HasSubstr("1. temp_lag: evidence 140 nats; `temp_linear` has 2.1 nats less"));
     EXPECT_THAT(text, HasSubstr("tau_s 6.8 ± 1.0 min"));
+    EXPECT_THAT(
+        joined(diagnosis_text(with_line_of_model())),
+        HasSubstr("2. line_absent on z: 20 % of the gap (10 % to 30 %), probability 98 %. The model has "
+                  "a line at 31 Hz that the recording lacks. Each share is what comes back when that "
+                  "cause alone is taken out again: shares may overlap."));
+}
+
+TEST(DiagnosisText, SaysOnWhatTheSharesWereMeasured) {
+    Diagnosis diagnosis = known();
+    diagnosis.not_held_out = {"rtn", "tone"};
+    EXPECT_THAT(
+        joined(diagnosis_text(diagnosis)),
+        HasSubstr("on parts of the recording that the fit did not use; not so rtn and tone, for which "
+                  "the data of the fit were used"));
+    diagnosis.held_out = "day2.csv";
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)),
+                HasSubstr("measured by simulating, on day2.csv, which had no part in the fit"));
+}
+
+TEST(DiagnosisText, HasTheDetailsAtItsEnd) {
+    const std::string text = joined(diagnosis_text(known()));
     EXPECT_THAT(text, HasSubstr("the recording has no reference rate: scale_factor, latency - it is too"));
-    EXPECT_THAT(text, HasSubstr("One sweep of the temperature. warnings - a warning"));
+    EXPECT_THAT(text, HasSubstr("One sweep of the temperature."));
+    EXPECT_THAT(text, HasSubstr("warnings - a warning"));
     EXPECT_THAT(text, HasSubstr("x Allan deviation 5.2 1 2 of 3 0 of 3"));
 }
 
@@ -352,18 +512,43 @@ TEST(DiagnosisText, SaysEveryKindOfPlace) {
     EXPECT_EQ(place_text({}), "");
 }
 
-TEST(DiagnosisText, SaysWhereWhatIsLeftLies) {
-    Diagnosis diagnosis = known();
-    diagnosis.verdict = Verdict::unexplained;
-    diagnosis.p_left = 1e-9;
-    EXPECT_THAT(diagnosis_text(diagnosis), HasSubstr("by chance either (p < 1e-6)."));
-    EXPECT_FALSE(json::parse(diagnosis_json(diagnosis)).contains("left"));
-    diagnosis.left.axes = {1};
-    diagnosis.left.freq_hz = Span{37.9, 38.1};
-    EXPECT_THAT(diagnosis_text(diagnosis),
-                HasSubstr("by chance either (p < 1e-6): y axis,\n37.9 Hz to 38.1 Hz."));
-    const json left = json::parse(diagnosis_json(diagnosis))["left"];
-    EXPECT_EQ(left, json::parse(R"({"axes": ["y"], "freq_hz": [37.9, 38.1]})"));
+TEST(DiagnosisText, SaysWhatIsLeftAndWhere) {
+    EXPECT_THAT(
+        joined(diagnosis_text(partly())),
+        HasSubstr("left: 17 % of the gap, 3 % beside what has no name; the gap is 7.9, 3.4 with the "
+                  "causes, 1.1 with what has no name as well (1 is what two simulations differ by); "
+                  "chance leaves as much in less than 1 in a million (p < 1e-6) - without a name, a "
+                  "spectrum (z axis, 31 Hz to 31.8 Hz): 21 % of the gap - z axis, from 6.7 min to 6.82 "
+                  "min after the first sample: 2.1 times what two simulations differ by"));
+    EXPECT_THAT(
+        joined(diagnosis_text(known())),
+        HasSubstr("left: 3 % of the gap; the gap is 4.1, 1.1 with the causes (1 is what two simulations "
+                  "differ by); chance leaves as much in 40 of 100 (p = 0.4) - no place stands out"));
+    Diagnosis nothing = partly();
+    nothing.verdict = Verdict::unexplained;
+    nothing.causes.clear();
+    nothing.unnamed.clear();
+    nothing.shrink = {};
+    const std::string text = joined(diagnosis_text(nothing));
+    EXPECT_THAT(text,
+                HasSubstr("explained: nothing, no known effect makes such a gap left: 100 % of the gap; "
+                          "the gap is 7.9 (1 is what two simulations differ by) - z axis"));
+    EXPECT_THAT(text, Not(HasSubstr("parameters of the causes")));
+}
+
+TEST(DiagnosisText, SaysEveryUnnamedFormInWords) {
+    std::set<std::string> said;
+    for (const char* form : {"density", "drift", "temperature", "rate", "level", "masked"}) {
+        Diagnosis diagnosis = partly();
+        diagnosis.unnamed = {{form, {}, 0.21}};
+        const std::string text = joined(diagnosis_text(diagnosis));
+        const std::size_t at = text.find("without a name, ");
+        ASSERT_NE(at, std::string::npos) << form;
+        const std::string words = text.substr(at, text.find(':', at) - at);
+        EXPECT_THAT(words, HasSubstr(form == std::string("masked") ? "left out" : "a ")) << form;
+        said.insert(words);
+    }
+    EXPECT_EQ(said.size(), 6U);
 }
 
 TEST(DiagnosisText, SaysWhichShapeFitsBetterThanTheCauses) {
@@ -374,7 +559,6 @@ TEST(DiagnosisText, SaysWhichShapeFitsBetterThanTheCauses) {
     EXPECT_THAT(text, StartsWith("unexplained: temp_lag on x resembles the gap, but"));
     EXPECT_THAT(text, HasSubstr("A course that repeats every 412 s fits better than temp_lag, by 12 nats, "
                                 "and is no known effect."));
-    EXPECT_THAT(text, Not(HasSubstr("What is left")));
     const json shape = json::parse(diagnosis_json(diagnosis)).at("better_shape");
     EXPECT_EQ(shape.at("words"), "A course that repeats every 412 s");
     EXPECT_EQ(shape.at("than"), json({"temp_lag"}));
@@ -434,13 +618,15 @@ TEST(DiagnosisText, OfManyPlacesListsThoseThatStandOut) {
 TEST(DiagnosisText, OfNoGapClaimsNoPlaceAndNoCause) {
     const std::string text = diagnosis_text(none());
     EXPECT_THAT(text, HasSubstr("43 of 100 would differ as much (p = 0.43)"));
-    EXPECT_THAT(text, Not(HasSubstr("times the floor")));
-    EXPECT_THAT(text, Not(HasSubstr("causes")));
+    for (const char* claim : {"as far from a simulation", "explained", "left: ", "causes"}) {
+        EXPECT_THAT(text, Not(HasSubstr(claim)));
+    }
 }
 
 TEST(DiagnosisText, KeepsItsLinesWithinATerminal) {
-    Diagnosis diagnosis = known();
+    Diagnosis diagnosis = with_line_of_model();
     diagnosis.causes[0].finding = different_axes();
+    diagnosis.not_held_out = {"rtn", "tone", "temp_lag"};
     diagnosis.recording_name =
         "a_rather_long_name_of_a_recording_from_the_temperature_chamber_2026-11-21.csv";
     std::istringstream lines(diagnosis_text(diagnosis));
@@ -484,17 +670,63 @@ TEST(EffectWords, PutValuesInTheirPlaces) {
     EXPECT_EQ(filled_words("no values", late_temperature()), "no values");
 }
 
+Cause of_model(const std::string& name, const std::string& effect, std::map<std::string, double> params) {
+    Cause cause;
+    cause.sense = Sense::model_has;
+    cause.finding.effect = name;
+    cause.finding.entries = {{effect, {"x"}, std::move(params), ""}};
+    cause.finding.sd = {{}};
+    return cause;
+}
+
+TEST(EffectWords, SayWhatTheModelHasAndTheRecordingLacks) {
+    EXPECT_EQ(cause_words(of_model("tone", "tone", {{"f_hz", 31.0}, {"amplitude_dps", 0.05}})),
+              "The model has a line at 31 Hz that the recording lacks");
+    EXPECT_EQ(cause_words(of_model("line_absent", "line_absent", {{"f_hz", 31.0}})),
+              "The model has a line at 31 Hz that the recording lacks");
+    EXPECT_EQ(cause_words(of_model("rrw_excess", "rrw_excess", {{"factor", 0.5}})),
+              "The model has a rate random walk; the recording has 0.5 times as much");
+    EXPECT_EQ(cause_words(of_model("flicker_excess", "flicker_excess", {})),
+              "The model has flicker noise that the recording lacks");
+    EXPECT_EQ(cause_words(of_model("arw_scale", "arw_scale", {{"factor", 0.8}})),
+              "The model has white noise; the recording has 0.8 times as much");
+    EXPECT_EQ(cause_words(of_model("effect_absent", "temp_linear", {{"c1_dps_per_C", 0.02}})),
+              "The model has a temperature coefficient of 0.02 deg/s per degC that the recording lacks");
+    EXPECT_EQ(cause_words(of_model("effect_absent", "self_heating", {})),
+              "The model has `self_heating` that the recording lacks");
+    EXPECT_EQ(
+        cause_words(of_model("variance_change", "variance_change", {{"factor", 2.0}})),
+        "The model has a change of the white noise to 2 times its standard deviation that the recording "
+        "lacks");
+    Cause lacking = of_model("rrw_missing", "rrw_missing", {{"K_dps_sqrt_hz", 0.002}});
+    lacking.sense = Sense::recording_has;
+    EXPECT_EQ(cause_words(lacking), effect_words(lacking.finding));
+}
+
+// A line may be mains, a motor, or one that somebody simulated.
+TEST(EffectWords, SayWhatIsSeenAndNotWhatMadeIt) {
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
+        const std::string words(link.effect->signature->words);
+        for (const char* origin :
+             {"mains", "vibration", "supply", "outside", "turn-on", "read faster", "The bias"}) {
+            EXPECT_THAT(words, Not(HasSubstr(origin))) << link.effect->name;
+        }
+    }
+}
+
 TEST(EffectWords, NameOnlyParametersThatTheEffectHas) {
     for (const ChainLink& link : signal_chain()) {
         if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
-        const std::string_view words = link.effect->signature->words;
-        EXPECT_FALSE(words.empty()) << link.effect->name;
-        for (std::size_t open = words.find('{'); open != std::string_view::npos;
-             open = words.find('{', open + 1)) {
-            const std::string_view name = words.substr(open + 1, words.find('}', open) - open - 1);
-            EXPECT_TRUE(std::ranges::any_of(link.effect->params,
-                                            [&](const EffectParam& param) { return param.name == name; }))
-                << link.effect->name << " {" << name << "}";
+        for (const std::string_view words : {link.effect->signature->words, link.effect->signature->noun}) {
+            EXPECT_FALSE(words.empty()) << link.effect->name;
+            for (std::size_t open = words.find('{'); open != std::string_view::npos;
+                 open = words.find('{', open + 1)) {
+                const std::string_view name = words.substr(open + 1, words.find('}', open) - open - 1);
+                EXPECT_TRUE(std::ranges::any_of(link.effect->params,
+                                                [&](const EffectParam& param) { return param.name == name; }))
+                    << link.effect->name << " {" << name << "}";
+            }
         }
     }
 }
