@@ -380,21 +380,21 @@ void put_rivals(CurveCause& cause, const ChangeSearch& search, std::size_t slot)
     std::ranges::sort(cause.rivals, {}, &CurveRival::criterion_behind);
 }
 
-double shrink_alone(const CurveCause& cause, const Target& target, const std::vector<ModelledTerm>& model,
-                    const CurveDiagnosis& diagnosis) {
-    std::vector<CurveTerm> terms;
-    for (const ModelledTerm& modelled : model) {
-        const bool replaced = cause.in_model && modelled.may_change &&
-                              modelled.term.kind == cause.in_model->kind &&
-                              modelled.term.shape == cause.in_model->shape;
-        if (!replaced) { terms.push_back(modelled.term); }
-    }
-    terms.push_back(cause.term);
-    return shrink_of(diagnosis.before.rms_db, residual_of(target, terms).rms_db, diagnosis.floor_db);
+// Of the gap's square, what comes back where the cause's term is as in the model again.
+double share_of(const CurveCause& cause, const Target& target, const CurveDiagnosis& diagnosis) {
+    std::vector<CurveTerm> terms = diagnosis.corrected;
+    const auto own = std::ranges::find_if(terms, [&](const CurveTerm& term) {
+        return term.kind == cause.term.kind && term.shape == cause.term.shape && term.size == cause.term.size;
+    });
+    if (own != terms.end()) { terms.erase(own); }
+    if (cause.in_model) { terms.push_back(*cause.in_model); }
+    const auto shrink = [&](double rms_db) {
+        return shrink_of(diagnosis.before.rms_db, rms_db, diagnosis.floor_db);
+    };
+    return std::clamp(shrink(diagnosis.after.rms_db) - shrink(residual_of(target, terms).rms_db), 0.0, 1.0);
 }
 
-void put_causes(CurveDiagnosis& diagnosis, const ChangeSearch& search, const Target& target,
-                const std::vector<ModelledTerm>& model) {
+void put_causes(CurveDiagnosis& diagnosis, const ChangeSearch& search, const Target& target) {
     const std::vector<Slot>& slots = search.result().slots;
     if (std::ranges::none_of(slots, &Slot::changed)) { return; }
     const std::vector<double> sd = search.log_sd();
@@ -408,7 +408,7 @@ void put_causes(CurveDiagnosis& diagnosis, const ChangeSearch& search, const Tar
         if (slots[i].in_model) { cause.in_model = slots[i].modelled.term; }
         put_rivals(cause, search, i);
         put_place(cause, target, diagnosis.corrected);
-        cause.shrink_alone = shrink_alone(cause, target, model, diagnosis);
+        cause.share = share_of(cause, target, diagnosis);
         diagnosis.causes.push_back(std::move(cause));
     }
     std::ranges::sort(diagnosis.causes, std::ranges::greater(), &CurveCause::criterion_gain);
@@ -427,6 +427,39 @@ std::vector<CurveGapStretch> stretches_of(const Target& target, const std::vecto
     }
     auto gap = compare_curves(sensor, {}, modelled, {});
     return gap ? std::move(gap->stretches) : std::vector<CurveGapStretch>{};
+}
+
+bool is_closed(const CurveDiagnosis& diagnosis) {
+    return diagnosis.in_floors(diagnosis.after) <= curve_floors_closed;
+}
+
+std::vector<CurveLeft> left_of(const CurveDiagnosis& diagnosis, const Target& target) {
+    std::vector<CurveLeft> left;
+    if (is_closed(diagnosis)) { return left; }
+    const std::vector<double> residuals_db = target.residuals_db(diagnosis.corrected);
+    for (const CurveGapStretch& stretch : stretches_of(target, diagnosis.corrected)) {
+        double sum = 0.0;
+        double points = 0.0;
+        for (std::size_t i = 0; i < target.tau_s.size(); ++i) {
+            if (target.tau_s[i] < stretch.from_tau_s || target.tau_s[i] > stretch.to_tau_s) { continue; }
+            sum += residuals_db[i] * residuals_db[i];
+            points += 1.0;
+        }
+        const double floors = std::sqrt(sum / std::max(points, 1.0)) / diagnosis.floor_db;
+        if (floors > curve_floors_closed) { left.push_back({stretch.from_tau_s, stretch.to_tau_s, floors}); }
+    }
+    std::ranges::stable_sort(left, std::ranges::greater(), &CurveLeft::floors);
+    return left;
+}
+
+CurveDiagnosis::Verdict verdict_of(const CurveDiagnosis& diagnosis) {
+    using Verdict = CurveDiagnosis::Verdict;
+    if (diagnosis.causes.empty()) { return is_closed(diagnosis) ? Verdict::none : Verdict::unexplained; }
+    if (is_closed(diagnosis) || 1.0 - diagnosis.shrink < curve_share_min) { return Verdict::known; }
+    const bool is_named = std::ranges::any_of(diagnosis.causes, [](const CurveCause& cause) {
+        return cause.probability >= curve_probability_min && cause.share >= curve_share_min;
+    });
+    return is_named ? Verdict::partly : Verdict::unexplained;
 }
 
 }  // namespace
@@ -448,15 +481,12 @@ CurveDiagnosis diagnose_curve(const AllanCurve& curve, const std::vector<Modelle
     search.run();
     diagnosis.corrected = terms_of(search.result().slots);
     diagnosis.after = residual_of(target, diagnosis.corrected);
-    put_causes(diagnosis, search, target, model);
+    put_causes(diagnosis, search, target);
     diagnosis.shrink = diagnosis.causes.empty()
                            ? 0.0
                            : shrink_of(diagnosis.before.rms_db, diagnosis.after.rms_db, diagnosis.floor_db);
-    using Verdict = CurveDiagnosis::Verdict;
-    const bool closed = diagnosis.in_floors(diagnosis.after) <= curve_floors_closed;
-    diagnosis.verdict = !closed                    ? Verdict::unexplained
-                        : diagnosis.causes.empty() ? Verdict::none
-                                                   : Verdict::known;
+    diagnosis.left = left_of(diagnosis, target);
+    diagnosis.verdict = verdict_of(diagnosis);
     return diagnosis;
 }
 

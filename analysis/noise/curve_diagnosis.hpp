@@ -41,16 +41,27 @@ struct CurveCause {
     std::vector<CurveRival> rivals;     // within curve_tie_margin of it
     double from_tau_s = 0.0;            // where it makes at least half the change that it makes at most
     double to_tau_s = 0.0;
-    double shrink_alone = 0.0;
+    double share = 0.0;  // of the gap's square, what returns without this change; shares may overlap
 
     // Of the size in the model; no meaning for a term that it lacks.
     double factor() const { return in_model ? term.size / in_model->size : 0.0; }
+    // The model has it, or has more of it, than the curve.
+    bool is_of_model() const { return in_model && term.size < in_model->size; }
+};
+
+// Averaging times at which the corrected model is off by more than curve_floors_closed.
+struct CurveLeft {
+    double from_tau_s = 0.0;
+    double to_tau_s = 0.0;
+    double floors = 0.0;  // root mean square over them
 };
 
 inline constexpr double curve_tie_margin = 8.0;  // 4 nats
 
 struct CurveDiagnosis {
-    enum class Verdict { none, known, unexplained };
+    // known: with the changes the gap is none, or less than a tenth of its square is left. partly: more is,
+    // and one change at least that is right more likely than not has a share of a tenth or more.
+    enum class Verdict { none, known, partly, unexplained };
 
     Verdict verdict = Verdict::none;
     std::size_t points = 0;
@@ -61,12 +72,17 @@ struct CurveDiagnosis {
     std::vector<CurveGapStretch> stretches;  // of the model as it is; without terms
     std::vector<CurveCause> causes;          // by falling criterion_gain
     std::vector<CurveTerm> corrected;
+    std::vector<CurveLeft> left;  // of a gap that is not closed; the largest first
 
     double in_floors(const CurveResidual& residual) const { return residual.rms_db / floor_db; }
 };
 
 // A gap that is at most this many times the floor is none, or is closed.
 inline constexpr double curve_floors_closed = 1.5;
+// Of a gap's square: what is worth naming, and what may be left of a gap that is explained.
+inline constexpr double curve_share_min = 0.1;
+// A change of less probability does not make a verdict.
+inline constexpr double curve_probability_min = 0.5;
 
 // The curve has at least curve_fit_points_min points with a positive deviation, the model at least one term.
 CurveDiagnosis diagnose_curve(const AllanCurve& curve, const std::vector<ModelledTerm>& model,

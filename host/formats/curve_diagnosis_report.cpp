@@ -77,14 +77,23 @@ Span joined(const std::optional<Span>& span, double from, double to) {
     return span ? Span{std::min(span->from, from), std::max(span->to, to)} : Span{from, to};
 }
 
-void put_cause(Diagnosis& diagnosis, const DiagnosedCurve& curve, const CurveCause& found) {
+// The square of a curve's gap beyond the floor, in floors.
+double excess_of(const DiagnosedCurve& curve) {
+    const double gap = curve.diagnosis.in_floors(curve.diagnosis.before);
+    return std::max(gap * gap - 1.0, 0.0);
+}
+
+// `part`: of the gap of all curves, what this one has.
+void put_cause(Diagnosis& diagnosis, const DiagnosedCurve& curve, const CurveCause& found, double part) {
     const CurveEffect effect = effect_of(found);
     auto cause = std::ranges::find_if(diagnosis.causes,
                                       [&](const Cause& c) { return c.finding.effect == effect.effect; });
     if (cause == diagnosis.causes.end()) {
         cause = diagnosis.causes.insert(diagnosis.causes.end(), Cause{});
         cause->finding.effect = effect.effect;
+        cause->sense = found.is_of_model() ? Sense::model_has : Sense::recording_has;
     }
+    cause->share.value = std::min(cause->share.value + part * found.share, 1.0);
     Finding& finding = cause->finding;
     const double gain_nats = 0.5 * found.criterion_gain;
     finding.entries.push_back({effect.effect, {axis_names.at(curve.axis)}, effect.params, ""});
@@ -98,7 +107,6 @@ void put_cause(Diagnosis& diagnosis, const DiagnosedCurve& curve, const CurveCau
     finding.axis_gain_nats.at(curve.axis) += gain_nats;
     if (!strongest) { return; }
     cause->score = found.probability;
-    cause->shrink_alone = found.shrink_alone;
     cause->tie_group.clear();
     cause->decided_by.clear();
     if (found.rivals.empty()) { return; }
@@ -153,14 +161,20 @@ Json curve_json(const DiagnosedCurve& curve, const RateUnit& unit) {
     return json;
 }
 
-Verdict verdict_of(const CurveDiagnosisReport& report) {
-    Verdict verdict = Verdict::none;
-    for (const DiagnosedCurve& curve : report.curves) {
-        using Of = CurveDiagnosis::Verdict;
-        if (curve.diagnosis.verdict == Of::unexplained) { return Verdict::unexplained; }
-        if (curve.diagnosis.verdict == Of::known) { verdict = Verdict::known; }
-    }
-    return verdict;
+// Of all curves together, by the same rule as of one.
+Verdict verdict_of(const CurveDiagnosisReport& report, const Diagnosis& whole) {
+    using Of = CurveDiagnosis::Verdict;
+    const auto all = [&](auto is) {
+        return std::ranges::all_of(report.curves,
+                                   [&](const DiagnosedCurve& curve) { return is(curve.diagnosis.verdict); });
+    };
+    if (all([](Of one) { return one == Of::none; })) { return Verdict::none; }
+    const bool all_closed = all([](Of one) { return one == Of::none || one == Of::known; });
+    if (all_closed || 1.0 - whole.shrink.value < curve_share_min) { return Verdict::known; }
+    const bool is_named = std::ranges::any_of(whole.causes, [](const Cause& cause) {
+        return cause.score >= curve_probability_min && cause.share.value >= curve_share_min;
+    });
+    return is_named ? Verdict::partly : Verdict::unexplained;
 }
 
 // Where measured and model part, on all curves.
@@ -176,6 +190,19 @@ Place place_of(const CurveDiagnosisReport& report) {
     return place;
 }
 
+std::vector<Left> left_of(const CurveDiagnosisReport& report) {
+    std::vector<Left> left;
+    for (const DiagnosedCurve& curve : report.curves) {
+        for (const CurveLeft& one : curve.diagnosis.left) {
+            left.push_back({{}, one.floors});
+            left.back().where.axes = {curve.axis};
+            left.back().where.tau_s = Span{one.from_tau_s, one.to_tau_s};
+        }
+    }
+    std::ranges::stable_sort(left, std::ranges::greater(), &Left::size);
+    return left;
+}
+
 }  // namespace
 
 Diagnosis as_diagnosis(const CurveDiagnosisReport& report) {
@@ -183,38 +210,50 @@ Diagnosis as_diagnosis(const CurveDiagnosisReport& report) {
     diagnosis.recording_name = report.curve_name;
     diagnosis.model_name = report.model_name;
     diagnosis.band_probability = band_probability;
-    diagnosis.verdict = verdict_of(report);
     diagnosis.where = place_of(report);
+    diagnosis.left = left_of(report);
     diagnosis.warnings = report.warnings;
+    double excess = 0.0;
+    for (const DiagnosedCurve& curve : report.curves) { excess += excess_of(curve); }
     for (const DiagnosedCurve& curve : report.curves) {
         diagnosis.axes.push_back(curve.axis);
         diagnosis.domains.push_back(domain_of(curve, report.options.reading_error));
         GapDomain& domain = diagnosis.domains.back();
         if (domain.after_lo.empty()) { domain.gap_after = domain.gap_before; }
-        for (const CurveCause& cause : curve.diagnosis.causes) { put_cause(diagnosis, curve, cause); }
+        const double part = excess > 0.0 ? excess_of(curve) / excess : 0.0;
+        for (const CurveCause& cause : curve.diagnosis.causes) { put_cause(diagnosis, curve, cause, part); }
     }
     std::ranges::stable_sort(diagnosis.causes, std::ranges::greater(),
-                             [](const Cause& cause) { return cause.finding.evidence_nats; });
+                             [](const Cause& cause) { return cause.share.value; });
     diagnosis.gap_before.value = root_mean_square(diagnosis.domains, &GapDomain::gap_before);
     diagnosis.gap_after.value = root_mean_square(diagnosis.domains, &GapDomain::gap_after);
+    diagnosis.gap_named = diagnosis.gap_after;  // nothing is modelled without a name
     const double before = diagnosis.gap_before.value * diagnosis.gap_before.value - 1.0;
     const double after = diagnosis.gap_after.value * diagnosis.gap_after.value - 1.0;
-    if (!diagnosis.causes.empty() && before > 0.0) { diagnosis.shrink = std::min(1.0, 1.0 - after / before); }
+    if (!diagnosis.causes.empty() && before > 0.0) {
+        diagnosis.shrink.value = diagnosis.shrink_modelled = std::min(1.0, 1.0 - after / before);
+    }
+    diagnosis.verdict = verdict_of(report, diagnosis);
     return diagnosis;
 }
 
 std::string curve_diagnosis_json(const CurveDiagnosisReport& report) {
     Json json = diagnosis_object(as_diagnosis(report));
     for (const char* of_recordings :
-         {"p_none", "p_left", "shrink_lo", "shrink_hi", "held_out", "halves", "recording", "rate_hz",
-          "duration_s", "samples", "simulations", "seed", "untestable"}) {
+         {"p_none", "p_left", "shrink_lo", "shrink_hi", "held_out", "recording", "rate_hz", "duration_s",
+          "samples", "simulations", "seed", "untestable"}) {
         json.erase(of_recordings);
     }
-    for (const char* gap : {"gap_before", "gap_after"}) {
+    for (const char* gap : {"gap_before", "gap_named", "gap_after"}) {
         json[gap].erase("lo");
         json[gap].erase("hi");
     }
-    for (Json& cause : json["causes"]) { cause.erase("sentence"); }
+    for (Json& cause : json["causes"]) {
+        for (const char* of_recordings : {"sentence", "share_lo", "share_hi"}) { cause.erase(of_recordings); }
+    }
+    // Print gives no second data.
+    json["not_held_out"] = Json::array();
+    for (const Json& cause : json["causes"]) { json["not_held_out"].push_back(cause["effect"]); }
     json["curve"] = {{"name", report.curve_name}, {"reading_error", report.options.reading_error}};
     json["curves"] = Json::object();
     for (const DiagnosedCurve& curve : report.curves) {

@@ -1,7 +1,8 @@
 // The diagnosis of printed Allan curves against a model, for people and for programs.
 //
-// JSON: gyrolog-diagnosis/1 (diagnosis_json.hpp) without what only a recording has: p_none, p_left, lo and hi
-// of gaps, shrink_lo, shrink_hi, and what tells of simulations. In its place:
+// JSON: gyrolog-diagnosis/2 (diagnosis_json.hpp) without what only a recording has: p_none, p_left, the ends
+// of intervals (lo and hi of gaps, shrink_lo, shrink_hi, share_lo, share_hi), and what tells of simulations.
+// unnamed is empty, left has the averaging times at which the corrected model is off. In their place:
 //   curve                    {name, reading_error}
 //   curves                   by name: points, axis, floor_dB (root mean square of what the complete noise
 //   model

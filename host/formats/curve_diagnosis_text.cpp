@@ -31,12 +31,12 @@ std::string stretch_text(const CurveGapStretch& stretch) {
 }
 
 std::string cause_words(const CurveCause& cause, const RateUnit& unit) {
-    if (!cause.in_model) { return fmt::format("the model lacks {}", term_text(cause.term, unit)); }
+    if (!cause.in_model) { return fmt::format("The model lacks {}", term_text(cause.term, unit)); }
     if (cause.term.size == 0.0) {
-        return fmt::format("no {} seen, where the model has {}", name_of(cause.term.kind),
+        return fmt::format("No {} seen, where the model has {}", name_of(cause.term.kind),
                            term_text(*cause.in_model, unit));
     }
-    return fmt::format("the sensor's {} is {} times the model's ({})", name_of(cause.term.kind),
+    return fmt::format("The sensor's {} is {} times the model's ({})", name_of(cause.term.kind),
                        with_uncertainty(cause.factor(), cause.factor() * cause.size_sd_rel),
                        term_text(*cause.in_model, unit));
 }
@@ -44,17 +44,23 @@ std::string cause_words(const CurveCause& cause, const RateUnit& unit) {
 std::string cause_text(const CurveCause& cause, std::size_t rank, const RateUnit& unit) {
     std::string text = wrapped_text(
         fmt::format("    {}. ", rank),
-        fmt::format(
-            "{}: {}; most of it from {} to {}. Probability {:.0f} %, closes {:.0f} % of the gap alone.",
-            effect_of(cause).effect, cause_words(cause, unit), duration_text(cause.from_tau_s),
-            duration_text(cause.to_tau_s), 100.0 * cause.probability,
-            100.0 * std::max(cause.shrink_alone, 0.0)));
+        fmt::format("{}: {:.0f} % of the gap, probability {:.0f} %. {}; most of it from {} to {}.",
+                    effect_of(cause).effect, 100.0 * cause.share, 100.0 * cause.probability,
+                    cause_words(cause, unit), duration_text(cause.from_tau_s),
+                    duration_text(cause.to_tau_s)));
     for (const CurveRival& rival : cause.rivals) {
         text += wrapped_text("       ", fmt::format("`{}` ({}) fits nearly as well, {:.1f} nats less.",
                                                     effect_name(rival.term.kind), term_text(rival.term, unit),
                                                     0.5 * rival.criterion_behind));
     }
     return text;
+}
+
+std::string left_text(const CurveLeft& left) {
+    const std::string from = duration_text(left.from_tau_s);
+    const std::string to = duration_text(left.to_tau_s);
+    return fmt::format("left: {}, {:.2g} times the floor",
+                       left.from_tau_s == left.to_tau_s ? "at " + from : from + " to " + to, left.floors);
 }
 
 std::string curve_text(const DiagnosedCurve& curve, const RateUnit& unit) {
@@ -70,10 +76,13 @@ std::string curve_text(const DiagnosedCurve& curve, const RateUnit& unit) {
     for (std::size_t i = 0; i < diagnosis.causes.size(); ++i) {
         text += cause_text(diagnosis.causes[i], i + 1, unit);
     }
-    if (diagnosis.causes.empty()) { return text; }
-    return text + wrapped_text("  after:  ",
-                               fmt::format("{}; {:.0f} % closed", residual_text(diagnosis, diagnosis.after),
-                                           100.0 * diagnosis.shrink));
+    if (!diagnosis.causes.empty()) {
+        text += wrapped_text(
+            "  after:  ", fmt::format("{}; {:.0f} % of the gap explained",
+                                      residual_text(diagnosis, diagnosis.after), 100.0 * diagnosis.shrink));
+    }
+    for (const CurveLeft& left : diagnosis.left) { text += wrapped_text("    ", left_text(left)); }
+    return text;
 }
 
 }  // namespace

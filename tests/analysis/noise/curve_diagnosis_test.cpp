@@ -57,6 +57,11 @@ TEST(CurveDiagnosis, SaysByWhatFactorACoefficientIsOff) {
     EXPECT_GT(of(Kind::K).from_tau_s, 100.0);
     EXPECT_GT(diagnosis.shrink, 0.95);
     EXPECT_GT(of(Kind::N).probability, 0.9);
+    EXPECT_FALSE(of(Kind::N).is_of_model());
+    EXPECT_TRUE(of(Kind::K).is_of_model());
+    EXPECT_GT(of(Kind::N).share, 0.1);
+    EXPECT_GT(of(Kind::K).share, 0.1);
+    EXPECT_TRUE(diagnosis.left.empty());
     ASSERT_EQ(diagnosis.stretches.size(), 2U);
     EXPECT_NEAR(diagnosis.stretches[0].worst_db, 20.0 * std::log10(1.4), 0.7);
     EXPECT_LT(diagnosis.stretches[1].worst_db, 0.0);
@@ -148,7 +153,19 @@ TEST(CurveDiagnosis, OfAShapeThatNoTermHasSaysUnexplained) {
     }
     const CurveDiagnosis diagnosis = diagnose_curve(curve, model_of(nbk().coefficients));
     EXPECT_GT(diagnosis.before.rms_db, 3.0);
-    EXPECT_NE(diagnosis.verdict, Verdict::known);
+    EXPECT_EQ(diagnosis.verdict, Verdict::unexplained);
+    ASSERT_FALSE(diagnosis.left.empty());
+    for (const CurveLeft& left : diagnosis.left) { EXPECT_GT(left.floors, curve_floors_closed); }
+}
+
+// A share is what comes back: of one change all that it closes.
+TEST(CurveDiagnosis, OfOneChangeTheShareIsWhatItCloses) {
+    NoiseModel sensor = nbk();
+    sensor.coefficients.N_rad_per_sqrt_s *= 1.4;
+    const CurveDiagnosis diagnosis =
+        diagnose_curve(curve_of(sensor, as_printed), model_of(nbk().coefficients));
+    ASSERT_EQ(diagnosis.causes.size(), 1U);
+    EXPECT_NEAR(diagnosis.causes[0].share, diagnosis.shrink, 1e-9);
 }
 
 TEST(CurveDiagnosis, ScalesWithTheCurve) {

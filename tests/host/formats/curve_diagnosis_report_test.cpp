@@ -1,6 +1,8 @@
 #include "host/formats/curve_diagnosis_report.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,6 +19,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 using Kind = CurveTerm::Kind;
@@ -84,7 +87,7 @@ TEST(CurveDiagnosisReport, SaysWhatIsNotSeenInWords) {
     const AllanCurve curve = exact_curve(sensor);
     const std::vector<ModelledTerm> terms = curve_of_model(model, 0).terms;
     report.curves.push_back({"sensor_x", 0, curve, terms, diagnose_curve(curve, terms)});
-    EXPECT_THAT(curve_diagnosis_text(report), HasSubstr("no B seen, where the model has"));
+    EXPECT_THAT(curve_diagnosis_text(report), HasSubstr("No B seen, where the model has"));
     ASSERT_EQ(report.curves[0].diagnosis.causes.size(), 1U);
     correct(model, 0, report.curves[0].diagnosis.causes[0]);
     EXPECT_EQ(model.axes[0].noise.B_rad_per_s, 0.0);
@@ -109,7 +112,7 @@ TEST(CurveDiagnosisReport, NamesAnAxisOnceThatHasTwoOfAnEffect) {
 
 TEST(CurveDiagnosisReport, NamesFactorAndMissingTermUnderTheEffectsNames) {
     const json answer = json::parse(curve_diagnosis_json(quiet_report()));
-    EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/1");
+    EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/2");
     EXPECT_EQ(answer["verdict"], "known");
     const json* white = cause_of(answer, "arw_scale");
     ASSERT_NE(white, nullptr) << answer.dump(1);
@@ -129,6 +132,23 @@ TEST(CurveDiagnosisReport, NamesFactorAndMissingTermUnderTheEffectsNames) {
     EXPECT_EQ(curve["coefficients"]["N"]["unit"], "dps/sqrt(Hz)");
     EXPECT_GT(curve["before"]["rms_dB"].get<double>(), curve["after"]["rms_dB"].get<double>());
     EXPECT_GT(answer["shrink"].get<double>(), 0.95);
+    EXPECT_EQ((*white)["sense"], "recording_has");
+    EXPECT_EQ((*walk)["sense"], "model_has");
+    // Most of the gap comes back without either, and none of it is left.
+    double shares = 0.0;
+    for (const json& cause : answer["causes"]) {
+        EXPECT_GT(cause["share"].get<double>(), 0.02) << cause["effect"];
+        shares += cause["share"].get<double>();
+        EXPECT_FALSE(cause.contains("share_lo"));
+    }
+    EXPECT_GT(shares, 0.7);
+    EXPECT_TRUE(std::ranges::is_sorted(answer["causes"], std::ranges::greater(),
+                                       [](const json& cause) { return cause["share"].get<double>(); }));
+    EXPECT_EQ(answer["unnamed"], json::array());
+    EXPECT_EQ(answer["left"], json::array());
+    EXPECT_EQ(answer["gap_named"], answer["gap_after"]);
+    EXPECT_EQ(answer["shrink_modelled"], answer["shrink"]);
+    EXPECT_EQ(answer["not_held_out"].size(), answer["causes"].size());
     for (const char* of_recordings : {"p_none", "seed", "simulations", "held_out", "shrink_lo"}) {
         EXPECT_FALSE(answer.contains(of_recordings)) << of_recordings;
     }
@@ -138,9 +158,38 @@ TEST(CurveDiagnosisReport, SaysWhereTheModelErrsAndWhatDoesIt) {
     const std::string text = curve_diagnosis_text(quiet_report());
     EXPECT_THAT(text, StartsWith("known: "));
     EXPECT_THAT(text, HasSubstr("the model is too quiet by up to"));
-    EXPECT_THAT(text, HasSubstr("the sensor's N is 1.4"));
-    EXPECT_THAT(text, HasSubstr("the model lacks Gauss-Markov 0.0"));
+    EXPECT_THAT(text, HasSubstr("The sensor's N is 1.4"));
+    EXPECT_THAT(text, HasSubstr("The model lacks Gauss-Markov 0.0"));
+    EXPECT_THAT(text, HasSubstr("% of the gap, probability"));
     EXPECT_THAT(text, HasSubstr("after:"));
+    EXPECT_THAT(text, Not(HasSubstr("left: ")));
+}
+
+// 1.4 times N, which is a change, and a hump that only the model has and that may not change.
+TEST(CurveDiagnosisReport, SaysWhatIsLeftAndWhere) {
+    const SensorModel model = quiet_model();
+    NoiseModel sensor;
+    sensor.coefficients = model.axes[0].noise;
+    sensor.coefficients.N_rad_per_sqrt_s *= 1.4;
+    const AllanCurve curve = exact_curve(sensor);
+    std::vector<ModelledTerm> terms = curve_of_model(model, 0).terms;
+    terms.push_back({{Kind::gauss_markov, 0.01 * rad_per_deg, 20.0}, 0.0, false});
+    CurveDiagnosisReport report;
+    report.unit = {"dps", deg_per_rad};
+    report.curves.push_back({"sensor_x", 0, curve, terms, diagnose_curve(curve, terms)});
+    const json answer = json::parse(curve_diagnosis_json(report));
+    EXPECT_EQ(answer["verdict"], "partly") << answer.dump(1);
+    EXPECT_GT(answer["shrink"].get<double>(), 0.1);
+    EXPECT_LT(answer["shrink"].get<double>(), 0.9);
+    ASSERT_FALSE(answer["left"].empty());
+    const json& left = answer["left"][0];
+    EXPECT_EQ(left["where"]["axes"], json({"x"}));
+    EXPECT_LT(left["where"]["tau_s"][0].get<double>(), 38.0) << "the hump is at 1.9 times 20 s";
+    EXPECT_GT(left["where"]["tau_s"][1].get<double>(), 38.0);
+    EXPECT_GT(left["size"].get<double>(), curve_floors_closed);
+    const std::string text = curve_diagnosis_text(report);
+    EXPECT_THAT(text, StartsWith("partly: arw_scale on x"));
+    EXPECT_THAT(text, HasSubstr("    left: "));
 }
 
 TEST(CurveDiagnosisReport, MergesOneEffectOnSeveralAxes) {
