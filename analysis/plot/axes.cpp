@@ -29,12 +29,17 @@ AxesDrawing::AxesDrawing(const Panel& panel, Range x_range, Range y_range, const
                          double scale)
     : panel_(panel), x_range_(x_range), y_range_(y_range), typeface_(typeface), scale_(scale) {}
 
-Axis AxesDrawing::axis(const Scale& scale, const std::string& title, bool is_upright) const {
+Axis AxesDrawing::axis(const Scale& scale, const AxisSpec& spec, bool is_upright) const {
+    Axis axis{scale, {}, spec.title};
+    if (!spec.names.empty()) {
+        for (const AxisName& name : spec.names) { axis.ticks.ticks.push_back({name.value, name.text}); }
+        return axis;
+    }
     const double size_px = label_text_px * scale_;
     const auto extent_px = [&](const std::string& label) {
         return is_upright ? size_px : typeface_.measure(label, size_px).width_px;
     };
-    Axis axis{scale, fit_ticks(scale, labels_apart_px * scale_, extent_px), title};
+    axis.ticks = fit_ticks(scale, labels_apart_px * scale_, extent_px);
     if (axis.ticks.exponent != 0) { axis.title += "   ×" + power_of_ten(axis.ticks.exponent); }
     return axis;
 }
@@ -78,11 +83,11 @@ Axes AxesDrawing::lay_out(const Box& area, const Margins& margins) const {
                    std::max(std::round(area.bottom - margins.bottom_px), top + 1.0)};
     const Scale x{panel_.x.kind, x_range_, plot.left, plot.right};
     const Scale y{panel_.y.kind, y_range_, plot.bottom, plot.top};
-    Axes axes{plot, axis(x, panel_.x.title, false), axis(y, panel_.y.title, true), {}};
+    Axes axes{plot, axis(x, panel_.x, false), axis(y, panel_.y, true), {}};
     if (panel_.right) {
         Scale right = y;
         right.range = {y.range.lo * panel_.right->factor, y.range.hi * panel_.right->factor};
-        axes.right = axis(right, panel_.right->title, true);
+        axes.right = axis(right, {panel_.right->title, y.kind, {}, {}}, true);
     }
     return axes;
 }

@@ -48,7 +48,7 @@ public:
                                 const Axes& axes) const;  // returns the boxes of the tick labels
 
 private:
-    Axis axis(const Scale& scale, const std::string& title, bool is_upright) const;
+    Axis axis(const Scale& scale, const AxisSpec& spec, bool is_upright) const;
     double label_width_px(const Axis& axis) const;
     void draw_ticks(Canvas& canvas, const Axes& axes) const;
     void draw_titles(Canvas& canvas, const Axes& axes) const;

@@ -1,19 +1,22 @@
 #include "analysis/plot/diagnosis_figure.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "analysis/plot/number_text.hpp"
+#include "analysis/plot/share_bars.hpp"
 
 namespace gyrolog {
 namespace {
 
-constexpr int heading_px = 130;
-constexpr int fact_line_px = 30;
-constexpr int row_px = 350;
-constexpr int lone_panel_px = 640;
+constexpr double heading_px = 130.0;
+constexpr double fact_line_px = 30.0;
+constexpr double row_px = 350.0;
+constexpr double lone_panel_px = 640.0;
 constexpr std::size_t columns_most = 3;
 constexpr std::size_t rows_most = 6;
 
@@ -24,6 +27,7 @@ constexpr Colour recording_colour = colours::ink;
 
 const Stroke before_edge{mixed(before_colour, colours::ink, 0.25), 1.3, {6.0, 4.0}};
 const Stroke after_edge{mixed(after_colour, colours::ink, 0.2), 1.3, {}};
+const Stroke recording_line{recording_colour, 2.2, {}};
 constexpr double before_opacity = 0.30;
 constexpr double after_opacity = 0.50;
 
@@ -67,6 +71,28 @@ public:
         return false;
     }
 
+    // A curve without points that looks like the part, for a legend elsewhere.
+    Curve key(Part part) const {
+        Curve curve;
+        switch (part) {
+            case Part::recording:
+                curve.stroke = recording_line;
+                break;
+            case Part::before:
+            case Part::after:
+                curve.lo = curve.hi = {0.0};
+                curve.stroke = part == Part::before ? before_edge : after_edge;
+                curve.band_opacity = part == Part::before ? before_opacity : after_opacity;
+                break;
+            case Part::outside_before:
+            case Part::outside_after:
+                curve = marks_look(part);
+                break;
+        }
+        curve.legend = {words_for(part)};
+        return curve;
+    }
+
     // `named`: what the panel's legend says, for which there is room above the curves.
     Panel panel(const std::vector<Part>& named, double height_px) const {
         Panel panel;
@@ -83,7 +109,7 @@ public:
         Curve recording;
         recording.x = x_;
         recording.y = shown(domain_.recording);
-        recording.stroke = {recording_colour, 2.2, {}};
+        recording.stroke = recording_line;
         name(recording, Part::recording, named);
         panel.curves.push_back(std::move(recording));
         for (const Part part : {Part::outside_before, Part::outside_after}) {
@@ -154,20 +180,26 @@ private:
         panel.curves.push_back(std::move(lower));
     }
 
+    static Curve marks_look(Part part) {
+        const bool is_before = part == Part::outside_before;
+        Curve marks;
+        marks.stroke = {is_before ? colours::vermillion : colours::purple, 0.0, {}};
+        marks.marker = is_before ? Marker::circle : Marker::diamond;
+        marks.marker_size_px = is_before ? 8.0 : 13.0;
+        marks.markers_apart_px = 0.5 * marks.marker_size_px;
+        return marks;
+    }
+
     Curve marks(Part part) const {
         const bool is_before = part == Part::outside_before;
         const std::vector<bool>& outside = is_before ? domain_.outside_before : domain_.outside_after;
         const std::vector<double> y = shown(domain_.recording);
-        Curve marks;
+        Curve marks = marks_look(part);
         for (std::size_t i = 0; i < std::min({outside.size(), x_.size(), y.size()}); ++i) {
             if (!outside[i]) { continue; }
             marks.x.push_back(x_[i]);
             marks.y.push_back(y[i]);
         }
-        marks.stroke = {is_before ? colours::vermillion : colours::purple, 0.0, {}};
-        marks.marker = is_before ? Marker::circle : Marker::diamond;
-        marks.marker_size_px = is_before ? 8.0 : 13.0;
-        marks.markers_apart_px = 0.5 * marks.marker_size_px;
         return marks;
     }
 
@@ -203,11 +235,15 @@ struct Row {
     std::string name;
     std::vector<const GapDomain*> domains;  // by axis
 
-    bool is_whole(std::size_t axes) const { return domains.size() == axes || domains.front()->of_all_axes; }
+    bool is_whole(std::size_t axes) const { return domains.size() == axes; }
 
-    double gap() const {
-        double most = 0.0;
-        for (const GapDomain* domain : domains) { most = std::max(most, domain->gap_before); }
+    // How much there is to see: what stands out before or after, or else how far it is off.
+    std::pair<double, double> rank() const {
+        std::pair<double, double> most;
+        for (const GapDomain* domain : domains) {
+            most = std::max(most, {std::max(domain->surprise_before_nats, domain->surprise_after_nats),
+                                   std::max(domain->gap_before, domain->gap_after)});
+        }
         return most;
     }
 };
@@ -232,24 +268,21 @@ std::size_t axes_in(const Diagnosis& diagnosis) {
     return axes.size();
 }
 
-// The rows of the largest gaps, in their order, but whole ones before those that lack an axis.
+// The rows with the most to see, but whole ones before those that lack an axis.
 std::vector<Row> shown_rows(const Diagnosis& diagnosis) {
     std::vector<Row> rows = rows_of(diagnosis);
-    std::vector<double> gaps;
-    gaps.reserve(rows.size());
-    for (const Row& row : rows) { gaps.push_back(row.gap()); }
-    std::ranges::sort(gaps, std::ranges::greater());
-    if (gaps.size() > rows_most) {
-        const double least = gaps[rows_most - 1];
-        std::erase_if(rows, [&](const Row& row) { return row.gap() < least; });
-    }
+    std::ranges::stable_sort(rows, std::ranges::greater(), &Row::rank);
+    if (rows.size() > rows_most) { rows.resize(rows_most); }
     const std::size_t axes = axes_in(diagnosis);
     std::stable_partition(rows.begin(), rows.end(), [&](const Row& row) { return row.is_whole(axes); });
     return rows;
 }
 
-// Each part is named once: two in the first panel, the others in the next one that has them. A lone panel
-// has room for all.
+constexpr std::array all_parts = {Part::recording, Part::before, Part::after, Part::outside_before,
+                                  Part::outside_after};
+
+// Without bars, beside which the legend stands, each part is named once: two in the first panel, the others
+// in the next one that has them. A lone panel has room for all.
 class LegendParts {
 public:
     explicit LegendParts(std::size_t panels) : most_(panels == 1 ? left_.size() : 2) {}
@@ -264,8 +297,7 @@ public:
     }
 
 private:
-    std::vector<Part> left_{Part::recording, Part::before, Part::after, Part::outside_before,
-                            Part::outside_after};
+    std::vector<Part> left_{all_parts.begin(), all_parts.end()};
     std::size_t most_;
 };
 
@@ -285,17 +317,30 @@ Figure figure_of(const DiagnosisFigure& request) {
     figure.facts = request.facts;
     figure.columns = static_cast<int>(columns);
     figure.scale = request.scale;
-    const int panel_px = domains.size() == 1 ? lone_panel_px : row_px;
-    LegendParts legend(domains.size());
-    for (const GapDomain* domain : domains) {
-        const DomainPanel panel(*domain, diagnosis.band_probability);
-        figure.panels.push_back(panel.panel(legend.take(panel), panel_px));
+    std::vector<DomainPanel> panels;
+    panels.reserve(domains.size());
+    for (const GapDomain* domain : domains) { panels.emplace_back(*domain, diagnosis.band_probability); }
+    double height_px = heading_px + fact_line_px * static_cast<double>(request.facts.size());
+    const std::optional<Panel> bars = share_bars(diagnosis);
+    if (bars) {
+        figure.panels.push_back(*bars);
+        for (const Part part : all_parts) {
+            const auto has = [&](const DomainPanel& panel) { return panel.has(part); };
+            const auto first = std::ranges::find_if(panels, has);
+            if (first != panels.end()) { figure.panels.back().curves.push_back(first->key(part)); }
+        }
+        height_px += bars->height_share;
     }
-    const auto rows = static_cast<int>((std::max(domains.size(), std::size_t{1}) + columns - 1) / columns);
-    const int facts_px = fact_line_px * static_cast<int>(request.facts.size());
+    const double panel_px = domains.size() == 1 ? lone_panel_px : row_px;
+    LegendParts legend(domains.size());
+    for (const DomainPanel& panel : panels) {
+        figure.panels.push_back(panel.panel(bars ? std::vector<Part>{} : legend.take(panel), panel_px));
+        figure.panels.back().height_share = panel_px;
+    }
+    height_px +=
+        panel_px * static_cast<double>((std::max(domains.size(), std::size_t{1}) + columns - 1) / columns);
     figure.width_px = request.width_px;
-    figure.height_px =
-        static_cast<int>(std::lround((heading_px + facts_px + rows * panel_px) * request.scale));
+    figure.height_px = static_cast<int>(std::lround(height_px * request.scale));
     return figure;
 }
 

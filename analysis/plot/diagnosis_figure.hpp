@@ -1,11 +1,12 @@
-// A diagnosis in one picture: for each axis and each way of looking, the recording over the band of
-// simulations, before (light, broken edge) and after the causes were added to the model (dark, whole edge).
-// Points outside the first band are marked by disks, those outside the second, where there is one, by
-// diamonds.
+// A diagnosis in one picture. On top the bars of shares, where there is a gap, with the legend of all panels.
+// Below, for each axis and each way of looking, the recording over the band of simulations, before (light,
+// broken edge) and after the causes were added to the model (dark, whole edge). Points outside the first band
+// are marked by disks, those outside the second, where there is one, by diamonds.
 //
-// One column for each axis and one row for each way of looking, the six with the largest gaps; those that
-// some axis lacks follow each other at the end. What has a logarithmic scale is shown over the middle of the
-// first band, in dB of the quantity: a gap of one decibel would not be seen on a curve of three decades.
+// One column for each axis and one row for each way of looking: the six that stand out most, before or after;
+// those that some axis lacks follow each other at the end. What has a logarithmic scale is shown over the
+// middle of the first band, in dB of the quantity: a gap of one decibel would not be seen on a curve of three
+// decades.
 #pragma once
 
 #include <string>

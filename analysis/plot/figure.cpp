@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <limits>
 
 #include "analysis/plot/canvas.hpp"
 #include "analysis/plot/panel.hpp"
@@ -27,26 +27,37 @@ std::string size_text(double width_px, double height_px) {
 
 std::size_t columns_of(const Figure& figure) { return static_cast<std::size_t>(std::max(figure.columns, 1)); }
 
-std::vector<double> row_shares(const Figure& figure) {
-    std::vector<double> shares;
+struct PanelRow {
+    std::vector<std::size_t> panels;
+    double share = 0.0;
+    bool is_spanned = false;
+};
+
+std::vector<PanelRow> rows_of(const Figure& figure) {
+    std::vector<PanelRow> rows;
     for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-        if (i % columns_of(figure) == 0) { shares.push_back(0.0); }
-        shares.back() = std::max(shares.back(), figure.panels[i].height_share);
+        const Panel& panel = figure.panels[i];
+        const bool is_new = rows.empty() || panel.spans_row || rows.back().is_spanned ||
+                            rows.back().panels.size() == columns_of(figure);
+        if (is_new) { rows.push_back({{}, 0.0, panel.spans_row}); }
+        rows.back().panels.push_back(i);
+        rows.back().share = std::max(rows.back().share, panel.height_share);
     }
-    return shares;
+    return rows;
 }
 
 std::string problem_with(const Figure& figure) {
     if (!(figure.scale >= 0.1 && figure.scale <= 20.0)) {
         return "draw a figure of scale " + std::to_string(figure.scale) + ": scales go from 0.1 to 20";
     }
-    const std::vector<double> shares = row_shares(figure);
-    for (const double share : shares) {
-        if (!(share > 0.0)) { return "draw a row of panels of no height"; }
+    double least_share = std::numeric_limits<double>::infinity();
+    double sum = 0.0;
+    for (const PanelRow& row : rows_of(figure)) {
+        if (!(row.share > 0.0)) { return "draw a row of panels of no height"; }
+        least_share = std::min(least_share, row.share);
+        sum += row.share;
     }
-    const double rows = shares.empty() ? 0.0
-                                       : std::accumulate(shares.begin(), shares.end(), 0.0) /
-                                             *std::min_element(shares.begin(), shares.end());
+    const double rows = sum / least_share;
     const double least_width_px = 480.0 * static_cast<double>(columns_of(figure)) * figure.scale;
     const double least_height_px = (130.0 + 230.0 * rows) * figure.scale;
     const bool fits = figure.width_px >= least_width_px && figure.height_px >= least_height_px &&
@@ -68,18 +79,22 @@ std::string problem_with(const Figure& figure) {
 std::vector<Box> panel_areas(const Figure& figure, double top) {
     const double edge = edge_px * figure.scale;
     const double gap_px = between_panels_px * figure.scale;
-    const std::vector<double> shares = row_shares(figure);
-    const auto rows = static_cast<double>(shares.size());
+    const std::vector<PanelRow> rows = rows_of(figure);
+    double shares = 0.0;
+    for (const PanelRow& row : rows) { shares += row.share; }
     const auto columns = static_cast<double>(columns_of(figure));
-    const double share_px = (figure.height_px - edge - top - gap_px * (rows - 1.0)) /
-                            std::accumulate(shares.begin(), shares.end(), 0.0);
-    const double width_px = (figure.width_px - 2.0 * edge - gap_px * (columns - 1.0)) / columns;
+    const double share_px =
+        (figure.height_px - edge - top - gap_px * (static_cast<double>(rows.size()) - 1.0)) / shares;
+    const double whole_px = figure.width_px - 2.0 * edge;
+    const double column_px = (whole_px - gap_px * (columns - 1.0)) / columns;
     std::vector<Box> areas;
-    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-        const std::size_t row = i / columns_of(figure);
-        if (i > 0 && i % columns_of(figure) == 0) { top += share_px * shares[row - 1] + gap_px; }
-        const double left = edge + static_cast<double>(i % columns_of(figure)) * (width_px + gap_px);
-        areas.push_back({left, top, left + width_px, top + share_px * shares[row]});
+    for (const PanelRow& row : rows) {
+        const double width_px = row.is_spanned ? whole_px : column_px;
+        for (std::size_t column = 0; column < row.panels.size(); ++column) {
+            const double left = edge + static_cast<double>(column) * (width_px + gap_px);
+            areas.push_back({left, top, left + width_px, top + share_px * row.share});
+        }
+        top += share_px * row.share + gap_px;
     }
     return areas;
 }
@@ -145,18 +160,22 @@ Rendering render(const Figure& figure) {
     const double top = draw_heading(canvas, figure, *regular, *bold) + after_heading_px * figure.scale;
     const std::vector<Box> areas = panel_areas(figure, top);
     std::vector<PanelDrawing> drawings;
+    std::vector<Margins> own;
     Margins widest;
     drawings.reserve(figure.panels.size());
     for (std::size_t i = 0; i < areas.size(); ++i) {
         drawings.emplace_back(figure.panels[i], *regular, figure.scale);
-        const Margins margins = drawings.back().margins(areas[i]);
+        own.push_back(drawings.back().margins(areas[i]));
+        if (figure.panels[i].spans_row) { continue; }
+        const Margins& margins = own.back();
         widest.left_px = std::max(widest.left_px, margins.left_px);
         widest.right_px = std::max(widest.right_px, margins.right_px);
         widest.top_px = std::max(widest.top_px, margins.top_px);
         widest.bottom_px = std::max(widest.bottom_px, margins.bottom_px);
     }
     for (std::size_t i = 0; i < drawings.size(); ++i) {
-        rendering.panels.push_back(drawings[i].draw(canvas, areas[i], widest));
+        const Margins& margins = figure.panels[i].spans_row ? own[i] : widest;
+        rendering.panels.push_back(drawings[i].draw(canvas, areas[i], margins));
     }
     rendering.png = encode_png(canvas.picture());
     return rendering;

@@ -2,7 +2,7 @@
 // includes this sees OpenCV or FreeType.
 //
 // Panels of a row are equally wide, those of a column have the same left and right edges, and a row is as
-// high as the largest share in it.
+// high as the largest share in it. A panel that spans its row has edges of its own.
 //
 // Values a scale cannot show (NaN, infinite, zero or less on a logarithmic scale) are left out and break
 // their curve. A panel with nothing to show says "no data".
@@ -57,10 +57,16 @@ struct Guide {
     std::string text;
 };
 
+struct AxisName {
+    double value = 0.0;
+    std::string text;
+};
+
 struct AxisSpec {
     std::string title;  // quantity and unit
     ScaleKind kind = ScaleKind::linear;
-    std::optional<Range> range;  // absent: from the data
+    std::optional<Range> range;     // absent: from the data
+    std::vector<AxisName> names{};  // rising; words in place of numbers
 };
 
 // The same y values in another unit, along the right-hand side.
@@ -86,6 +92,7 @@ struct Panel {
     LegendPlace legend_place = LegendPlace::in_plot;
     std::string caption;        // above the plot
     double height_share = 1.0;  // of the figure's height, against the other rows' panels
+    bool spans_row = false;     // has a row to itself
 };
 
 struct Figure {

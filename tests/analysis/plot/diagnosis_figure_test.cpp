@@ -1,5 +1,6 @@
 #include "analysis/plot/diagnosis_figure.hpp"
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -79,6 +80,44 @@ Diagnosis diagnosis_with(std::vector<GapDomain> domains) {
     return diagnosis;
 }
 
+Cause cause_with(const std::string& effect, std::vector<std::size_t> axes, Share share, double score) {
+    Cause cause;
+    cause.finding.effect = effect;
+    cause.finding.where.axes = std::move(axes);
+    cause.share = share;
+    cause.score = score;
+    return cause;
+}
+
+// Two causes whose shares overlap, one density without a name, and a ninth that is left.
+Diagnosis partly_explained() {
+    Diagnosis diagnosis = diagnosis_with(
+        {allan_domain(0), time_domain(0), allan_domain(1), time_domain(1), allan_domain(2), time_domain(2)});
+    diagnosis.verdict = Verdict::partly;
+    diagnosis.gap_before = {4.0, 1.0, 3.5, 4.6};
+    diagnosis.gap_named = {2.2, 1.0, 2.0, 2.4};
+    diagnosis.gap_after = {1.63, 1.0, 1.5, 1.8};
+    diagnosis.causes = {cause_with("temp_lag", {0}, {0.62, 0.55, 0.68}, 0.91),
+                        cause_with("gauss_markov", {0, 1, 2}, {0.35, 0.2, 0.5}, 0.74)};
+    diagnosis.unnamed = {{"density", {}, 0.21}};
+    diagnosis.unnamed[0].where.axes = {2};
+    return diagnosis;
+}
+
+std::vector<std::string> words_of(const Panel& panel) {
+    std::vector<std::string> words;
+    for (const Callout& callout : panel.callouts) { words.push_back(callout.text); }
+    return words;
+}
+
+std::vector<std::string> names_of(const Panel& panel) {
+    std::vector<std::string> names;
+    for (auto name = panel.y.names.rbegin(); name != panel.y.names.rend(); ++name) {
+        names.push_back(name->text);
+    }
+    return names;
+}
+
 std::vector<std::string> legends_of(const Panel& panel) {
     std::vector<std::string> names;
     for (const Curve& curve : panel.curves) {
@@ -116,6 +155,74 @@ TEST(DiagnosisFigure, ShowsTheSixWaysOfLookingWithTheLargestGaps) {
     ASSERT_EQ(figure.panels.size(), 6U);
     EXPECT_EQ(figure.panels[0].caption, "x, gap 10 → 1.2: way 0");
     EXPECT_EQ(figure.panels[4].caption, "x, gap 5.0 → 1.2: way 5");
+}
+
+TEST(DiagnosisFigure, ShowsWhatStandsOutBeforeOrAfterFirst) {
+    std::vector<GapDomain> domains;
+    for (int i = 0; i < 9; ++i) {
+        domains.push_back(time_domain(0));
+        domains.back().name = "way " + std::to_string(i);
+        domains.back().gap_before = 10.0 - i;
+    }
+    domains[8].surprise_after_nats = 40.0;
+    domains[7].surprise_before_nats = 20.0;
+    const Diagnosis diagnosis = diagnosis_with(domains);
+    const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
+    ASSERT_EQ(figure.panels.size(), 6U);
+    EXPECT_EQ(figure.panels[0].caption, "x, gap 2.0 → 1.2: way 8");
+    EXPECT_EQ(figure.panels[1].caption, "x, gap 3.0 → 1.2: way 7");
+    EXPECT_EQ(figure.panels[2].caption, "x, gap 10 → 1.2: way 0");
+}
+
+TEST(DiagnosisFigure, HasABarForEveryShareOnTop) {
+    const Diagnosis diagnosis = partly_explained();
+    const Figure figure = figure_of(DiagnosisFigure{diagnosis, "partly", {}});
+    ASSERT_EQ(figure.panels.size(), 7U);
+    const Panel& bars = figure.panels[0];
+    EXPECT_TRUE(bars.spans_row);
+    EXPECT_EQ(names_of(bars), (std::vector<std::string>{"temp_lag on x", "gauss_markov on x, y, z",
+                                                        "no name: density on z", "left", "floor"}));
+    // Left is (1.63^2 - 1) / (4^2 - 1), the floor 1 / (4^2 - 1).
+    EXPECT_EQ(words_of(bars), (std::vector<std::string>{
+                                  "62 (55 to 68) %, probability 91 %", "35 (20 to 50) %, probability 74 %",
+                                  "21 %", "11 (8 to 15) %", "7 %, what two simulations differ by"}));
+    EXPECT_EQ(bars.curves[0].x, (std::vector<double>{0.0, 0.62}));
+    EXPECT_EQ(bars.curves[1].x, (std::vector<double>{0.55, 0.68}));
+    EXPECT_EQ(legends_of(bars), (std::vector<std::string>{"recording", "model, 95 %", "with the causes, 95 %",
+                                                          "outside the model", "outside with the causes"}));
+    for (std::size_t i = 1; i < figure.panels.size(); ++i) {
+        EXPECT_TRUE(legends_of(figure.panels[i]).empty());
+    }
+}
+
+TEST(DiagnosisFigure, WithoutAGapHasNoBars) {
+    Diagnosis diagnosis = partly_explained();
+    diagnosis.verdict = Verdict::none;
+    EXPECT_FALSE(figure_of(DiagnosisFigure{diagnosis, "no gap", {}}).panels[0].spans_row);
+    diagnosis = partly_explained();
+    diagnosis.gap_before = {0.9, 1.0, 0.8, 1.1};
+    EXPECT_FALSE(figure_of(DiagnosisFigure{diagnosis, "known", {}}).panels[0].spans_row);
+}
+
+TEST(DiagnosisFigure, DrawsBarsThatDifferInGreyTooWithTheirNumbers) {
+    const Diagnosis diagnosis = partly_explained();
+    const Rendering rendering = render(DiagnosisFigure{diagnosis, "partly", {"200 simulations"}});
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    const Picture picture(rendering);
+    const PanelPlace& bars = rendering.panels[0];
+    EXPECT_TRUE(bars.legend.has_value());
+    EXPECT_EQ(bars.words.size(), 5U) << "every bar has room for its words";
+    EXPECT_GT(bars.plot.width(), 2.0 * rendering.panels[1].plot.width());
+    const auto grey = [](Colour c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue; };
+    const std::array colours_down = {colours::blue, colours::blue, colours::sky, colours::vermillion,
+                                     colours::grid};
+    for (std::size_t i = 0; i < colours_down.size(); ++i) {
+        const double at = bars.y.pixel(static_cast<double>(colours_down.size() - 1 - i) + 0.2);
+        EXPECT_TRUE(picture.has(colours_down[i], {bars.x.pixel(0.02), at}, 8)) << i;
+    }
+    EXPECT_GT(grey(colours::vermillion) - grey(colours::blue), 30.0);
+    EXPECT_GT(grey(colours::sky) - grey(colours::vermillion), 30.0);
+    EXPECT_GT(grey(colours::grid) - grey(colours::sky), 30.0);
 }
 
 TEST(DiagnosisFigure, ShowsALogarithmicQuantityInDecibelsOverTheMiddleOfTheModel) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -266,6 +267,35 @@ TEST(Figure, StacksPanelsWithTheirPlotsInLine) {
     EXPECT_EQ(rendering.panels[0].plot.left, rendering.panels[1].plot.left);
     EXPECT_EQ(rendering.panels[0].plot.right, rendering.panels[1].plot.right);
     EXPECT_LT(rendering.panels[0].plot.bottom, rendering.panels[1].plot.top);
+}
+
+TEST(Figure, APanelThatSpansItsRowHasItForItself) {
+    Figure figure = figure_with({curve_of({1, 2}, {1, 2})}, ScaleKind::linear);
+    figure.panels.resize(4, figure.panels[0]);
+    figure.columns = 2;
+    figure.panels[1].spans_row = true;
+    figure.panels[1].y.names = {{1.0, "a rather long name"}, {2.0, "b"}};
+    figure.width_px = figure.height_px = 1200;
+    const Rendering rendering = render(figure);
+    ASSERT_EQ(rendering.panels.size(), 4U) << rendering.problem;
+    const auto& [alone, spanning, left, right] = std::tie(rendering.panels[0].plot, rendering.panels[1].plot,
+                                                          rendering.panels[2].plot, rendering.panels[3].plot);
+    EXPECT_GT(spanning.width(), 1.5 * left.width());
+    EXPECT_LT(alone.bottom, spanning.top);
+    EXPECT_LT(spanning.bottom, left.top);
+    EXPECT_EQ(left.top, right.top);
+    EXPECT_EQ(alone.left, left.left) << "its names widen no other panel's margin";
+    EXPECT_GT(spanning.left, left.left);
+    EXPECT_GT(right.left, left.right);
+}
+
+TEST(Figure, AnAxisHasWordsInPlaceOfNumbers) {
+    Figure figure = figure_with({curve_of({1, 2}, {1, 2})}, ScaleKind::linear);
+    figure.panels[0].y.names = {{1.0, "one"}, {1.5, "one and a half"}};
+    figure.panels[0].x.names = {{1.0, "here"}};
+    const Rendering rendering = render(figure);
+    ASSERT_EQ(rendering.panels.size(), 1U) << rendering.problem;
+    EXPECT_EQ(rendering.panels[0].labels.size(), 3U);
 }
 
 TEST(Figure, TwiceTheScaleIsTheSameLayoutTwiceAsFine) {
