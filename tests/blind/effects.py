@@ -24,6 +24,7 @@ class Acting:
     fast = None  # largest rate it needs
     classes = ("marginal", "moderate", "clear")
     least_axes = 1
+    apart_from = ()  # effects and families beside which its evidence is not known
 
     def __init__(self, context, params, axes):
         self.context = context
@@ -51,10 +52,24 @@ class Acting:
             return float(value.get(AXES[axis], otherwise or 0.0))
         if isinstance(value, (list, tuple)):
             return float(value[self.axes.index(AXES[axis])])
-        return None if value is None else float(value)
+        if value is None:
+            raise KeyError(f"no {name}")
+        return float(value)
 
     def acting_axes(self):
         return [axis for axis in range(3) if self.on(axis)]
+
+    def only_on(self, axes):
+        """The same effect on some of its axes."""
+        params = dict(self.params)
+        for name, value in params.items():
+            if isinstance(value, list) and len(value) == len(self.axes):
+                params[name] = [value[self.axes.index(a)] for a in axes]
+        return type(self)(self.context, params, axes)
+
+    def drowns_others(self):
+        """Whether other effects of the recording mean nothing until this one is known to the sample."""
+        return self.hides_time()
 
     # What the model file lacks for the effect to be one.
     def prepare(self, model):
@@ -268,6 +283,8 @@ class Rtn(Acting):
 class Lowpass(Acting):
     name, family, needs = "lowpass", "white", "both"
     classes = ("clear",)
+    # Filtered samples are nearly normal, and fewer of them are independent, than those two count.
+    apart_from = ("tails", "level")
 
     @classmethod
     def shape(cls, rng, context, axes):
@@ -315,6 +332,7 @@ class Lowpass(Acting):
 
 class Tone(Acting):
     name, family = "tone", "line"
+    apart_from = ("clock_rate",)  # another rate folds the line to another place than `where` says
 
     @classmethod
     def shape(cls, rng, context, axes):
@@ -702,6 +720,10 @@ class Quantization(Acting):
     def prepare(self, model):
         if np.ravel(self.params["lsb_dps"])[0] < 1.5 * LSB_DPS:
             model["lsb_dps"] = 0.0
+
+    def drowns_others(self):
+        """A step above the white noise's deviation hides the noise's density and all that is smaller."""
+        return any(self.of("lsb_dps", axis) > self.context.sigma_dps(axis) for axis in self.acting_axes())
 
     def converted(self, axis, value):
         step = self.of("lsb_dps", axis)

@@ -151,7 +151,7 @@ def _spectrum(context, description, axis, N, B, K):
     return white, slow * B**2 / (2.0 * np.pi * f), slow * (K / (2.0 * np.pi * f)) ** 2, fixed
 
 
-def _spectral_nats(context, true, other, axis, free, apart, perfect):
+def _spectral_nats(context, true, other, axis, free, apart, perfect, beside):
     sensor, bins = context.sensor, context.bins
     rate = context.rate_hz
     known = _spectrum(context, true, axis, sensor.N[axis], sensor.B[axis], sensor.K[axis])
@@ -159,7 +159,7 @@ def _spectral_nats(context, true, other, axis, free, apart, perfect):
     difference = true.mean.get(axis, 0.0) - other.mean.get(axis, 0.0)
     excess, prior_cost = np.zeros_like(s_true), 0.0
     if not np.isscalar(difference):
-        excess, prior_cost = context.unexplained_power(axis, difference, s_true)
+        excess, prior_cost = context.unexplained_power(axis, difference, s_true, beside)
         excess = excess / rate
     total = 0.0
     if apart:
@@ -301,12 +301,12 @@ def _structure_nats(context, true, other):
     return total
 
 
-def nats(context, true, other, free=False, apart=False, perfect=False):
+def nats(context, true, other, free=False, apart=False, perfect=False, beside=None):
     """Evidence for `true`, which made the data, against `other`.
 
     free: N, B and K are fitted without any prior. apart: a difference of the means is weighed by the true spectrum,
     so that no level fitted to it takes it up; it then counts as its square, as a distance does. perfect: against the
-    true levels, even where the model states others.
+    true levels, even where the model states others. beside: by axis, series whose size `other` may choose.
     """
     total = 0.0
     for axis in range(3):
@@ -315,7 +315,7 @@ def nats(context, true, other, free=False, apart=False, perfect=False):
                     or axis in true.level or axis in other.level
                     or axis in true.mean or axis in other.mean)
         if spectral:
-            total += _spectral_nats(context, true, other, axis, free, apart, perfect)
+            total += _spectral_nats(context, true, other, axis, free, apart, perfect, (beside or {}).get(axis, ()))
         if axis in true.level or axis in other.level:
             total += _level_nats(context, true, other, axis)
         if true.nu[axis] != other.nu[axis]:

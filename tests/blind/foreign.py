@@ -1,4 +1,5 @@
-"""Effects that the catalogue does not name. The right answer to them is "unexplained", with the place."""
+"""Effects that the catalogue does not make. The right answer to them is "unexplained", with the place, or the effect
+of the contract that describes it, where there is one."""
 
 import numpy as np
 
@@ -9,12 +10,14 @@ from sensor import LSB_DPS, log_uniform, shaped
 class Foreign(Acting):
     classes = ("moderate", "clear")
     free = False  # evidence against free N, B and K: a known term of another size must not explain it
+    described_as = None  # the contract's effect that tells it, which the catalogue here does not make
 
 
 class WanderingLine(Foreign):
     """A line whose frequency wanders by some hertz."""
 
     name, free = "wandering_line", True
+    described_as = "narrowband"
 
     @classmethod
     def shape(cls, rng, context, axes):
@@ -51,6 +54,7 @@ class Resonance(Foreign):
     """A band of noise, as of a structure that rings."""
 
     name, free = "resonance", True
+    described_as = "narrowband"
 
     @classmethod
     def shape(cls, rng, context, axes):

@@ -4,7 +4,7 @@
 A case is DIR/cases/ID/{recording.csv, model.json}; what was put into it stands in SEALED/ID.json, and nowhere else.
 The IDs are shuffled numbers. Written independently of the program: nothing here calls it or shares its code.
 
-Usage: generate.py DIR [--sealed SEALED] [--panel small|full|none|still|motion] [--count N] [--seed N]
+Usage: generate.py DIR [--sealed SEALED] [--panel small|full|none|still|motion|many] [--count N] [--seed N]
                    [--minutes M] [--motion-minutes M] [--effect NAME]... [--class NAME]... [--list]
 """
 
@@ -59,15 +59,23 @@ def evidence_of(context, effects, refit=False):
     return nats(context, description(effects), Description(), free=free, perfect=refit)
 
 
+def evidence_given_others(context, effects, effect, refit=False):
+    """What is lost if the effect alone is left out of the true description, and the sizes of the others' means are
+    fitted again."""
+    free = all(getattr(e, "free", False) for e in effects)
+    others = [e for e in effects if e is not effect]
+    beside = {}
+    for e in others:
+        for axis, series in description([e]).mean.items():
+            beside.setdefault(axis, []).append(series)
+    return nats(context, description(effects), description(others), free=free, perfect=refit, beside=beside)
+
+
 def own_evidence(context, effect, axis, refit):
     """What the effect is worth on one of its axes, were it on no other; of what axes share: what is lost without it."""
 
     def on(axes):
-        params = dict(effect.params)
-        for name, value in params.items():
-            if isinstance(value, list) and len(value) == len(effect.axes):
-                params[name] = [value[effect.axes.index(a)] for a in axes]
-        return float(evidence_of(context, [type(effect)(context, params, axes)], refit))
+        return float(evidence_of(context, [effect.only_on(axes)], refit))
 
     if not effect.shared:
         return on([axis])
@@ -111,19 +119,23 @@ def at_strength(context, cls, shape, axes, target):
     return nearest[1] or made(np.exp(high))
 
 
-def draw_effect(context, name, strength_class, salt=""):
+def draw_effect(context, name, strength_class, salt="", beside_others=False):
+    """(effect, its evidence). beside_others: only such as leave a meaning to other effects of the recording."""
     cls = known_class(name)
-    for attempt in range(8):
+    for attempt in range(64):
         rng = stream(context.seed, "effect", name, strength_class, salt, attempt)
         axes = draw_axes(rng, cls)
         shape = cls.shape(rng, context, axes)
         low, high = TARGETS[strength_class]
         target = float(np.exp(rng.uniform(np.log(low), np.log(high))))
         effect = at_strength(context, cls, shape, axes, target)
+        if beside_others and effect.drowns_others():
+            continue
         value = evidence_of(context, [effect])
-        if in_class(value, strength_class):
-            break
-    return effect, value
+        # After eight tries it is as strong as it can be.
+        if in_class(value, strength_class) or attempt >= 7:
+            return effect, value
+    raise ValueError(f"no {name} that leaves a meaning to others, seed {context.seed}")
 
 
 def context_of(spec, model=None):
@@ -138,8 +150,10 @@ def world_for(spec):
     spec = dict(spec)
     for name, _ in spec["effects"]:
         cls = known_class(name)
-        if cls.temperature:
-            spec["temperature"] = "sweep" if cls.temperature == "sweep" else str(rng.choice(["drift", "sweep"]))
+        if cls.temperature == "sweep":
+            spec["temperature"] = "sweep"
+        elif cls.temperature and spec.get("temperature") != "sweep":
+            spec["temperature"] = str(rng.choice(["drift", "sweep"]))
         if cls.fast:
             spec["fast"] = max(cls.fast, float(spec.get("fast") or 0.0))
     return spec
@@ -149,7 +163,8 @@ def make_case(spec):
     """(columns, model, truth) of a specification: seed, motion, minutes, effects [(name, class)], refitted."""
     spec = world_for(spec)
     context = context_of(spec)
-    drawn = [draw_effect(context, name, c, i) for i, (name, c) in enumerate(spec["effects"])]
+    many = len(spec["effects"]) > 2
+    drawn = [draw_effect(context, name, c, i, many) for i, (name, c) in enumerate(spec["effects"])]
     effects = [e for e, _ in drawn]
     values = [v for _, v in drawn]
     if spec.get("refitted"):
@@ -177,7 +192,8 @@ def make_case(spec):
         "verdict": "none",
         "effects": [],
         "foreign": False,
-        "pair": len(effects) > 1,
+        "pair": len(effects) == 2,
+        "many": many,
         "refitted": bool(spec.get("refitted")),
         "made": {k: spec.get(k) for k in ("seed", "motion", "minutes", "temperature", "fast")},
     }
@@ -186,7 +202,9 @@ def make_case(spec):
         truth["foreign"] = name not in CATALOGUE
         truth["effects"].append({
             "effect": name, "axes": e.axes, "where": {**e.where(), "axes": e.axes}, "params": e.params,
-            "nats": round(float(value), 2), "class": class_of(value), "asked": asked,
+            "nats": round(float(value), 2),
+            "nats_given_others": round(float(evidence_given_others(context, effects, e, truth["refitted"])), 2),
+            "class": class_of(value), "asked": asked,
             "nats_of_axis": {} if e.whole else {
                 a: round(own_evidence(context, e, a, truth["refitted"]), 2) for a in e.axes},
         })
@@ -221,6 +239,63 @@ def draw_pair(rng, motion):
         a, b = rng.choice(names, 2, replace=False)
         if families(a) != families(b):
             return [(str(a), str(rng.choice(["moderate", "clear"]))), (str(b), str(rng.choice(["moderate", "clear"])))]
+
+
+# Effects that need no motion but whose evidence holds beside a reference: there the noise of a sample is more than the
+# sensor's own, which tails and spikes are measured by, and the temperature makes no sweep.
+BESIDE_MOTION = ("white", "slow", "line", "drift", "level", "temperature")
+# What it takes off the motion is a thousand times the evidence of anything beside it.
+NOT_IN_MOTION = ("lowpass",)
+MOTION_FAMILIES_LEAST = 2
+MARGINAL_SHARE = 0.15  # of the effects of a recording with many
+MOTION_EVERY = 4  # of the recordings with many
+
+
+def names_beside(motion):
+    """By family, the effects that a recording with many may have."""
+    out = {}
+    for name, cls in CATALOGUE.items():
+        if motion:
+            still = cls.needs == "still" and cls.family in BESIDE_MOTION and cls.temperature != "sweep"
+            fits = (cls.needs != "still" or still) and name not in NOT_IN_MOTION
+        else:
+            fits = cls.needs != "motion"
+        if fits:
+            out.setdefault(cls.family, []).append(name)
+    return out
+
+
+def keep_apart(names):
+    kinds = {n: {n, families(n)} for n in names}
+    return any(kinds[b] & set(known_class(a).apart_from) for a in names for b in names)
+
+
+def draw_many(rng, motion):
+    """Three to six effects of different families. Tails and spikes are left out in motion, and what `keep_apart` says;
+    losses, a clock and its jitter that the stamps hide, and a grid coarser than the noise, in draw_effect."""
+    by_family = names_beside(motion)
+    of_motion = [f for f, names in by_family.items() if f != "structure" and
+                 any(known_class(n).needs == "motion" for n in names)]
+    while True:
+        chosen = rng.choice(sorted(by_family), rng.integers(3, 7), replace=False)
+        names = [str(rng.choice(by_family[family])) for family in chosen]
+        if keep_apart(names) or (motion and len(set(chosen) & set(of_motion)) < MOTION_FAMILIES_LEAST):
+            continue
+        out = []
+        for name in names:
+            classes = known_class(name).classes
+            strong = [c for c in classes if c != "marginal"]
+            marginal = "marginal" in classes and rng.random() < MARGINAL_SHARE
+            out.append((name, "marginal" if marginal else str(rng.choice(strong))))
+        return out
+
+
+def many_panel(rng, count, minutes, motion_minutes):
+    out = []
+    for i in range(count):
+        motion = i % MOTION_EVERY == MOTION_EVERY - 1
+        out.append(spec(rng.integers(1, 2**31), draw_many(rng, motion), motion, motion_minutes if motion else minutes))
+    return out
 
 
 def full_panel(rng, count, minutes, motion_minutes, none):
@@ -269,6 +344,8 @@ def panel(kind, count, seed, minutes, motion_minutes, only_effects=None, only_cl
         minutes, motion_minutes = minutes or 120.0, motion_minutes or 18.0
         out = [spec(rng.integers(1, 2**31), [], i % 5 == 4, motion_minutes if i % 5 == 4 else minutes)
                for i in range(count or 200)]
+    elif kind == "many":
+        out = many_panel(rng, count or 40, minutes or 120.0, motion_minutes or 18.0)
     else:
         count = count or 1
         none = 25 * count if none is None else none
@@ -299,8 +376,8 @@ def write_case(case_id, case_spec, directory, sealed):
 
 
 def panel_arguments(parser):
-    parser.add_argument("--panel", default="small", choices=["small", "full", "none", "still", "motion"])
-    parser.add_argument("--count", type=int, help="cases of each effect and class (full), or of all (none)")
+    parser.add_argument("--panel", default="small", choices=["small", "full", "none", "still", "motion", "many"])
+    parser.add_argument("--count", type=int, help="cases of each effect and class (full), or of all (none, many)")
     parser.add_argument("--none", type=int, help="cases without a gap (full); 25 times the count")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, help="of a recording at rest")

@@ -14,9 +14,11 @@ import unittest
 import numbers_or_skip  # noqa: F401  first: it may start another interpreter
 import numpy as np
 
+import answer_form
 import evidence
 import generate
 import judge
+import reliability
 import run
 import score
 import textfile
@@ -290,6 +292,27 @@ class Evidence(unittest.TestCase):
         exact = 0.5 * (d @ solved[:, 0] - (one @ solved[:, 0]) ** 2 / (one @ solved[:, 1]))
         self.assertAlmostEqual(generate.evidence_of(context, [step]) / exact, 1.0, delta=0.05)
 
+    def test_beside_others_is_what_no_size_of_theirs_explains(self):
+        context = quiet(Context(8, False, self.MINUTES, temperature="drift"))
+        for a in "xyz":
+            context.model["axes"][a]["sd"] = {"N": 1e-6}
+        ramp = RateRamp(context, {"ramp_dps_per_s": [4e-6]}, ["y"])
+        slope = TempLinear(context, {"c1_dps_per_C": [0.004]}, ["y"])
+        line = Tone(context, {"f_hz": 21.7, "amplitude_dps": 0.001, "phase_rad": [0.0]}, ["y"])
+        t = np.arange(context.n) / 100.0
+        variance = context.sensor.N[1] ** 2 * 100.0 + LSB_DPS**2 / 12.0
+        y = 4e-6 * t
+        X = np.column_stack([np.ones_like(t), context.temperature(t)])
+        residual = y - X @ np.linalg.lstsq(X, y, rcond=None)[0]
+        exact = 0.5 * residual @ residual / variance
+        beside = generate.evidence_given_others(context, [ramp, slope, line], ramp)
+        self.assertAlmostEqual(beside / exact, 1.0, delta=0.03)
+        self.assertLess(beside, 0.7 * generate.evidence_of(context, [ramp]))
+        # A line and a ramp have nothing in common.
+        alone = generate.evidence_of(context, [line])
+        self.assertAlmostEqual(generate.evidence_given_others(context, [ramp, slope, line], line) / alone, 1.0,
+                               delta=0.02)
+
     def test_is_at_its_class_or_at_the_end_of_the_plausible_range(self):
         for name in ("heavy_tail", "spikes", "common_mode", "variance_change", "clock_rate", "latency", "dead_zone"):
             cls = generate.known_class(name)
@@ -331,7 +354,7 @@ class Sealed(unittest.TestCase):
                 keys.add(tuple(model))
                 self.assertFalse({"effects", "truth", "seed"} & set(model))
                 with open(os.path.join(sealed, case_id + ".json")) as file:
-                    self.assertIn(json.load(file)["verdict"], judge.VERDICTS)
+                    self.assertIn(json.load(file)["verdict"], answer_form.VERDICTS)
             self.assertEqual(len(keys), 1)
             self.assertEqual(sorted(os.listdir(directory)), ["cases", "elsewhere"])
 
@@ -343,10 +366,49 @@ class Sealed(unittest.TestCase):
         self.assertNotEqual(list(cases), list(generate.panel("full", 1, 13, 120.0, 18.0)))
 
     def test_same_specification_makes_the_same_case(self):
-        case = generate.spec(21, [("rtn", "clear")], False, 5.0)
-        a, b = generate.make_case(case), generate.make_case(case)
-        self.assertTrue(all(np.array_equal(a[0][c], b[0][c]) for c in a[0]))
-        self.assertEqual(json.dumps(a[2]), json.dumps(b[2]))
+        several = [("rtn", "clear"), ("tone", "moderate"), ("bias_step", "clear")]
+        for effects in ([("rtn", "clear")], several):
+            case = generate.spec(21, effects, False, 5.0)
+            a, b = generate.make_case(case), generate.make_case(case)
+            self.assertTrue(all(np.array_equal(a[0][c], b[0][c]) for c in a[0]))
+            self.assertEqual(json.dumps(a[2]), json.dumps(b[2]))
+
+    def test_many_are_three_to_six_of_different_families_whose_evidence_is_known_together(self):
+        cases = generate.panel("many", 400, 3, 120.0, 18.0)
+        self.assertEqual(len(cases), 400)
+        self.assertEqual(sum(c["motion"] for c in cases.values()), 100)
+        self.assertEqual({len(c["effects"]) for c in cases.values()}, {3, 4, 5, 6})
+        drawn = {True: set(), False: set()}
+        for case in cases.values():
+            names = [name for name, _ in case["effects"]]
+            self.assertEqual(len({generate.families(n) for n in names}), len(names))
+            self.assertFalse("lowpass" in names and {"heavy_tail", "spikes", "variance_change", "temp_noise"} & {*names})
+            self.assertFalse("clock_rate" in names and "tone" in names)
+            drawn[case["motion"]] |= {*names}
+            in_motion = sum(CATALOGUE[n].needs == "motion" for n in names)
+            self.assertTrue(in_motion >= 2 if case["motion"] else in_motion == 0, names)
+        self.assertEqual(drawn[True] & {"lowpass", "spikes", "heavy_tail", "temp_quadratic", "temp_lag", "temp_noise"},
+                         set())
+        self.assertEqual(drawn[True] | drawn[False], {*CATALOGUE})
+        # Of effects that can be of any strength.
+        asked = [c for case in cases.values() for name, c in case["effects"] if len(CATALOGUE[name].classes) == 3]
+        for name, share in (("marginal", 0.15), ("moderate", 0.425), ("clear", 0.425)):
+            sd = math.sqrt(share * (1.0 - share) / len(asked))
+            self.assertLess(abs(asked.count(name) / len(asked) - share), LIMIT * sd, name)
+
+    def test_of_many_none_hides_the_others_and_one_that_needs_a_sweep_has_it(self):
+        coarse = [("quantization", "clear"), ("temp_noise", "clear"), ("temp_linear", "clear")]
+        hidden = [("clock_jitter", "clear"), ("scale_factor", "clear"), ("dead_zone", "clear")]
+        for seed in range(6):
+            _, _, truth = generate.make_case(generate.spec(seed, coarse, False, 8.0))
+            self.assertTrue(truth["many"] and not truth["pair"])
+            self.assertEqual(truth["made"]["temperature"], "sweep")
+            N = Sensor(stream(seed, "sensor"), draw_model(stream(seed, "model"), False), False).N
+            grid = truth["effects"][0]
+            noise_dps = min(N["xyz".index(a)] for a in grid["axes"]) * 10.0
+            self.assertLess(grid["params"]["lsb_dps"], 1.2 * noise_dps)
+            _, _, truth = generate.make_case(generate.spec(seed, hidden, True, 3.0))
+            self.assertEqual(truth["effects"][0]["params"]["in_stamps"], 1)
 
     def test_text_holds_the_numbers_as_printf_would(self):
         rng = np.random.default_rng(1)
@@ -367,13 +429,26 @@ class Sealed(unittest.TestCase):
         self.assertEqual(len(lines), 3000)
 
 
-def answer_to(truth, **change):
-    causes = [{"effect": e["effect"], "score": 0.9, "tie_group": [], "axes": e["axes"], "where": e["where"],
-               "params": e["params"], "sd": {}, "shrink_alone": 1.0} for e in truth["effects"]]
+def cause_of(effect, share, **change):
+    """The true parameters, as a program gives them: those that differ between the axes axis by axis."""
+    shared = {name: value for name, value in effect["params"].items() if not isinstance(value, list)}
+    own = {a: {**shared, **{name: value[i] for name, value in effect["params"].items() if isinstance(value, list)}}
+           for i, a in enumerate(effect["axes"])}
+    return {"effect": effect["effect"], "sense": "recording_has", "score": 0.9, "tie_group": [effect["effect"]],
+            "axes": effect["axes"], "where": {k: v for k, v in effect["where"].items() if k != "any"},
+            "params": own[effect["axes"][0]], "sd": {}, "share": share, "share_lo": share, "share_hi": share,
+            **({"params_by_axis": own} if len(shared) < len(effect["params"]) else {}), **change}
+
+
+def answer_to(truth, closed=1.0, **change):
+    """That closes a share of the gap by the true causes, and the rest by what has no name."""
+    share = closed / max(len(truth["effects"]), 1)
     gap = {"value": 3.0, "floor": 1.0, "lo": 2.0, "hi": 4.0}
-    return {"schema": "gyrolog-diagnosis/1", "verdict": truth["verdict"], "p_none": 0.001, "causes": causes,
-            "where": {}, "gap_before": gap, "gap_after": gap, "shrink": 1.0, "shrink_lo": 0.9, "shrink_hi": 1.0,
-            **change}
+    named = {**gap, "value": math.sqrt(1.0 + (1.0 - closed) * 8.0), "lo": 0.5}
+    return {"schema": "gyrolog-diagnosis/2", "verdict": truth["verdict"], "p_none": 0.001,
+            "causes": [cause_of(e, share) for e in truth["effects"]], "unnamed": [], "left": [], "where": {},
+            "gap_before": gap, "gap_named": named, "gap_after": {**gap, "value": 1.0, "lo": 0.5},
+            "shrink": closed, "shrink_lo": closed - 0.05, "shrink_hi": closed + 0.05, "shrink_modelled": 1.0, **change}
 
 
 class Judgement(unittest.TestCase):
@@ -383,24 +458,24 @@ class Judgement(unittest.TestCase):
 
     def test_right_params_shrink_the_gap_wholly_and_wrong_ones_by_what_they_leave(self):
         answer = answer_to(self.truth)
-        self.assertEqual(judge.complaints(answer), [])
-        self.assertGreater(judge.true_shrink(self.truth, self.model, answer, None)[0], 0.999)
-        answer["causes"][0]["params"] = {
-            **self.truth["effects"][0]["params"],
-            "c1_dps_per_C": [0.8 * c for c in self.truth["effects"][0]["params"]["c1_dps_per_C"]]}
-        shrink, unread = judge.true_shrink(self.truth, self.model, answer, None)
+        self.assertEqual(answer_form.complaints(answer), [])
+        self.assertGreater(judge.Case(self.truth, self.model).shrink(answer, None)[0], 0.999)
+        for own in answer["causes"][0]["params_by_axis"].values():
+            own["c1_dps_per_C"] *= 0.8
+        shrink, unread = judge.Case(self.truth, self.model).shrink(answer, None)
         self.assertAlmostEqual(shrink, 1.0 - 0.2**2, delta=0.002)
         self.assertEqual(unread, [])
-        # The same, axis by axis, as a program gives what differs between them; no other params are read then.
-        effect = self.truth["effects"][0]
-        answer["causes"][0]["params_by_axis"] = {
-            a: {"c1_dps_per_C": c} for a, c in zip(effect["axes"], effect["params"]["c1_dps_per_C"])}
-        self.assertGreater(judge.true_shrink(self.truth, self.model, answer, None)[0], 0.999)
+        # A corrected model counts before what the causes say.
+        entry = {k: self.truth["effects"][0][k] for k in ("effect", "axes", "params")}
+        corrected = {**self.model, "effects": [entry]}
+        self.assertGreater(judge.Case(self.truth, self.model).shrink(answer, corrected)[0], 0.999)
 
     def test_a_wrong_cause_shrinks_nothing_and_is_not_right(self):
         answer = answer_to(self.truth)
-        answer["causes"][0].update(effect="arw_scale", params={"factor": 1.1})
-        self.assertLess(judge.true_shrink(self.truth, self.model, answer, None)[0], 0.01)
+        answer["causes"][0] = {**cause_of(self.truth["effects"][0], 1.0), "effect": "arw_scale", "tie_group": [],
+                               "params": {"factor": 1.1}}
+        del answer["causes"][0]["params_by_axis"]
+        self.assertLess(judge.Case(self.truth, self.model).shrink(answer, None)[0], 0.01)
         self.assertFalse(judge.names(answer["causes"][0], "temp_linear"))
         answer["causes"][0]["tie_group"] = ["arw_scale", "temp_linear", "rate_ramp"]
         self.assertTrue(judge.names(answer["causes"][0], "temp_linear"))
@@ -427,8 +502,8 @@ class Judgement(unittest.TestCase):
         truth["refitted"] = True
         entry = {k: truth["effects"][0][k] for k in ("effect", "axes", "params")}
         answer = answer_to(truth)
-        kept = judge.true_shrink(truth, fitted, answer, {**fitted, "effects": [entry]})[0]
-        mended = judge.true_shrink(truth, fitted, answer, {**first, "effects": [entry]})[0]
+        kept = judge.Case(truth, fitted).shrink(answer, {**fitted, "effects": [entry]})[0]
+        mended = judge.Case(truth, fitted).shrink(answer, {**first, "effects": [entry]})[0]
         self.assertGreater(mended, 0.95)
         self.assertLess(kept, 0.9)
 
@@ -461,12 +536,239 @@ class Judgement(unittest.TestCase):
             with self.assertRaises(SystemExit):
                 run.run(program, directory, cases, 1, False, {})
 
-    def test_malformed_answers_are_named(self):
-        answer = answer_to(self.truth, p_none=float("nan"))
-        self.assertEqual(judge.complaints(answer), ["p_none"])
-        self.assertEqual(judge.complaints([]), ["not an object"])
-        self.assertIn("known without a cause", judge.complaints(answer_to(self.truth, causes=[])))
-        self.assertIn("shrink", judge.complaints(answer_to(self.truth, shrink=None)))
+    def test_parameters_are_held_against_the_truth_in_their_stated_deviations(self):
+        effect = {"effect": "bias_step", "axes": ["x", "z"], "params": {"step_dps": [0.10, -0.20], "at_s": 100.0}}
+        own = {"x": {"step_dps": 0.11, "at_s": 97.0}, "z": {"step_dps": -0.20, "at_s": 97.0}}
+        sd = {"step_dps": 0.005, "at_s": 2.0}
+        cause = {"effect": "bias_step", "axes": ["x", "z"], "params": own["x"], "sd": sd, "params_by_axis": own,
+                 "sd_by_axis": {"x": sd, "z": sd}}
+        said = judge.deviations(effect, cause)
+        self.assertEqual(sorted(name for name, _ in said), ["at_s", "step_dps", "step_dps"])
+        self.assertEqual(sorted(round(off, 6) for _, off in said), [-1.5, 0.0, 2.0])
+        # Said once for both axes, the sizes of which differ: only the time can be held against the truth.
+        del cause["params_by_axis"], cause["sd_by_axis"]
+        self.assertEqual(judge.deviations(effect, cause), [("at_s", -1.5)])
+        line = {"effect": "tone", "axes": ["x"], "params": {"f_hz": 150.0, "amplitude_dps": 0.01, "phase_rad": [0.1]}}
+        cause = {"effect": "tone", "axes": ["x"], "params": {"f_hz": 50.0, "amplitude_dps": 0.012, "phase_rad": 3.0},
+                 "sd": {"f_hz": 1e-4, "amplitude_dps": 0.001, "phase_rad": 0.1}}
+        self.assertEqual([(n, round(off, 6)) for n, off in judge.deviations(line, cause)], [("amplitude_dps", 2.0)])
+
+    def test_chance_and_scores_are_held_against_what_came_true(self):
+        table = {row["level"]: row for row in reliability.of_p([0.005] * 3 + [0.3] * 57 + [0.95] * 40)}
+        self.assertEqual([table[p]["share"] for p in reliability.P_LEVELS], [0.03, 0.03, 0.03, 0.03, 0.6, 0.6, 0.6])
+        self.assertAlmostEqual(table[0.01]["sds_off"], 0.02 / math.sqrt(0.01 * 0.99 / 100))
+        self.assertAlmostEqual(table[0.9]["sds_off"], -10.0)
+        scores = reliability.of_scores([(0.8, True), (0.8, True), (0.8, False), (1.0, True), (0.05, False)])
+        self.assertAlmostEqual(scores["value"], (0.04 + 0.04 + 0.64 + 0.0 + 0.0025) / 5)
+        self.assertEqual([(b["from"], b["of"], round(b["right"], 3)) for b in scores["bins"]],
+                         [(0.0, 1, 0.0), (0.7, 3, 0.667), (0.97, 1, 1.0)])
+        self.assertIsNone(reliability.of_scores([])["value"])
+
+
+def scored(truth, model, answer, corrected=None):
+    """(row, figures) of one answer. The tables are made as well."""
+    with tempfile.TemporaryDirectory() as directory:
+        for name in ("sealed", "answers", "cases/c1"):
+            os.makedirs(os.path.join(directory, name))
+        for name, content in (("sealed/c1.json", truth), ("cases/c1/model.json", model), ("answers/c1.json", answer),
+                              ("answers/c1.model.json", corrected),
+                              ("run.json", {"outcomes": {"c1": {"seconds": 1.0, "code": 0}}})):
+            if content is not None:
+                with open(os.path.join(directory, name), "w") as file:
+                    json.dump(content, file)
+        rows, figures = score.score(directory)
+    for table in score.tables(figures):
+        score.as_text(*table)
+        score.as_markdown(*table)
+    return rows[0], figures
+
+
+class Form(unittest.TestCase):
+    TRUTH = {"verdict": "known", "effects": [
+        {"effect": "temp_linear", "axes": ["x"], "where": {"temperature": True}, "params": {"c1_dps_per_C": 0.02}},
+        {"effect": "tone", "axes": ["z"], "where": {"freq_hz": [39.9, 40.1]}, "params": {"f_hz": 40.0}}]}
+
+    def said(self, **change):
+        return answer_form.complaints(answer_to(self.TRUTH, 0.6, **{"verdict": "partly", **change}))
+
+    def test_answer_of_the_contract_has_none(self):
+        self.assertEqual(self.said(), [])
+        self.assertEqual(self.said(unnamed=[{"form": "density", "axes": ["z"], "where": {"freq_hz": [31.0, 31.8]},
+                                             "share": 0.21}],
+                                   left=[{"where": {"axes": ["z"], "time_s": [402, 409]}, "size": 2.1}]), [])
+        # Without a gap there is nothing to be closed.
+        self.assertEqual(self.said(verdict="none", causes=[], shrink=None, shrink_modelled=None), [])
+
+    def test_each_key_that_is_not_the_contracts_is_named(self):
+        for key in ("schema", "verdict", "p_none", "causes", "unnamed", "left", "where", "gap_before", "gap_named",
+                    "gap_after", "shrink", "shrink_modelled"):
+            self.assertEqual(self.said(**{key: None}), [key])
+        self.assertEqual(answer_form.complaints([]), ["not an object"])
+        self.assertEqual(self.said(schema="gyrolog-diagnosis/1"), ["schema"])
+        self.assertEqual(self.said(p_none=float("nan")), ["p_none"])
+        self.assertEqual(self.said(shrink_lo=0.7), ["shrink"])
+        self.assertEqual(self.said(gap_named={"value": 2.0, "floor": 1.0, "lo": 2.1, "hi": 3.0}), ["gap_named"])
+        self.assertEqual(self.said(unnamed=[{"form": "shape", "axes": ["w"], "where": {}, "share": None}]),
+                         ["unnamed[0]: form", "unnamed[0]: axes", "unnamed[0]: share"])
+        self.assertEqual(self.said(left=[{"where": {"time_s": [9, 4]}, "size": -1.0}]),
+                         ["left[0]: size", "left[0]: where: time_s"])
+
+    def test_each_part_of_a_cause_that_is_not_the_contracts_is_named(self):
+        for part, values in {
+                "effect": ["gremlins", None, ["tone"]], "sense": [None, "both"], "score": [1.1, True, "0.9"],
+                "tie_group": [None, ["gremlins"], "tone"], "axes": [None, ["w"], ["x", "x"]],
+                "params": [None, {"c1_dps_per_C": "0.02"}, {"c1_dps_per_C": float("inf")}],
+                "sd": [None, {"c1_dps_per_C": -1.0}, {"other": 1.0}], "share": [None, 0.9],
+                "where": [None]}.items():
+            for value in values:
+                answer = answer_to(self.TRUTH, 0.6, verdict="partly")
+                answer["causes"][0][part] = value
+                if part == "params":
+                    answer["causes"][0]["sd"] = {}
+                self.assertEqual(answer_form.complaints(answer), [f"causes[0]: {part}"], (part, value))
+        for key, value in {"temperature": 1, "structure": "holes", "freq_hz": [2.0, 1.0], "tau_s": 3.0, "weather": True,
+                           "axes": "x"}.items():
+            answer = answer_to(self.TRUTH, 0.6, verdict="partly")
+            answer["causes"][1]["where"] = {key: value}
+            self.assertEqual(answer_form.complaints(answer), [f"causes[1]: where: {key}"])
+        answer = answer_to(self.TRUTH, 0.6, verdict="partly")
+        answer["causes"][0]["effect"] = "rrw_excess"
+        self.assertEqual(answer_form.complaints(answer), ["causes[0]: sense"])
+        answer["causes"][0]["sense"] = "model_has"
+        self.assertEqual(answer_form.complaints(answer), [])
+
+    def test_numbers_that_do_not_go_with_each_other_are_named(self):
+        self.assertEqual(self.said(shrink=0.62), ["shrink is not what gap_named says"])
+        self.assertEqual(self.said(shrink_modelled=0.9), ["shrink_modelled is not what gap_after says"])
+        self.assertEqual(self.said(verdict="known", causes=[]), ["known without a cause"])
+        answer = answer_to(self.TRUTH, 0.6, verdict="partly")
+        answer["causes"][0].update(share=0.1, share_lo=0.1)
+        self.assertEqual(answer_form.complaints(answer), ["causes are not ranked by share"])
+        unlikely = answer_to(self.TRUTH, 0.6, verdict="partly")
+        for cause in unlikely["causes"]:
+            cause["score"] = 0.4
+        self.assertEqual(answer_form.complaints(unlikely), ["partly without a cause of score 0.5"])
+        self.assertEqual(answer_form.complaints({**unlikely, "verdict": "unexplained"}), [])
+        self.assertEqual(answer_form.complaints(answer_to(self.TRUTH, 0.95, verdict="partly")),
+                         ["partly, and less than a tenth is left"])
+        self.assertEqual(self.said(verdict="unexplained"), ["unexplained, and a cause closes a tenth"])
+
+
+class Several(unittest.TestCase):
+    """Recordings with many effects, answered by hand and scored."""
+
+    @classmethod
+    def setUpClass(cls):
+        effects = [("temp_linear", "clear"), ("tone", "moderate"), ("common_mode", "clear"), ("spikes", "moderate")]
+        cls.columns, cls.model, cls.truth = generate.make_case(generate.spec(44, effects, False, 30.0))
+
+    def scored(self, answer, corrected=None):
+        row, figures = scored(self.truth, self.model, answer, corrected)
+        self.assertEqual(row["problems"], [])
+        return row, figures
+
+    def test_truth_says_what_each_is_worth_beside_the_others(self):
+        for e in self.truth["effects"]:
+            self.assertGreater(e["nats"], 50.0)
+            self.assertAlmostEqual(e["nats_given_others"] / e["nats"], 1.0, delta=0.25)
+
+    def test_true_shares_add_up_and_the_shrink_of_a_part_is_what_the_rest_leaves(self):
+        case = judge.Case(self.truth, self.model)
+        causes = [cause_of(e, 0.25) for e in self.truth["effects"]]
+        shares = [case.share(c) for c in causes]
+        self.assertAlmostEqual(sum(shares), 1.0, delta=0.02)
+        for k in range(len(causes)):
+            rest = {"causes": causes[:k] + causes[k + 1 :]}
+            self.assertAlmostEqual(case.shrink(rest, None)[0], 1.0 - shares[k], delta=0.02)
+        # On some of its axes a cause has a part of it, on a wrong one none.
+        slope = self.truth["effects"][0]
+        parts = [case.share({**causes[0], "axes": [a]}) for a in slope["axes"]]
+        self.assertAlmostEqual(sum(parts), shares[0], delta=0.02)
+        self.assertEqual(case.share({**causes[0], "effect": "rate_ramp", "tie_group": []}), 0.0)
+
+    def test_each_cause_names_one_effect_by_its_name_or_in_a_tie_on_axes_that_it_has(self):
+        effects = self.truth["effects"]
+        right = [cause_of(e, 0.25) for e in effects]
+        self.assertEqual(judge.named_effects(right, effects), [0, 1, 2, 3])
+        self.assertEqual(judge.named_effects([], effects), [])
+        tied = {**right[0], "effect": "rate_ramp", "tie_group": ["rate_ramp", "temp_linear", "tone"]}
+        self.assertEqual(len(judge.named_effects([tied], effects)), 1)
+        # The tie gives way to the cause that has the name itself.
+        self.assertEqual(judge.named_effects([{**tied, "axes": []}, right[0]], effects), [0, 1])
+        self.assertEqual(judge.named_effects([{**tied, "tie_group": tied["tie_group"] + ["warmup"]}], effects), [])
+        self.assertEqual(judge.named_effects([{**right[0], "sense": "model_has"}], effects), [])
+        elsewhere = {**effects[0], "axes": ["x"], "nats_of_axis": {"x": 9.0}}
+        self.assertFalse(judge.is_right({**right[0], "axes": ["y", "z"]}, elsewhere))
+        self.assertTrue(judge.is_right({**right[0], "axes": ["x", "z"]}, elsewhere))
+
+    def test_right_answer_has_the_best_figures(self):
+        _, figures = self.scored(answer_to(self.truth))
+        f = figures["many"]
+        self.assertEqual((f["named"]["hits"], f["named"]["of"]), (4, 4))
+        self.assertEqual((f["true"]["hits"], f["true"]["of"]), (4, 4))
+        self.assertLess(f["shrink"]["error"], 0.001)
+        self.assertEqual(f["shrink"]["coverage"]["hits"], 1)
+        self.assertAlmostEqual(figures["reliability"]["many"]["value"], 0.01)
+        self.assertEqual(figures["reliability"]["few"]["of"], 0)
+        # None of it counts among recordings with one effect.
+        self.assertEqual(figures["by_class"]["clear"]["named"]["of"] + figures["pairs"]["both"]["of"], 0)
+
+    def test_wrong_answer_has_the_figures_that_it_earned(self):
+        answer = answer_to(self.truth, 0.7, verdict="partly")
+        false = {**answer["causes"][0], "effect": "rtn", "tie_group": ["rtn"], "params": {}, "score": 0.6}
+        false.pop("params_by_axis", None)
+        answer["causes"][0] = false
+        entries = [{k: e[k] for k in ("effect", "axes", "params")} for e in self.truth["effects"][1:]]
+        row, figures = self.scored(answer, {**self.model, "effects": entries})
+        f, share = figures["many"], judge.Case(self.truth, self.model).share(cause_of(self.truth["effects"][0], 0.0))
+        self.assertEqual((f["named"]["hits"], f["named"]["of"]), (3, 4))
+        self.assertEqual((f["true"]["hits"], f["true"]["of"]), (3, 4))
+        self.assertEqual(f["verdicts"], {"partly": 1})
+        self.assertAlmostEqual(row["shrink"], 1.0 - share, delta=0.02)
+        self.assertAlmostEqual(f["shrink"]["error"], abs(row["shrink"] - 0.7))
+        self.assertAlmostEqual(figures["reliability"]["many"]["value"], (3 * 0.01 + 0.36) / 4)
+        self.assertEqual(f["shrink"]["coverage"]["hits"], int(abs(row["shrink"] - 0.7) <= 0.055))
+        self.assertEqual(next(e["false"] for e in f["by_effect"] if e["effect"] == "rtn"), 1)
+        self.assertEqual(row["causes"][0]["true_share"], 0.0)
+        # Called none, it names nothing, whatever it lists.
+        _, figures = self.scored({**answer, "verdict": "none"})
+        self.assertEqual(figures["many"]["named"]["hits"], 0)
+        self.assertEqual(figures["reliability"]["many"]["of"], 0)
+
+
+class Halves(unittest.TestCase):
+    """What a verdict `partly` counts for, and a name that the contract has and the catalogue here has not."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.made = {name: generate.make_case(generate.spec(31, [(name, "clear")], False, 8.0))[1:]
+                    for name in ("tone", "resonance", "sawtooth")}
+
+    def figures_of(self, truth_of, verdict, effect):
+        model, truth = self.made[truth_of]
+        answer = answer_to(truth, 0.6, verdict=verdict)
+        answer["causes"] = [cause_of({**truth["effects"][0], "effect": effect, "params": {"f_hz": 1.0}}, 0.05)]
+        row, figures = scored(truth, model, answer)
+        self.assertEqual(row["problems"], [])
+        return figures
+
+    def test_right_cause_of_a_part_is_half_right(self):
+        for verdict, effect, named, half in (("known", "tone", 1, 0), ("partly", "tone", 0, 1), ("known", "rtn", 0, 0),
+                                             ("partly", "rtn", 0, 0), ("unexplained", "tone", 0, 0)):
+            figures = self.figures_of("tone", verdict, effect)["by_class"]["clear"]
+            self.assertEqual((figures["named"]["hits"], figures["half"]["hits"]), (named, half), (verdict, effect))
+            self.assertEqual(figures["named"]["of"], 1)
+
+    def test_foreign_effect_is_unexplained_or_what_the_contract_calls_it(self):
+        for truth_of, verdict, effect, right, wrong, half in (
+                ("resonance", "unexplained", "rtn", 1, 0, 0), ("resonance", "known", "narrowband", 1, 0, 0),
+                ("resonance", "known", "tone", 0, 1, 0), ("resonance", "partly", "tone", 0, 0, 1),
+                ("sawtooth", "known", "narrowband", 0, 1, 0), ("sawtooth", "partly", "warmup", 0, 0, 1),
+                ("sawtooth", "unexplained", "warmup", 1, 0, 0)):
+            figures = self.figures_of(truth_of, verdict, effect)
+            said = (figures["foreign"]["clear"]["unexplained"]["hits"], figures["foreign_misnamed"]["hits"],
+                    figures["foreign_half_misnamed"]["hits"])
+            self.assertEqual(said, (right, wrong, half), (truth_of, verdict, effect))
 
 
 if __name__ == "__main__":

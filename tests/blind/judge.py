@@ -1,4 +1,4 @@
-"""One answer held against one truth: is it well formed, what did it name, is the place right, the gap how far shrunk.
+"""One answer held against one truth: what did it name, is the place right, how far is the gap shrunk.
 
 The true shrink of an answer is 1 - E(truth | claimed) / E(truth | nothing): the evidence that the data hold against
 the corrected model, over what they hold against the first one (evidence.py, N, B, K, M, latency and clock free within
@@ -6,9 +6,10 @@ what the model states, a difference of the means counted as its square). Right p
 that is not there, or that changes something else, gives 0 or less, which counts as 0; a wrong name whose
 simulation does what the truth does is given what it earns. The corrected model is the one handed back with
 --model-out; without it, the causes' params.
-"""
 
-import math
+The true share of a cause is E(truth | truth without that effect, on the cause's axes) / E(truth | nothing): what returns
+if it alone is taken out again. A cause that is not in the truth has the share 0.
+"""
 
 import numpy as np
 
@@ -17,53 +18,8 @@ from evidence import AXES, Description, nats
 from foreign import FOREIGN
 from generate import context_of
 
-VERDICTS = ("none", "known", "unexplained")
-STRUCTURES = ("duplicated_samples", "timestamp_gaps", "timestamp_rate", "timestamp_jitter", "growing_lag",
-              "cross_axis", "code_grid", "isolated_samples")
 WEAK_NATS = 8.0  # an axis that holds less of the evidence may be missing from the answer
-
-
-def complaints(answer):
-    """What the contract asks for and the answer does not have."""
-    out = []
-
-    def number(value, low=-math.inf, high=math.inf):
-        right_type = isinstance(value, (int, float)) and not isinstance(value, bool)
-        return right_type and math.isfinite(value) and low <= value <= high
-
-    if not isinstance(answer, dict):
-        return ["not an object"]
-    if answer.get("schema") != "gyrolog-diagnosis/1":
-        out.append("schema")
-    if answer.get("verdict") not in VERDICTS:
-        out.append("verdict")
-    if not number(answer.get("p_none"), 0.0, 1.0):
-        out.append("p_none")
-    causes = answer.get("causes")
-    if not isinstance(causes, list):
-        out.append("causes")
-        causes = []
-    for cause in causes:
-        if not isinstance(cause, dict) or cause.get("effect") not in CATALOGUE:
-            out.append("causes: effect")
-        elif not number(cause.get("score"), 0.0, 1.0):
-            out.append("causes: score")
-        elif not isinstance(cause.get("axes", []), list) or not isinstance(cause.get("params", {}), dict):
-            out.append("causes: axes or params")
-        elif any(name not in CATALOGUE for name in cause.get("tie_group", [])):
-            out.append("causes: tie_group")
-        elif cause.get("where", {}).get("structure", STRUCTURES[0]) not in STRUCTURES:
-            out.append("causes: structure")
-    if answer.get("verdict") == "known" and not causes:
-        out.append("known without a cause")
-    if answer.get("verdict") != "none":
-        for key in ("shrink", "shrink_lo", "shrink_hi"):
-            if not number(answer.get(key)):
-                out.append(key)
-        for key in ("gap_before", "gap_after"):
-            if not isinstance(answer.get(key), dict) or not number(answer[key].get("value"), 0.0):
-                out.append(key)
-    return out
+TIE_MOST = 3  # a tie of more effects names none but the first
 
 
 def tie_of(cause):
@@ -71,8 +27,42 @@ def tie_of(cause):
 
 
 def names(cause, effect):
-    """First: by its name, or in a declared tie of at most three."""
-    return cause["effect"] == effect or (len(tie_of(cause)) <= 3 and effect in tie_of(cause))
+    """By its name, or in a declared tie of at most three."""
+    return cause["effect"] == effect or (len(tie_of(cause)) <= TIE_MOST and effect in tie_of(cause))
+
+
+def right_names(effect):
+    """Of an effect of the truth: its own, and what the contract has for one that the catalogue does not make."""
+    other = getattr(FOREIGN.get(effect), "described_as", None)
+    return [effect] + ([other] if other else [])
+
+
+def is_right(cause, effect):
+    """The cause names the effect of the truth, on at least one of its axes."""
+    claimed = set(cause["axes"])
+    meets = not claimed or not effect["nats_of_axis"] or bool(claimed & set(effect["axes"]))
+    return (meets and cause["sense"] == "recording_has"
+            and any(names(cause, name) for name in right_names(effect["effect"])))
+
+
+def named_effects(causes, effects):
+    """Indices of the effects that a cause each names: as many as can be, each cause for one."""
+    cause_of = {}
+
+    def give(e, tried):
+        for c in sorted(range(len(causes)), key=lambda c: causes[c]["effect"] != effects[e]["effect"]):
+            if c in tried or not is_right(causes[c], effects[e]):
+                continue
+            tried.add(c)
+            holder = next((other for other, mine in cause_of.items() if mine == c), None)
+            if holder is None or give(holder, tried):
+                cause_of[e] = c
+                return True
+        return False
+
+    for e in range(len(effects)):
+        give(e, set())
+    return sorted(cause_of)
 
 
 def _overlap(a, b):
@@ -163,28 +153,64 @@ def claimed_description(context, answer, corrected):
     return out, unread
 
 
-def true_shrink(truth, model, answer, corrected):
-    """(shrink, what could not be understood)."""
-    context = context_of(truth["made"], model=model)
-    free = truth["foreign"] and all(getattr(FOREIGN[e["effect"]], "free", False) for e in truth["effects"])
-    made = true_description(context, truth)
-    whole = nats(context, made, Description(), free=free, apart=True, perfect=truth["refitted"])
-    claimed, unread = claimed_description(context, answer, corrected)
-    left = nats(context, made, claimed, free=free, apart=True, perfect=truth["refitted"])
-    return float(np.clip(1.0 - left / max(whole, 1e-9), 0.0, 1.0)), unread
+class Case:
+    """What the recording of a truth holds against descriptions of it, and against the model that was given."""
+
+    def __init__(self, truth, model):
+        self.effects = truth["effects"]
+        self.context = context_of(truth["made"], model=model)
+        self.free = truth["foreign"] and all(getattr(FOREIGN[e["effect"]], "free", False) for e in self.effects)
+        self.perfect = truth["refitted"]
+        self.made = true_description(self.context, truth)
+        self.whole = max(self.against(Description()), 1e-9)
+
+    def against(self, other):
+        return nats(self.context, self.made, other, free=self.free, apart=True, perfect=self.perfect)
+
+    def shrink(self, answer, corrected):
+        """(shrink, what could not be understood)."""
+        claimed, unread = claimed_description(self.context, answer, corrected)
+        return float(np.clip(1.0 - self.against(claimed) / self.whole, 0.0, 1.0)), unread
+
+    def share(self, cause):
+        effect = next((e for e in self.effects if is_right(cause, e)), None)
+        if effect is None:
+            return 0.0
+        effect = next((e for e in self.effects if is_right(cause, e) and e["effect"] == cause["effect"]), effect)
+        without = Description()
+        for e in self.effects:
+            acting = _acting(self.context, e["effect"], e["params"], e["axes"])
+            if e is not effect:
+                acting.describe(without)
+            elif cause["axes"] and not (acting.whole or acting.shared):
+                kept = [a for a in acting.axes if a not in cause["axes"]]
+                if kept:
+                    acting.only_on(kept).describe(without)
+        return float(self.against(without) / self.whole)
+
+
+# By effect, parameters that one recording does not tell: from which frequency a line is folded, and with it the phase;
+# how a common noise is shared out between its size and its gains.
+NOT_TOLD = {"tone": ("f_hz", "phase_rad"),
+            "common_mode": ("N_dps_per_sqrt_hz", "gain_x", "gain_y", "gain_z")}
 
 
 def deviations(effect, cause):
-    """By parameter, how many of its stated standard deviations the cause's lies beside the truth. Left out: what one
-    recording does not tell (from which frequency a line is folded, how a common noise is shared out between its size
-    and its gains), and what is a choice."""
+    """By parameter and axis, how many of its stated standard deviations the cause's lies beside the truth. What is
+    said once for several axes counts once, and only if the truth is one for them as well."""
+    told = cause.get("params_by_axis") or {None: cause["params"]}
+    sds = cause.get("sd_by_axis") or {None: cause["sd"]}
     off = {}
-    for name, sd in cause.get("sd", {}).items():
-        true, said = effect["params"].get(name), cause["params"].get(name)
-        numbers = all(isinstance(v, (int, float)) for v in (true, said, sd))
-        free = effect["effect"] == "common_mode" or (effect["effect"] == "tone" and name == "f_hz")
-        if not numbers or sd <= 0.0 or free:
-            continue
-        turned = math.remainder(said - true, 2.0 * math.pi) if name == "phase_rad" else said - true
-        off[name] = turned / sd
-    return off
+    for axis, params in told.items():
+        for name, sd in sds.get(axis, {}).items():
+            true = effect["params"].get(name)
+            if isinstance(true, list):
+                of = axis or (cause["axes"][0] if len(cause["axes"]) == 1 else None)
+                true = true[effect["axes"].index(of)] if of in effect["axes"] else None
+                key = (name, of)
+            else:
+                key = (name, params.get(name))
+            numbers = all(isinstance(v, (int, float)) for v in (true, params.get(name), sd))
+            if numbers and sd > 0.0 and name not in NOT_TOLD.get(effect["effect"], ()):
+                off[key] = (params[name] - true) / sd
+    return [(name, sds_off) for (name, _), sds_off in off.items()]

@@ -14,7 +14,11 @@ import numbers_or_skip  # noqa: F401
 import numpy as np
 
 import judge
+import many
+import reliability
+from answer_form import complaints
 from effects import CATALOGUE
+from proportion import percent, rate
 
 CLASSES = ("marginal", "moderate", "clear")
 TARGETS = {  # share, at least (or at most, where marked)
@@ -24,16 +28,6 @@ TARGETS = {  # share, at least (or at most, where marked)
     "foreign_misnamed_most": 0.10, "pairs": 0.75, "place": 0.95, "false_alarms_most": 0.02,
     "shrink_error_most": 0.05, "coverage": (0.85, 0.95), "brier_most": 0.08, "refitted_loss_most": 0.10,
 }
-
-
-def interval(hits, total):
-    """Wilson's, 95 %."""
-    if total == 0:
-        return 0.0, 1.0
-    z, p = 1.96, hits / total
-    middle = (p + z * z / (2 * total)) / (1 + z * z / total)
-    half = z * np.sqrt(p * (1 - p) / total + z * z / (4 * total**2)) / (1 + z * z / total)
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def load(path):
@@ -55,52 +49,64 @@ def judged(directory, case_id, truth, outcome):
     if answer is None:
         row["problems"].append("no JSON")
     else:
-        row["problems"] += judge.complaints(answer)
+        row["problems"] += complaints(answer)
     row["seconds"] = (outcome or {}).get("seconds")
     row["valid"] = not row["problems"]
     if not row["valid"]:
         return row
-    causes = answer["causes"]
-    row.update(verdict=answer["verdict"], p_none=answer["p_none"], detected=answer["verdict"] != "none",
-               said=[c["effect"] for c in causes], score=causes[0]["score"] if causes else None)
-    known = answer["verdict"] == "known"
-    effects = truth["effects"]
-    if truth["verdict"] == "known" and not truth["pair"]:
-        effect = effects[0]
-        row["first"] = known and causes[0]["effect"] == effect["effect"]
-        row["named"] = known and judge.names(causes[0], effect["effect"])
-        row["listed"] = any(c["effect"] == effect["effect"] for c in causes)
-        row["tied"] = known and len(judge.tie_of(causes[0])) > 1
-        if row["named"]:
-            duration_s = truth["made"]["minutes"] * 60.0
-            row["place"], row["place_fair"] = judge.place_right(effect, answer, causes[0], duration_s)
-    row["off"] = [{"effect": e["effect"], "param": name, "sds": sds} for e in effects if known and not truth["refitted"]
-                  for c in causes if c["effect"] == e["effect"] for name, sds in judge.deviations(e, c).items()]
+    row.update(verdict=answer["verdict"], p_none=answer["p_none"], detected=answer["verdict"] != "none")
+    # Where the recording could have come from the model, nothing is named.
+    causes = answer["causes"] if row["detected"] else []
+    row.update(said=[c["effect"] for c in causes])
+    if truth["refitted"]:
+        # The truth does not say what of the model the fit has made too large.
+        causes = [c for c in causes if c["sense"] == "recording_has"]
+    effects, explains = truth["effects"], answer["verdict"] in ("known", "partly")
+    row["causes"] = [{"effect": c["effect"], "score": c["score"], "share": c["share"],
+                      "right": any(judge.is_right(c, e) for e in effects)} for c in causes]
+    if truth["verdict"] == "known" and len(effects) == 1:
+        judge_single(row, truth, answer, causes)
     if truth["pair"]:
-        left = [e["effect"] for e in effects]
-        for cause in causes[:3]:
-            hit = [name for name in left if judge.names(cause, name)]
-            exact = [name for name in hit if name == cause["effect"]]
-            if hit and known:
-                left.remove((exact or hit)[0])
-        row["found"] = 2 - len(left)
+        row["found"] = len(judge.named_effects(causes[:3], effects)) if explains else 0
+    if is_many(row):
+        row["named_effects"] = judge.named_effects(causes, effects)
+    row["off"] = [{"effect": e["effect"], "param": name, "sds": sds} for e in effects
+                  if explains and not truth["refitted"] for c in causes
+                  if c["effect"] == e["effect"] and judge.is_right(c, e) for name, sds in judge.deviations(e, c)]
     if truth["verdict"] != "none" and row["detected"]:
         corrected = load(answers + ".model.json")
-        model = load(os.path.join(directory, "cases", case_id, "model.json"))
-        row["shrink"], row["unread"] = judge.true_shrink(truth, model, answer, corrected)
+        case = judge.Case(truth, load(os.path.join(directory, "cases", case_id, "model.json")))
+        row["shrink"], row["unread"] = case.shrink(answer, corrected)
         row["claimed"] = [answer["shrink"], answer["shrink_lo"], answer["shrink_hi"]]
+        row["modelled"] = answer["shrink_modelled"]
+        for said, cause in zip(row["causes"], causes):
+            said["true_share"] = case.share(cause)
     return row
 
 
-def rate(rows, key):
-    """{hits, of, share, lo, hi}; an answer that is not valid is a miss."""
-    hits, total = sum(bool(r.get(key)) for r in rows), len(rows)
-    low, high = interval(hits, total)
-    return {"hits": hits, "of": total, "share": hits / total if total else None, "lo": low, "hi": high}
+def is_many(row):
+    return row["truth"].get("many", False)
+
+
+def judge_single(row, truth, answer, causes):
+    """A verdict `partly` with the right cause first is half right, and counted by itself."""
+    effect = truth["effects"][0]
+    right = bool(causes) and judge.is_right({**causes[0], "axes": []}, effect)
+    known = answer["verdict"] == "known"
+    row["first"] = known and right and causes[0]["effect"] == effect["effect"]
+    row["named"] = known and right
+    row["half"] = answer["verdict"] == "partly" and right
+    row["listed"] = any(c["effect"] == effect["effect"] for c in causes)
+    row["tied"] = known and bool(causes) and len(judge.tie_of(causes[0])) > 1
+    if row["named"]:
+        duration_s = truth["made"]["minutes"] * 60.0
+        row["place"], row["place_fair"] = judge.place_right(effect, answer, causes[0], duration_s)
 
 
 def summary(rows):
-    singles = [r for r in rows if r["truth"]["verdict"] == "known" and not r["truth"]["pair"]]
+    several = [r for r in rows if is_many(r)]
+    few = [r for r in rows if not is_many(r)]
+    singles = [r for r in few if r["truth"]["verdict"] == "known" and not r["truth"]["pair"]]
     plain = [r for r in singles if not r["truth"]["refitted"]]
     foreign = [r for r in rows if r["truth"]["foreign"]]
     pairs = [r for r in rows if r["truth"]["pair"]]
@@ -114,7 +120,7 @@ def summary(rows):
     for c in CLASSES:
         mine = [r for r in plain if kind(r) == c]
         named = [r for r in mine if r.get("named")]
-        out["by_class"][c] = {key: rate(mine, key) for key in ("detected", "first", "named", "listed", "tied")}
+        out["by_class"][c] = {key: rate(mine, key) for key in ("detected", "first", "named", "half", "listed", "tied")}
         out["by_class"][c]["place"] = rate(named, "place")
         out["by_class"][c]["place_fair"] = rate(named, "place_fair")
     named = [r for r in plain if r.get("named")]
@@ -128,7 +134,9 @@ def summary(rows):
         for (effect, c), mine in sorted(table.items(), key=lambda item: (item[0][0], CLASSES.index(item[0][1])))]
     confusion = collections.Counter()
     for r in singles + foreign:
-        said = "invalid" if not r["valid"] else r["said"][0] if r["verdict"] == "known" else r["verdict"]
+        said = r["verdict"] if r["valid"] else "invalid"
+        if said in ("known", "partly") and r["said"]:
+            said = r["said"][0] if said == "known" else "partly " + r["said"][0]
         confusion[(r["truth"]["effects"][0]["effect"], said)] += 1
     out["confusion"] = [{"truth": t, "said": s, "count": n} for (t, s), n in sorted(confusion.items())
                         if t != s and not (s == "unexplained" and t not in CATALOGUE)]
@@ -136,15 +144,14 @@ def summary(rows):
     for r in none:
         r["alarm"] = not r["valid"] or r["detected"]
     out["false_alarms"] = rate(none, "alarm")
-    out["p_none"] = []
-    for level in (0.01, 0.05, 0.1, 0.25, 0.5, 0.75):
-        for r in none:
-            r["below"] = r["valid"] and r["p_none"] <= level
-        out["p_none"].append({"level": level, **rate(none, "below")})
+    out["p_none"] = reliability.of_p([r["p_none"] for r in none if r["valid"]])
 
     for r in foreign:
-        r["unexplained"] = r["valid"] and r["verdict"] == "unexplained"
-        r["misnamed"] = not r["valid"] or r["verdict"] == "known"
+        # The contract may have an effect that describes it: that name is as right as none.
+        described = r["valid"] and bool(r["causes"]) and r["causes"][0]["right"]
+        r["unexplained"] = r["valid"] and (r["verdict"] == "unexplained" or (r["verdict"] == "known" and described))
+        r["misnamed"] = not r["valid"] or (r["verdict"] == "known" and not described)
+        r["half_misnamed"] = r["valid"] and r["verdict"] == "partly" and not described
     out["foreign"] = {c: {"unexplained": rate([r for r in foreign if kind(r) == c], "unexplained"),
                           "misnamed": rate([r for r in foreign if kind(r) == c], "misnamed"),
                           "detected": rate([r for r in foreign if kind(r) == c], "detected")}
@@ -155,10 +162,13 @@ def summary(rows):
         out["foreign_by_effect"].append({"effect": effect, **{k: rate(mine, k) for k in
                                                               ("detected", "unexplained", "misnamed")}})
     out["foreign_misnamed"] = rate(foreign, "misnamed")
+    out["foreign_half_misnamed"] = rate(foreign, "half_misnamed")
     for r in pairs:
-        r["both"], r["one"] = r.get("found") == 2, r.get("found", 0) >= 1
+        known = r.get("verdict") == "known"
+        r["both"], r["one"] = known and r["found"] == 2, known and r["found"] >= 1
+        r["half"] = r.get("verdict") == "partly" and r["found"] >= 1
         r["more"] = len(r.get("said", [])) > 2
-    out["pairs"] = {key: rate(pairs, key) for key in ("detected", "one", "both", "more")}
+    out["pairs"] = {key: rate(pairs, key) for key in ("detected", "one", "both", "half", "more")}
 
     refitted = [r for r in singles if r["truth"]["refitted"]]
     alike = {(r["truth"]["effects"][0]["effect"], kind(r)) for r in refitted}
@@ -166,90 +176,42 @@ def summary(rows):
     out["refitted"] = {"named": rate(refitted, "named"), "detected": rate(refitted, "detected"),
                        "named_with_first_model": rate(fresh, "named")}
 
-    said = [r for r in rows if r["valid"] and r["verdict"] == "known"]
-    outcomes = [(r["score"], bool(r.get("first")) or (r["truth"]["pair"] and r["said"][0] in
-                                                      [e["effect"] for e in r["truth"]["effects"]])) for r in said]
-    out["brier"] = {"value": float(np.mean([(p - y) ** 2 for p, y in outcomes])) if outcomes else None,
-                    "of": len(outcomes), "reliability": []}
-    for low, high in ((0.0, 0.3), (0.3, 0.5), (0.5, 0.7), (0.7, 0.9), (0.9, 0.97), (0.97, 1.0001)):
-        mine = [(p, y) for p, y in outcomes if low <= p < high]
-        if mine:
-            out["brier"]["reliability"].append({
-                "from": low, "to": min(high, 1.0), "of": len(mine), "said": float(np.mean([p for p, _ in mine])),
-                "right": float(np.mean([y for _, y in mine]))})
+    out["reliability"] = {}
+    out["parameters"] = {}
+    for group, mine in (("few", few), ("many", several)):
+        out["reliability"][group] = reliability.of_scores(
+            [(c["score"], c["right"]) for r in mine for c in r.get("causes", [])])
+        off = [p for r in mine for p in r.get("off", [])]
+        for p in off:
+            p["one"], p["two"] = abs(p["sds"]) <= 1.0, abs(p["sds"]) <= 2.0
+        out["parameters"][group] = {"one": rate(off, "one"), "two": rate(off, "two")}
+    firsts = [r["causes"][0] for r in few if r["valid"] and r["verdict"] in ("known", "partly") and r["causes"]]
+    out["first_cause"] = reliability.of_scores([(c["score"], c["right"]) for c in firsts])
 
-    claims = [r for r in rows if "claimed" in r and r["verdict"] == "known" and not r["truth"]["foreign"]]
-    out["shrink"] = {"of": len(claims), "unread": sorted({u for r in claims for u in r["unread"]})}
-    if claims:
-        errors = np.array([abs(min(max(r["claimed"][0], 0.0), 1.0) - r["shrink"]) for r in claims])
-        # By the strict reading a wrong first cause shrinks nothing.
-        strict = np.array([abs(min(max(r["claimed"][0], 0.0), 1.0) - (
-            r["shrink"] if r.get("named") or r.get("found") else 0.0)) for r in claims])
-        covered = [{"in": r["claimed"][1] - 0.005 <= r["shrink"] <= r["claimed"][2] + 0.005} for r in claims]
-        out["shrink"].update(error=float(errors.mean()), error_strict=float(strict.mean()),
-                             worst=float(errors.max()), coverage=rate(covered, "in"),
-                             true=float(np.mean([r["shrink"] for r in claims])),
-                             claimed=float(np.mean([r["claimed"][0] for r in claims])))
-    off = [p for r in rows for p in r.get("off", [])]
-    for p in off:
-        p["one"], p["two"] = abs(p["sds"]) <= 1.0, abs(p["sds"]) <= 2.0
-    out["parameters"] = {"one": rate(off, "one"), "two": rate(off, "two")}
+    claims = [r for r in few if "claimed" in r and r["verdict"] in ("known", "partly") and not r["truth"]["foreign"]]
+    out["shrink"] = many.shrink_figures(claims)
+    out["shares"] = many.share_figures([c for r in claims for c in r["causes"]])
+    out["unread"] = sorted({u for r in rows for u in r.get("unread", [])})
+    out["many"] = many.figures(several)
     seconds = [r["seconds"] for r in rows if r["seconds"] is not None]
     out["seconds"] = {"mean": float(np.mean(seconds)), "most": float(max(seconds))} if seconds else None
     return out
 
 
-def percent(r):
-    if r["of"] == 0:
-        return "-"
-    return f"{100 * r['share']:.0f} % of {r['of']} [{100 * r['lo']:.0f}, {100 * r['hi']:.0f}]"
-
-
 def tables(s):
-    """[(title, header, rows)]."""
+    """[(title, header, rows)], of what the panel has."""
     out = []
-    goal = TARGETS
-    rows = []
-    for c in CLASSES:
-        b = s["by_class"][c]
-        rows.append([c, percent(b["detected"]), f"{100 * goal['detected'][c]:.0f} %", percent(b["first"]),
-                     percent(b["named"]), f"{100 * goal['named'][c]:.0f} %", percent(b["place"]),
-                     percent(b["place_fair"])])
-    out.append(("One effect of the catalogue, by strength of evidence",
-                ["evidence", "detected", "goal", "right first", "or in a tie of 3", "goal", "place right",
-                 "but for weak axes"], rows))
-    p = s["pairs"]
-    shrink = s["shrink"]
-    rows = [
-        ["false alarms without a gap", percent(s["false_alarms"]), "<= 2 %"],
-        ["foreign unexplained, clear", percent(s["foreign"]["clear"]["unexplained"]), ">= 85 %"],
-        ["foreign unexplained, moderate", percent(s["foreign"]["moderate"]["unexplained"]), ">= 70 %"],
-        ["foreign misnamed", percent(s["foreign_misnamed"]), "<= 10 %"],
-        ["both of two found", percent(p["both"]), ">= 75 %"],
-        ["one of two found", percent(p["one"]), ""],
-        ["more than two named of two", percent(p["more"]), ""],
-        ["place right, cause right", percent(s["place"]), ">= 95 %"],
-        ["refitted model: named", percent(s["refitted"]["named"]), ""],
-        ["the same effects, first model", percent(s["refitted"]["named_with_first_model"]), "<= 10 points more"],
-        ["Brier score of the first cause", "-" if s["brier"]["value"] is None else
-         f"{s['brier']['value']:.3f} of {s['brier']['of']}", "<= 0.08"],
-    ]
-    if shrink["of"]:
-        rows += [
-            ["claimed less true shrink, mean size", f"{shrink['error']:.3f} of {shrink['of']}", "<= 0.05"],
-            ["the same, a wrong cause shrinks nothing", f"{shrink['error_strict']:.3f}", ""],
-            ["true shrink within its interval", percent(shrink["coverage"]), "85 to 95 %"],
-        ]
-    rows += [
-        ["parameters within their standard deviation", percent(s["parameters"]["one"]), "68 %"],
-        ["within two", percent(s["parameters"]["two"]), "95 %"],
-    ]
-    out.append(("Figures", ["", "measured", "goal"], rows))
-    out.append(("p_none on recordings without a gap", ["p_none <=", "share"],
-                [[f"{r['level']:g}", percent(r)] for r in s["p_none"]]))
-    out.append(("First cause's score", ["score", "number", "mean score", "right"],
-                [[f"{r['from']:g} to {r['to']:g}", str(r["of"]), f"{r['said']:.2f}", f"{r['right']:.2f}"]
-                 for r in s["brier"]["reliability"]]))
+    if any(s["by_class"][c]["named"]["of"] for c in CLASSES):
+        out.append(class_table(s))
+    if s["cases"] > s["many"]["cases"]:
+        out.append(("Figures", ["", "measured", "goal"], figure_rows(s)))
+    out += many.tables(s["many"], s["reliability"]["many"], s["parameters"]["many"])
+    out.append(("p_none on recordings without a gap", ["p_none <=", "share", "wanted, with chance's deviation", "off by"],
+                reliability.p_rows(s["p_none"])))
+    for group, words in (("few", "one effect, two or none"), ("many", "three to six")):
+        out.append((f"Scores of all causes, recordings with {words}",
+                    ["score", "number", "mean score", "right", "chance's deviation"],
+                    reliability.score_rows(s["reliability"][group])))
     cells = {(r["effect"], r["class"]): effect_cell(r) for r in s["by_effect"]}
     out.append(("Each effect: right first or in a tie of 3, and what went wrong", ["effect", *CLASSES],
                 [[effect] + [cells.get((effect, c), "") for c in CLASSES]
@@ -262,7 +224,50 @@ def tables(s):
         wrong[r["truth"]].append(f"{r['said']} {r['count']}")
     out.append(("Taken for something else", ["truth", "said"],
                 [[t, ", ".join(said)] for t, said in sorted(wrong.items())]))
-    return out
+    return [table for table in out if table[2]]
+
+
+def class_table(s):
+    rows = []
+    for c in CLASSES:
+        b = s["by_class"][c]
+        rows.append([c, percent(b["detected"]), f"{100 * TARGETS['detected'][c]:.0f} %", percent(b["first"]),
+                     percent(b["named"]), f"{100 * TARGETS['named'][c]:.0f} %", percent(b["half"]), percent(b["place"]),
+                     percent(b["place_fair"])])
+    return ("One effect of the catalogue, by strength of evidence",
+            ["evidence", "detected", "goal", "right first", "or in a tie of 3", "goal", "right, partly", "place right",
+             "but for weak axes"], rows)
+
+
+def figure_rows(s):
+    p, shrink, parameters = s["pairs"], s["shrink"], s["parameters"]["few"]
+    rows = [
+        ["false alarms without a gap", percent(s["false_alarms"]), "<= 2 %"],
+        ["foreign unexplained, clear", percent(s["foreign"]["clear"]["unexplained"]), ">= 85 %"],
+        ["foreign unexplained, moderate", percent(s["foreign"]["moderate"]["unexplained"]), ">= 70 %"],
+        ["foreign misnamed", percent(s["foreign_misnamed"]), "<= 10 %"],
+        ["foreign misnamed, partly", percent(s["foreign_half_misnamed"]), ""],
+        ["both of two found", percent(p["both"]), ">= 75 %"],
+        ["one of two found", percent(p["one"]), ""],
+        ["one of two found, partly", percent(p["half"]), ""],
+        ["more than two named of two", percent(p["more"]), ""],
+        ["place right, cause right", percent(s["place"]), ">= 95 %"],
+        ["refitted model: named", percent(s["refitted"]["named"]), ""],
+        ["the same effects, first model", percent(s["refitted"]["named_with_first_model"]), "<= 10 points more"],
+        ["Brier score of the first cause", reliability.brier(s["first_cause"]), "<= 0.08"],
+        ["Brier score of every cause", reliability.brier(s["reliability"]["few"]), "<= 0.08"],
+    ]
+    if shrink["of"]:
+        rows += [
+            ["claimed less true shrink, mean size", f"{shrink['error']:.3f} of {shrink['of']}", "<= 0.05"],
+            ["true shrink within its interval", percent(shrink["coverage"]), "85 to 95 %"],
+            ["a cause's share less the true one, mean size",
+             f"{many.number(s['shares']['error'])} of {s['shares']['of']}", ""],
+        ]
+    return rows + [
+        ["parameters within their standard deviation", percent(parameters["one"]), "68 %"],
+        ["within two", percent(parameters["two"]), "95 %"],
+    ]
 
 
 def effect_cell(row):
@@ -326,7 +331,7 @@ def main():
         print(as_text(*table))
     for r in figures["invalid"]:
         print("not valid:", r["id"], "; ".join(r["problems"]))
-    for what in figures["shrink"]["unread"]:
+    for what in figures["unread"]:
         print("params not understood:", what)
     if arguments.markdown:
         with open(arguments.markdown, "w") as file:

@@ -135,27 +135,34 @@ class Context:
         h = 1e-3
         return (self.motion(self.slow.t + h) - self.motion(self.slow.t - h)) / (2.0 * h)
 
-    def unexplained_power(self, axis, series, density):
-        """(mean square of the coefficients in each bin, cost of the prior): what gains, delay and clock leave."""
-        if not self.motion:
-            scale = np.sqrt(BLOCK)
-            return self.bins.power(scale * dct(np.broadcast_to(series, self.slow.t.shape))), 0.0
-        d = dct(np.broadcast_to(series, self.slow.t.shape))
-        d[0] = 0.0
-        if self._nuisance is None:
-            slope = self.slope()
-            self._nuisance = (dct(self.slow.W), dct(slope), dct(slope * self.slow.t))
-        W, slope, late = self._nuisance
-        X = np.vstack([W, slope[axis : axis + 1], late[axis : axis + 1]])
+    def unexplained_power(self, axis, series, density, beside=()):
+        """(mean square of the coefficients in each bin, cost of the prior): what gains, delay and clock leave, and
+        the series `beside` it, each of any size."""
+        shape = self.slow.t.shape
+        scale = 1.0 if self.motion else np.sqrt(BLOCK)
+        d = scale * dct(np.broadcast_to(series, shape))
+        X, prior = [scale * dct(np.broadcast_to(one, shape)) for one in beside], [0.0] * len(beside)
+        if self.motion:
+            d[0] = 0.0
+            if self._nuisance is None:
+                slope = self.slope()
+                self._nuisance = (dct(self.slow.W), dct(slope), dct(slope * self.slow.t))
+            W, slope, late = self._nuisance
+            X += [*W, slope[axis], late[axis]]
+            sd = self.model["sd_abs"]
+            # One latency and one clock for the axes, each of which is charged a share.
+            alike = np.sqrt(len(AXES))
+            prior += [1.0 / s**2 for s in [sd["M"]] * 3 + [alike * sd["latency_s"], alike * sd["rate_rel"]]]
+        if not X:
+            return self.bins.power(d), 0.0
+        X, prior = np.array(X), np.diag(prior)
         weight = np.repeat(1.0 / (density * self.rate_hz), self.bins.count.astype(int))
-        weight = np.concatenate([[0.0], weight])
-        sd = self.model["sd_abs"]
-        # One latency and one clock for the axes, each of which is charged a share.
-        alike = np.sqrt(len(AXES))
-        prior = np.diag(1.0 / np.array([sd["M"]] * 3 + [alike * sd["latency_s"], alike * sd["rate_rel"]]) ** 2)
-        XW = X * weight
-        beta = np.linalg.solve(XW @ X.T + prior, XW @ d)
-        return self.bins.power((d - beta @ X)), 0.5 * beta @ prior @ beta
+        XW = X * np.concatenate([[0.0], weight])[: d.size]
+        normal_matrix = XW @ X.T + prior
+        size = np.sqrt(np.diag(normal_matrix))
+        # Of series that are one, or nearly, the least change is taken.
+        beta = np.linalg.lstsq(normal_matrix / np.outer(size, size), (XW @ d) / size, rcond=1e-9)[0] / size
+        return self.bins.power(d - beta @ X), 0.5 * beta @ prior @ beta
 
 
 # ------------------------------------------------------------------ noise of n samples
