@@ -337,8 +337,8 @@ Figure figure_of(const DiagnosisFigure& request) {
         figure.panels.push_back(panel.panel(bars ? std::vector<Part>{} : legend.take(panel), panel_px));
         figure.panels.back().height_share = panel_px;
     }
-    height_px +=
-        panel_px * static_cast<double>((std::max(domains.size(), std::size_t{1}) + columns - 1) / columns);
+    const std::size_t rows = (std::max(domains.size(), std::size_t{1}) + columns - 1) / columns;
+    height_px += panel_px * static_cast<double>(rows);
     figure.width_px = request.width_px;
     figure.height_px = static_cast<int>(std::lround(height_px * request.scale));
     return figure;

@@ -48,6 +48,7 @@ struct Callout {
     std::string text;
     Colour colour = colours::ink;
     Marker marker = Marker::circle;
+    bool is_level = false;  // the word stands to the right of the point, on its level, or not at all
 };
 
 // A value of x worth marking across the panel, with a word above it, "1 s", unless another guide's word is

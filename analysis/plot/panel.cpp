@@ -197,7 +197,9 @@ std::vector<PanelDrawing::Word> PanelDrawing::place_words(const Axes& axes,
         const Point p = pixel_of(axes, callout.x, callout.y);
         if (!is_shown(axes, p)) { continue; }
         const Size size{typeface_.measure(callout.text, size_px).width_px + padding_px, size_px + padding_px};
-        const auto box = place_beside(p, callout_marker_px * scale_, size, axes.plot, obstacles);
+        const double away_px = callout_marker_px * scale_;
+        const auto box = callout.is_level ? place_level(p, away_px, size, axes.plot, obstacles)
+                                          : place_beside(p, away_px, size, axes.plot, obstacles);
         if (!box) { continue; }
         obstacles.add(*box);
         words.push_back({callout.text, box->grown(-padding_px / 2.0), callout.colour});

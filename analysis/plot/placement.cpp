@@ -99,4 +99,12 @@ std::optional<Box> place_beside(Point anchor, double distance_px, Size size, con
     return std::nullopt;
 }
 
+std::optional<Box> place_level(Point anchor, double distance_px, Size size, const Box& room,
+                               const Obstacles& obstacles) {
+    const double left = anchor.x + distance_px;
+    const double top = anchor.y - size.height_px / 2.0;
+    const Box box{left, top, left + size.width_px, top + size.height_px};
+    return room.contains(box) && !obstacles.touches(box) ? std::optional(box) : std::nullopt;
+}
+
 }  // namespace gyrolog

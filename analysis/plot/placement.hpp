@@ -35,5 +35,8 @@ std::optional<Box> place_in_corner(Size size, const Box& room, double clear_px, 
 // The free place beside a point: right, left, above, below and between, nearest first.
 std::optional<Box> place_beside(Point anchor, double distance_px, Size size, const Box& room,
                                 const Obstacles& obstacles);
+// The place to the right of a point on its level, where it is free.
+std::optional<Box> place_level(Point anchor, double distance_px, Size size, const Box& room,
+                               const Obstacles& obstacles);
 
 }  // namespace gyrolog

@@ -82,7 +82,9 @@ std::vector<Bar> bars_of(const Diagnosis& diagnosis) {
 
 std::string words_of(const Bar& bar) {
     std::string text = percent(bar.share.value);
-    if (bar.has_interval()) { text += " (" + percent(bar.share.lo) + " to " + percent(bar.share.hi) + ")"; }
+    if (percent(bar.share.lo) != percent(bar.share.hi)) {
+        text += " (" + percent(bar.share.lo) + " to " + percent(bar.share.hi) + ")";
+    }
     return text + " %" + bar.more;
 }
 
@@ -135,7 +137,7 @@ std::optional<Panel> share_bars(const Diagnosis& diagnosis) {
         const auto at = static_cast<double>(bars.size() - 1 - i);
         panel.curves.push_back(rectangle(bar, at));
         if (bar.has_interval()) { add_interval(panel, bar.share, at); }
-        panel.callouts.push_back({bar.end(), at, words_of(bar), colours::ink, Marker::none});
+        panel.callouts.push_back({bar.end(), at, words_of(bar), colours::ink, Marker::none, true});
         longest = std::max(longest, bar.end());
         least = std::min({least, bar.share.lo, bar.share.value});
     }

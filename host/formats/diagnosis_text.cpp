@@ -67,6 +67,7 @@ std::string probability_text(double p) { return p < 1e-6 ? "p < 1e-6" : fmt::for
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
 std::string share_text(const Share& share) {
+    if (percent(share.lo) == percent(share.hi)) { return percent(share.value) + " of the gap"; }
     return fmt::format("{} of the gap ({} to {})", percent(share.value), percent(share.lo),
                        percent(share.hi));
 }

@@ -212,6 +212,9 @@ TEST(DiagnosisFigure, DrawsBarsThatDifferInGreyTooWithTheirNumbers) {
     const PanelPlace& bars = rendering.panels[0];
     EXPECT_TRUE(bars.legend.has_value());
     EXPECT_EQ(bars.words.size(), 5U) << "every bar has room for its words";
+    for (std::size_t i = 0; i < bars.words.size(); ++i) {
+        EXPECT_NEAR(bars.words[i].centre().y, bars.y.pixel(4.0 - static_cast<double>(i)), 1.0) << i;
+    }
     EXPECT_GT(bars.plot.width(), 2.0 * rendering.panels[1].plot.width());
     const auto grey = [](Colour c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue; };
     const std::array colours_down = {colours::blue, colours::blue, colours::sky, colours::vermillion,
