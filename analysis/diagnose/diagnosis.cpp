@@ -184,9 +184,17 @@ private:
         options.threads = options_.threads;
         options.on_progress = progress("measuring how far each cause closes the gap", 0.8, 0.1);
         std::optional<MeasuredGap> measured = measure_gap(trial, options);
-        if (measured) { measured_ = *std::move(measured); }
-        return measured.has_value();
+        if (!measured) { return false; }
+        measured_ = *std::move(measured);
+        // What happened in the first recording alone the second does not judge: the fit speaks for it.
+        for (std::size_t i = 0; options_.holdout && i < found_.causes.size(); ++i) {
+            const Finding& finding = found_.causes[i].finding;
+            if (is_event(finding)) { measured_.returning_nats[i] = finding.evidence_nats; }
+        }
+        return true;
     }
+
+    static bool is_event(const Finding& finding) { return find_effect(finding.effect)->signature->event; }
 
     std::vector<Finding> findings() const {
         std::vector<Finding> causes;
@@ -227,14 +235,14 @@ private:
         GapTrial trial{options_.holdout, {}, {}, findings(), 0.0, 0.0};
         std::vector<std::optional<Finding>> lasting;
         for (Finding& cause : trial.causes) {
-            const bool is_event = find_effect(cause.effect)->signature->event;
-            if (is_event) {
+            const bool is_gone = is_event(cause);
+            if (is_gone) {
                 append_new(answer_.warnings, {cause.effect + " happened in the first recording: the second "
                                                              "is judged without it"});
                 cause.entries.clear();
                 cause.sd.clear();
             }
-            lasting.push_back(is_event ? std::nullopt : std::optional(cause));
+            lasting.push_back(is_gone ? std::nullopt : std::optional(cause));
         }
         const auto world = std::make_shared<const RecordedWorld>(options_.holdout);
         const auto given = std::make_shared<const Prediction>(world, prediction_->model());

@@ -91,9 +91,9 @@ TEST(Diagnosis, IsPartOfAnAnswerWhereSomethingElseIsLeft) {
         *diagnose(std::make_shared<const Recording>(std::move(swelling)), model, "model", options);
     EXPECT_EQ(answer.verdict, Verdict::partly);
     EXPECT_LT(answer.shrink.value, 0.9);
-    ASSERT_FALSE(answer.left.empty());
-    EXPECT_EQ(answer.left.front().where.axes, std::vector<std::size_t>{2});
-    EXPECT_GT(answer.left.front().size, 1.0);
+    EXPECT_TRUE(std::ranges::any_of(answer.left, [](const Left& one) {
+        return one.where.axes == std::vector<std::size_t>{2} && one.size > 1.0;
+    }));
     const auto step = std::ranges::find(answer.causes, std::string("bias_step"),
                                         [](const Cause& cause) { return cause.finding.effect; });
     ASSERT_NE(step, answer.causes.end());

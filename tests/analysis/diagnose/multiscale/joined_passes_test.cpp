@@ -44,7 +44,7 @@ Diagnosis pass(Verdict verdict, double gap, const std::vector<Cause>& causes, do
     pass.floor_nats = 20.0;
     if (verdict == Verdict::none) { return pass; }
     pass.excess_nats = pass.floor_nats * (gap * gap - 1.0);
-    if (verdict == Verdict::unexplained) { pass.left = {{Place{.axes = {0}}, gap}}; }
+    if (verdict == Verdict::unexplained) { pass.left = {{Place{}, gap}}; }
     pass.where.structure = "gap of " + std::to_string(static_cast<int>(gap));
     if (causes.empty()) { return pass; }
     pass.shrink = {0.9, 0.8, 0.95};
