@@ -13,7 +13,7 @@ STRUCTURES = ("duplicated_samples", "timestamp_gaps", "timestamp_rate", "timesta
               "cross_axis", "code_grid", "isolated_samples")
 SPANS = ("freq_hz", "tau_s", "time_s", "rate_dps", "amplitude_sigma")
 FLAGS = ("temperature", "acceleration")
-# Effects of the contract that the catalogue here does not make; of the first four the recording lacks what the model has.
+# Effects of the contract that the catalogue here does not make. What is absent the model has and the recording lacks.
 ABSENT = ("line_absent", "flicker_excess", "rrw_excess", "effect_absent")
 EFFECTS = {*CATALOGUE, *ABSENT, "narrowband", "noise_colour", "disturbance", "temp_cubic"}
 TENTH = 0.1  # of the gap's square: what is worth a verdict
@@ -35,7 +35,8 @@ def ordered(*values):
 
 
 def _of_axes(value):
-    return isinstance(value, list) and len(value) == len({*map(str, value)}) and all(a in ("x", "y", "z") for a in value)
+    return (isinstance(value, list) and all(a in ("x", "y", "z") for a in value)
+            and len(value) == len({*value}))
 
 
 def _place(where, path):

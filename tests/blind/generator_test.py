@@ -382,7 +382,8 @@ class Sealed(unittest.TestCase):
         for case in cases.values():
             names = [name for name, _ in case["effects"]]
             self.assertEqual(len({generate.families(n) for n in names}), len(names))
-            self.assertFalse("lowpass" in names and {"heavy_tail", "spikes", "variance_change", "temp_noise"} & {*names})
+            beside_filter = {"heavy_tail", "spikes", "variance_change", "temp_noise"} & {*names}
+            self.assertFalse("lowpass" in names and beside_filter)
             self.assertFalse("clock_rate" in names and "tone" in names)
             drawn[case["motion"]] |= {*names}
             in_motion = sum(CATALOGUE[n].needs == "motion" for n in names)
@@ -558,10 +559,10 @@ class Judgement(unittest.TestCase):
         self.assertEqual([table[p]["share"] for p in reliability.P_LEVELS], [0.03, 0.03, 0.03, 0.03, 0.6, 0.6, 0.6])
         self.assertAlmostEqual(table[0.01]["sds_off"], 0.02 / math.sqrt(0.01 * 0.99 / 100))
         self.assertAlmostEqual(table[0.9]["sds_off"], -10.0)
-        scores = reliability.of_scores([(0.8, True), (0.8, True), (0.8, False), (1.0, True), (0.05, False)])
-        self.assertAlmostEqual(scores["value"], (0.04 + 0.04 + 0.64 + 0.0 + 0.0025) / 5)
+        scores = reliability.of_scores([(0.8, True), (0.9, True), (0.7, False), (1.0, True), (0.0, False)])
+        self.assertAlmostEqual(scores["value"], (0.04 + 0.01 + 0.49) / 5)
         self.assertEqual([(b["from"], b["of"], round(b["right"], 3)) for b in scores["bins"]],
-                         [(0.0, 1, 0.0), (0.7, 3, 0.667), (0.97, 1, 1.0)])
+                         [(0.0, 1, 0.0), (0.7, 2, 0.5), (0.9, 1, 1.0), (0.97, 1, 1.0)])
         self.assertIsNone(reliability.of_scores([])["value"])
 
 
@@ -681,9 +682,16 @@ class Several(unittest.TestCase):
             rest = {"causes": causes[:k] + causes[k + 1 :]}
             self.assertAlmostEqual(case.shrink(rest, None)[0], 1.0 - shares[k], delta=0.02)
         # On some of its axes a cause has a part of it, on a wrong one none.
-        slope = self.truth["effects"][0]
-        parts = [case.share({**causes[0], "axes": [a]}) for a in slope["axes"]]
-        self.assertAlmostEqual(sum(parts), shares[0], delta=0.02)
+        several = [k for k, e in enumerate(self.truth["effects"]) if len(e["axes"]) > 1 and e["effect"] != "common_mode"]
+        self.assertTrue(several)
+        for k in several:
+            parts = [case.share({**causes[k], "axes": [a]}) for a in self.truth["effects"][k]["axes"]]
+            self.assertAlmostEqual(sum(parts), shares[k], delta=0.02)
+            self.assertLess(max(parts), 0.95 * shares[k])
+        # What the axes share is taken out whole.
+        shared = next(k for k, e in enumerate(self.truth["effects"]) if e["effect"] == "common_mode")
+        one_axis = {**causes[shared], "axes": self.truth["effects"][shared]["axes"][:1]}
+        self.assertAlmostEqual(case.share(one_axis), shares[shared])
         self.assertEqual(case.share({**causes[0], "effect": "rate_ramp", "tie_group": []}), 0.0)
 
     def test_each_cause_names_one_effect_by_its_name_or_in_a_tie_on_axes_that_it_has(self):
@@ -693,8 +701,12 @@ class Several(unittest.TestCase):
         self.assertEqual(judge.named_effects([], effects), [])
         tied = {**right[0], "effect": "rate_ramp", "tie_group": ["rate_ramp", "temp_linear", "tone"]}
         self.assertEqual(len(judge.named_effects([tied], effects)), 1)
-        # The tie gives way to the cause that has the name itself.
-        self.assertEqual(judge.named_effects([{**tied, "axes": []}, right[0]], effects), [0, 1])
+        # The tie goes to the effect that the other cause does not name, whichever of the two comes first.
+        tied_everywhere = {**tied, "axes": []}
+        other = {**right[0], "effect": "rtn", "tie_group": ["rtn", "temp_linear"]}
+        for pair in ([tied_everywhere, right[0]], [right[0], tied_everywhere], [tied_everywhere, other],
+                     [other, tied_everywhere]):
+            self.assertEqual(judge.named_effects(pair, effects), [0, 1])
         self.assertEqual(judge.named_effects([{**tied, "tie_group": tied["tie_group"] + ["warmup"]}], effects), [])
         self.assertEqual(judge.named_effects([{**right[0], "sense": "model_has"}], effects), [])
         elsewhere = {**effects[0], "axes": ["x"], "nats_of_axis": {"x": 9.0}}
@@ -730,6 +742,14 @@ class Several(unittest.TestCase):
         self.assertEqual(f["shrink"]["coverage"]["hits"], int(abs(row["shrink"] - 0.7) <= 0.055))
         self.assertEqual(next(e["false"] for e in f["by_effect"] if e["effect"] == "rtn"), 1)
         self.assertEqual(row["causes"][0]["true_share"], 0.0)
+        # Only effects of 50 nats and more are asked for; beside the others one of them has less.
+        effects = [dict(e) for e in self.truth["effects"]]
+        effects[0]["nats"], effects[1]["nats_given_others"] = 49.0, 49.0
+        f = scored({**self.truth, "effects": effects}, self.model, answer)[1]["many"]
+        self.assertEqual([(f[key]["hits"], f[key]["of"]) for key in ("named", "named_beside_others", "named_weaker")],
+                         [(3, 3), (2, 3), (0, 1)])
+        slope = next(e for e in f["by_effect"] if e["effect"] == "temp_linear")
+        self.assertEqual((slope["named"]["of"], slope["named_weaker"]["of"]), (0, 1))
         # Called none, it names nothing, whatever it lists.
         _, figures = self.scored({**answer, "verdict": "none"})
         self.assertEqual(figures["many"]["named"]["hits"], 0)

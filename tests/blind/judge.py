@@ -7,8 +7,8 @@ that is not there, or that changes something else, gives 0 or less, which counts
 simulation does what the truth does is given what it earns. The corrected model is the one handed back with
 --model-out; without it, the causes' params.
 
-The true share of a cause is E(truth | truth without that effect, on the cause's axes) / E(truth | nothing): what returns
-if it alone is taken out again. A cause that is not in the truth has the share 0.
+The true share of a cause is E(truth | truth without that effect, on the cause's axes) / E(truth | nothing): what
+returns if it alone is taken out again. A cause that is not in the truth has the share 0.
 """
 
 import numpy as np

@@ -4,6 +4,7 @@ import collections
 
 import numpy as np
 
+from answer_form import LIKELY
 from proportion import percent, rate
 from reliability import brier
 
@@ -13,14 +14,15 @@ GOALS = {"named": ">= 90 %", "true": ">= 95 %", "brier": "<= 0.08", "shrink_erro
 
 
 def shrink_figures(rows):
-    """Of rows with a claimed and a true shrink: how far they are apart, and how often the interval holds the true one."""
+    """Of rows with a claimed and a true shrink: how far they are apart, how often the interval holds the true one."""
     if not rows:
         return {"of": 0}
     claimed = np.clip([r["claimed"][0] for r in rows], 0.0, 1.0)
     true = np.array([r["shrink"] for r in rows])
     # To the decimals that an interval is read with.
     covered = [{"in": r["claimed"][1] - 0.005 <= r["shrink"] <= r["claimed"][2] + 0.005} for r in rows]
-    return {"of": len(rows), "error": float(np.abs(claimed - true).mean()), "worst": float(np.abs(claimed - true).max()),
+    error = np.abs(claimed - true)
+    return {"of": len(rows), "error": float(error.mean()), "worst": float(error.max()),
             "coverage": rate(covered, "in"), "true": float(true.mean()), "claimed": float(claimed.mean())}
 
 
@@ -47,6 +49,7 @@ def figures(rows):
         "named_beside_others": rate([e for e in effects if e["nats_given_others"] >= NATS_LEAST], "named"),
         "named_weaker": rate([e for e in effects if e["nats"] < NATS_LEAST], "named"),
         "true": rate(causes, "right"),
+        "true_of_likely": rate([c for c in causes if c["score"] >= LIKELY], "right"),
         "shrink": shrink_figures([r for r in rows if "claimed" in r]),
         "shares": share_figures(causes),
         "modelled": [r["modelled"] for r in rows if "modelled" in r],
@@ -59,6 +62,10 @@ def figures(rows):
             "named_weaker": rate([e for e in mine if e["nats"] < NATS_LEAST], "named"),
             "false": sum(c["effect"] == name and not c["right"] for c in causes)})
     return out
+
+
+def share_of(r):
+    return f"{r['hits']}/{r['of']}"
 
 
 def number(value):
@@ -76,6 +83,7 @@ def tables(f, scores, parameters):
         [f"named, of those of {NATS_LEAST:g} nats and more beside the others", percent(f["named_beside_others"]), ""],
         ["named, of the weaker ones alone", percent(f["named_weaker"]), ""],
         ["true, of the causes named", percent(f["true"]), GOALS["true"]],
+        [f"the same, of those of score {LIKELY} and more", percent(f["true_of_likely"]), ""],
         ["Brier score of every cause", brier(scores), GOALS["brier"]],
     ]
     if shrink["of"]:
@@ -93,7 +101,7 @@ def tables(f, scores, parameters):
     ]
     return [
         ("Three to six effects at once", [f"of {f['cases']} recordings", "measured", "goal"], rows),
-        ("Each effect among several", ["effect", f"named of {NATS_LEAST:g} nats and more", "of weaker", "where it is not"],
-         [[e["effect"], f"{e['named']['hits']}/{e['named']['of']}", f"{e['named_weaker']['hits']}/{e['named_weaker']['of']}",
-           str(e["false"])] for e in f["by_effect"]]),
+        ("Each effect among several",
+         ["effect", f"named of {NATS_LEAST:g} nats and more", "of weaker", "where it is not"],
+         [[e["effect"], share_of(e["named"]), share_of(e["named_weaker"]), str(e["false"])] for e in f["by_effect"]]),
     ]

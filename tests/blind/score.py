@@ -206,8 +206,8 @@ def tables(s):
     if s["cases"] > s["many"]["cases"]:
         out.append(("Figures", ["", "measured", "goal"], figure_rows(s)))
     out += many.tables(s["many"], s["reliability"]["many"], s["parameters"]["many"])
-    out.append(("p_none on recordings without a gap", ["p_none <=", "share", "wanted, with chance's deviation", "off by"],
-                reliability.p_rows(s["p_none"])))
+    out.append(("p_none on recordings without a gap",
+                ["p_none <=", "share", "wanted, with chance's deviation", "off by"], reliability.p_rows(s["p_none"])))
     for group, words in (("few", "one effect, two or none"), ("many", "three to six")):
         out.append((f"Scores of all causes, recordings with {words}",
                     ["score", "number", "mean score", "right", "chance's deviation"],

@@ -24,7 +24,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("directory")
     parser.add_argument("--panel", default="full", choices=list(COUNTS))
-    parser.add_argument("--count", type=int, help="cases of each effect and class (full, 8), or of all (many 40, none 200)")
+    parser.add_argument("--count", type=int, help="cases of each effect and class (full: 8), or of all (40, 200)")
     parser.add_argument("--none", type=int, default=200, help="cases without a gap (full)")
     parser.add_argument("--minutes", type=float, default=120.0, help="of a recording at rest")
     parser.add_argument("--motion-minutes", type=float, default=18.0)
