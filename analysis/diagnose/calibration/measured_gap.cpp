@@ -335,8 +335,9 @@ private:
     static Share share(double returning_nats, const Surprisal& of, double excess_nats) {
         const double measures = of.largest_nats > 0.0 ? std::max(of.nats / of.largest_nats, 1.0) : 1.0;
         const double sd = sds_of_95_percent * std::sqrt(1.0 + 2.0 * measures * std::max(returning_nats, 0.0));
-        return {returning_nats / excess_nats, (returning_nats - sd) / excess_nats,
-                std::min((returning_nats + sd) / excess_nats, 1.0)};
+        // Causes that hide each other return more than the gap was.
+        const auto part = [&](double nats) { return std::min(nats / excess_nats, 1.0); };
+        return {part(returning_nats), part(returning_nats - sd), part(returning_nats + sd)};
     }
 
     const GapTrial& trial_;

@@ -49,7 +49,7 @@ public:
         const std::size_t rounds_most = 2 * options_.causes_most;
         for (std::size_t round = 0; latest && round < rounds_most; ++round) {
             if (has_new_main_cause(*latest)) {
-                if (!measure_null_bias()) { return std::nullopt; }
+                if (!measure_null_bias(*latest->observation)) { return std::nullopt; }
                 if (causes_.size() > 1 && !refit()) { return std::nullopt; }
                 static_cast<void>(settle_responses());
                 latest = with_causes();
@@ -71,11 +71,8 @@ private:
         CauseSelection result;
         result.without_causes = model_;
         if (!free_axes_.empty()) {
-            model_ = first_.prediction->model();
-            if (!causes_.empty()) {
-                result.noise_refits = fitted_noise(*latest->observation, model_, free_axes_);
-                model_ = with_noise(std::move(model_), result.noise_refits);
-            }
+            if (!causes_.empty()) { result.noise_refits = noise_refits(*latest->observation); }
+            model_ = with_noise(first_.prediction->model(), result.noise_refits);
             latest = with_causes();
         }
         result.corrected = model_with_all_but(causes_.size());
@@ -89,6 +86,15 @@ private:
             result.last = {first_.prediction, first_.observation, {}, {}};
         }
         return result;
+    }
+
+    // Where the axes are free, what their noise comes to with the causes in the model.
+    std::vector<NoiseRefit> noise_refits(const Observation& with_causes) const {
+        return fitted_noise(with_causes, first_.prediction->model(), free_axes_);
+    }
+
+    SensorModel refitted_model(const Observation& with_causes) const {
+        return with_noise(first_.prediction->model(), noise_refits(with_causes));
     }
 
     Hypotheses with_causes() const {
@@ -146,11 +152,13 @@ private:
         return is_new && main_causes_ < main_causes_most;
     }
 
-    // False when ended early.
-    bool measure_null_bias() {
+    // False when ended early. Simulations have the noise that was fitted: free, it would be drawn from all
+    // that is possible.
+    bool measure_null_bias(const Observation& with_causes) {
         const Finding* main = main_cause();
-        const Hypotheses with_main = examine(first_.prediction->with(with_cause(model_, *main)), recording_,
-                                             options_.seed, options_.threads);
+        const Hypotheses with_main =
+            examine(first_.prediction->with(with_cause(refitted_model(with_causes), *main)), recording_,
+                    options_.seed, options_.threads);
         auto nats = null_bias_nats(with_main, options_.seed, options_.threads, [&] { return told(); });
         if (!nats) { return false; }
         null_bias_ = {*std::move(nats), main->effect, main->where.axes};
