@@ -349,7 +349,7 @@ void BlockScanner::enter(const CaptureBlock& block) {
         own_section_ = is_own(block.bytes);
         vouched_seen_ = false;
         interfaces_.clear();
-    } else if (block.kind == BlockKind::interface_description) {
+    } else if (block.kind == BlockKind::interface_description && interfaces_.size() < interfaces_max) {
         Interface interface { get<std::uint16_t>(block.bytes, 8) };
         const auto options = pcapng::read_options(block.bytes.subspan(16, block.bytes.size() - 20));
         for (const pcapng::Option& option : options.value_or(std::vector<pcapng::Option>())) {

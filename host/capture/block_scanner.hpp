@@ -6,9 +6,8 @@
 //   - A broken block costs itself: the next block is found by its own lengths and checksum, not by the broken
 //     one's.
 //   - Memory does not grow with the file, and work only in proportion: of candidates that prove broken, no
-//   more
-//     than bytes_judged_in_vain_max() is looked at. Where a made-up file asks for more, a candidate counts as
-//     broken unseen.
+//     more than bytes_judged_in_vain_max() is looked at, and of a section's interfaces no more than
+//     interfaces_max are known. Where a made-up file asks for more, a candidate counts as broken unseen.
 #pragma once
 
 #include <cstdint>
@@ -76,6 +75,9 @@ constexpr std::uint64_t bytes_judged_in_vain_max(std::uint64_t offset) {
 
 class BlockScanner {
 public:
+    // Of a section: as many as the 16 bits of a pcapng Packet Block can name.
+    static constexpr std::size_t interfaces_max = std::size_t{1} << 16U;
+
     explicit BlockScanner(std::unique_ptr<InputFile> file);
 
     // The next intact block, or nothing at the end. Error: the file could not be read; or, from the first

@@ -80,8 +80,9 @@ void put_block(Bytes& out, std::uint32_t type, const Bytes& body) {
     put<std::uint32_t>(out, static_cast<std::uint32_t>(body.size() + 12));
 }
 
-// As dumpcap writes it: microseconds by default, no hashes, a block of a kind that means nothing here.
-Bytes foreign_pcapng(const std::vector<ForeignPacket>& packets) {
+// As dumpcap writes it: microseconds by default, no hashes, a block of a kind that means nothing here. All
+// packets come from the last of the interfaces.
+Bytes foreign_pcapng(const std::vector<ForeignPacket>& packets, std::size_t interfaces = 1) {
     Bytes file;
     Bytes body;
     put<std::uint32_t>(body, 0x1A2B3C4D);
@@ -91,11 +92,11 @@ Bytes foreign_pcapng(const std::vector<ForeignPacket>& packets) {
     body.clear();
     put<std::uint32_t>(body, 220);
     put<std::uint32_t>(body, 262144);
-    put_block(file, 1, body);
+    for (std::size_t i = 0; i < interfaces; ++i) { put_block(file, 1, body); }
     put_block(file, 4, Bytes(8, 0));
     for (const ForeignPacket& made : packets) {
         body.clear();
-        put<std::uint32_t>(body, 0);
+        put<std::uint32_t>(body, static_cast<std::uint32_t>(interfaces - 1));
         put<std::uint32_t>(body, static_cast<std::uint32_t>(made.time_us >> 32));
         put<std::uint32_t>(body, static_cast<std::uint32_t>(made.time_us));
         put<std::uint32_t>(body, static_cast<std::uint32_t>(made.record.size()));
@@ -167,6 +168,18 @@ TEST(ForeignCapture, TakesTheBusiestDeviceWhenNoneIsDescribed) {
     const auto read = read_capture(foreign_pcapng(made_bus(board, true)));
     ASSERT_TRUE(read.ok());
     EXPECT_EQ(stream_of(read->transfers), stream_of(board));
+}
+
+// Whoever makes a file chooses how many it describes.
+TEST(ForeignCapture, KnowsABoundedNumberOfInterfaces) {
+    const std::vector<KeptTransfer> board = made_transfers(20, 300);
+    const auto bus = made_bus(board, false);
+    const auto read = read_capture(foreign_pcapng(bus, BlockScanner::interfaces_max));
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(stream_of(read->transfers), stream_of(board));
+    const auto beyond = read_capture(foreign_pcapng(bus, BlockScanner::interfaces_max + 1));
+    ASSERT_FALSE(beyond.ok());
+    EXPECT_EQ(beyond.error().code, ErrorCode::not_found) << "packets of an interface that was forgotten";
 }
 
 TEST(ForeignCapture, SaysWhenThereIsNoBulkData) {
