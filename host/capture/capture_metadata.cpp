@@ -10,14 +10,18 @@
 namespace gyrolog {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using WrittenJson = nlohmann::ordered_json;
+// Of read text nobody knows how many keys it has: the ordered object looks through all of them for each.
+using Json = nlohmann::json;
 
 // An option of pcapng holds 64 KiB; no real name or descriptor comes near these.
 constexpr std::size_t text_bytes_max = 4096;
 constexpr std::size_t descriptor_bytes_max = 4096;
 
 // What a device says of itself need not be UTF-8.
-std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string dump(const WrittenJson& json) {
+    return json.dump(-1, ' ', false, WrittenJson::error_handler_t::replace);
+}
 
 std::string bounded(const std::string& text) { return text.substr(0, text_bytes_max); }
 
@@ -54,7 +58,7 @@ std::string hex_id(std::uint16_t id) {
     return hex(bytes);
 }
 
-Json clock_json(HostTime time) {
+WrittenJson clock_json(HostTime time) {
     return {{"monotonic_ns", time.monotonic_ns}, {"realtime_ns", time.realtime_ns}};
 }
 
@@ -129,21 +133,21 @@ std::string utc_text(std::int64_t realtime_ns) {
 
 std::string metadata_json(const CaptureMetadata& metadata) {
     const SourceIdentity& source = metadata.source;
-    Json json = {{"schema", capture_schema},
-                 {"program", metadata.program},
-                 {"started", utc_text(metadata.started.realtime_ns)},
-                 {"clock", clock_json(metadata.started)},
-                 {"source",
-                  {{"uri", bounded(source.uri)},
-                   {"vid", hex_id(source.vendor_id)},
-                   {"pid", hex_id(source.product_id)},
-                   {"bus", source.bus_number},
-                   {"address", source.device_address},
-                   {"manufacturer", bounded(source.manufacturer)},
-                   {"product", bounded(source.product)},
-                   {"serial", bounded(source.serial)},
-                   {"device_descriptor", hex(source.device_descriptor)},
-                   {"configuration_descriptor", hex(source.configuration_descriptor)}}}};
+    WrittenJson json = {{"schema", capture_schema},
+                        {"program", metadata.program},
+                        {"started", utc_text(metadata.started.realtime_ns)},
+                        {"clock", clock_json(metadata.started)},
+                        {"source",
+                         {{"uri", bounded(source.uri)},
+                          {"vid", hex_id(source.vendor_id)},
+                          {"pid", hex_id(source.product_id)},
+                          {"bus", source.bus_number},
+                          {"address", source.device_address},
+                          {"manufacturer", bounded(source.manufacturer)},
+                          {"product", bounded(source.product)},
+                          {"serial", bounded(source.serial)},
+                          {"device_descriptor", hex(source.device_descriptor)},
+                          {"configuration_descriptor", hex(source.configuration_descriptor)}}}};
     if (metadata.segment) {
         json["segment"] = {{"capture", bounded(metadata.segment->capture)},
                            {"number", metadata.segment->number},
