@@ -3,15 +3,14 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "host/formats/json_fwd.hpp"
 #include "host/session/load_capture.hpp"
 
 namespace gyrolog {
 
 // gyrolog-check/1 and gyrolog-info/1. `path` is what the user typed.
-nlohmann::ordered_json check_json(const std::string& path, const LoadedCapture& capture);
-nlohmann::ordered_json info_json(const std::string& path, const LoadedCapture& capture);
+Json check_json(const std::string& path, const LoadedCapture& capture);
+Json info_json(const std::string& path, const LoadedCapture& capture);
 
 std::string check_text(const std::string& path, const LoadedCapture& capture);
 std::string info_text(const std::string& path, const LoadedCapture& capture);

@@ -1,7 +1,5 @@
 #include <memory>
 
-#include <nlohmann/json.hpp>
-
 #include "host/app/boards_capture.hpp"
 #include "host/app/capture_report.hpp"
 #include "host/app/capture_run.hpp"
@@ -9,6 +7,7 @@
 #include "host/app/device_choice.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 namespace {

@@ -1,11 +1,10 @@
 #include <memory>
 
-#include <nlohmann/json.hpp>
-
 #include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 namespace {
@@ -24,7 +23,7 @@ std::shared_ptr<CheckOptions> declare(CLI::App& app) {
 }
 
 ExitCode tell(Console& console, const char* command, const CheckOptions& options,
-              nlohmann::ordered_json (*as_json)(const std::string&, const LoadedCapture&),
+              Json (*as_json)(const std::string&, const LoadedCapture&),
               std::string (*as_text)(const std::string&, const LoadedCapture&), ExitCode when_missing) {
     const NamedPath read[] = {{"FILE", options.path}};
     const NamedPath paths[] = {{"--json", options.json}};

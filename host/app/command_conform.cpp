@@ -1,7 +1,5 @@
 #include <memory>
 
-#include <nlohmann/json.hpp>
-
 #include "host/app/command.hpp"
 #include "host/app/device_choice.hpp"
 #include "host/app/former_id.hpp"
@@ -11,6 +9,7 @@
 #include "host/conform/conformance.hpp"
 #include "host/conform/conversation.hpp"
 #include "host/formats/conform_report.hpp"
+#include "host/formats/json.hpp"
 #include "host/session/open_source.hpp"
 
 namespace gyrolog {

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "analysis/plot/denoise_figure.hpp"
 #include "host/app/array_input.hpp"
 #include "host/app/command.hpp"
@@ -20,6 +18,7 @@
 #include "host/base/file_output.hpp"
 #include "host/formats/denoise_json.hpp"
 #include "host/formats/denoise_text.hpp"
+#include "host/formats/json.hpp"
 #include "host/formats/model_json.hpp"
 #include "host/formats/recording_csv.hpp"
 

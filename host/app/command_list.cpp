@@ -4,12 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "host/app/command.hpp"
 #include "host/app/former_id.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
+#include "host/formats/json.hpp"
 #include "host/usb/usb_board.hpp"
 
 namespace gyrolog {
@@ -26,8 +25,8 @@ std::vector<UsbBoard> listed(const UsbSurvey& survey) {
     return devices;
 }
 
-nlohmann::ordered_json list_json(const UsbSurvey& survey) {
-    auto devices = nlohmann::ordered_json::array();
+Json list_json(const UsbSurvey& survey) {
+    auto devices = Json::array();
     for (const UsbBoard& board : listed(survey)) {
         devices.push_back({{"uri", board.uri()},
                            {"vid", fmt::format("{:04x}", board.vendor_id)},

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "host/app/command.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/result_output.hpp"
 #include "host/base/counted.hpp"
 #include "host/capture/recover.hpp"
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 namespace {
@@ -20,7 +19,7 @@ struct RecoverOptions {
     std::string json;
 };
 
-nlohmann::ordered_json recovery_json(const RecoverOptions& options, const RecoveryReport& report) {
+Json recovery_json(const RecoverOptions& options, const RecoveryReport& report) {
     const BlockAccounts& source = report.source;
     return {{"schema", "gyrolog-recover/1"},
             {"file", options.damaged},

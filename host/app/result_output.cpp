@@ -26,9 +26,9 @@ void ResultOutput::text(const std::string& path, const std::function<std::string
     }
 }
 
-void ResultOutput::json(const std::string& path, const std::function<nlohmann::ordered_json()>& answer) {
+void ResultOutput::json(const std::string& path, const std::function<Json()>& answer) {
     text(path, [&] {
-        nlohmann::ordered_json signed_answer = answer();
+        Json signed_answer = answer();
         signed_answer["reported_by"] = program_name();
         return written_out(signed_answer, 2);
     });

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "host/app/console.hpp"
 #include "host/base/result.hpp"
+#include "host/formats/json_fwd.hpp"
 
 namespace gyrolog {
 
@@ -25,7 +24,7 @@ public:
     // The same for text. The path "-" is standard output.
     void text(const std::string& path, const std::function<std::string()>& text);
     // The same for JSON, which gains the key "reported_by", with program_name().
-    void json(const std::string& path, const std::function<nlohmann::ordered_json()>& answer);
+    void json(const std::string& path, const std::function<Json()>& answer);
     // For standard output, after the files.
     void show(const std::string& text) { shown_ += text; }
 

@@ -4,9 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "host/base/printable.hpp"
+#include "host/formats/json.hpp"
 
 namespace gyrolog {
 namespace {
@@ -67,11 +66,11 @@ std::string transcript_text(const Dialogue& dialogue) {
     return text;
 }
 
-nlohmann::ordered_json conform_json(const ConformanceReport& report) {
-    auto rules = nlohmann::ordered_json::array();
+Json conform_json(const ConformanceReport& report) {
+    auto rules = Json::array();
     for (const RuleVerdict& one : report.verdicts) {
         const Judgement& verdict = one.verdict;
-        nlohmann::ordered_json rule = {
+        Json rule = {
             {"rule", one.rule->number}, {"title", one.rule->title}, {"verdict", name_of(verdict.state)}};
         if (verdict.state == JudgementState::not_tested) { rule["why"] = verdict.expected; }
         if (verdict.state == JudgementState::fail) {
@@ -83,7 +82,7 @@ nlohmann::ordered_json conform_json(const ConformanceReport& report) {
         }
         rules.push_back(std::move(rule));
     }
-    nlohmann::ordered_json board;
+    Json board;
     if (report.hello) {
         board = {{"firmware", printable(report.hello->firmware)},
                  {"sensor", printable(report.hello->sensor)},

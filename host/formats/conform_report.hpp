@@ -13,13 +13,12 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "host/conform/conformance.hpp"
+#include "host/formats/json_fwd.hpp"
 
 namespace gyrolog {
 
-nlohmann::ordered_json conform_json(const ConformanceReport& report);
+Json conform_json(const ConformanceReport& report);
 std::string conform_text(const ConformanceReport& report);
 // The whole conversation, a line a frame, with its bytes.
 std::string transcript_text(const Dialogue& dialogue);

@@ -41,15 +41,14 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "analysis/simulate/datasheet.hpp"
+#include "host/formats/json_fwd.hpp"
 
 namespace gyrolog {
 
 inline constexpr const char* datasheet_schema = "gyrolog-datasheet/1";
 
 // `problem`: the first thing that is wrong, with its key; the answer is then of no use.
-Datasheet read_datasheet(const nlohmann::ordered_json& document, std::optional<std::string>& problem);
+Datasheet read_datasheet(const Json& document, std::optional<std::string>& problem);
 
 }  // namespace gyrolog

@@ -36,9 +36,8 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "analysis/diagnose/report.hpp"
+#include "host/formats/json_fwd.hpp"
 
 namespace gyrolog {
 
@@ -46,6 +45,6 @@ std::string_view name_of(Verdict verdict);
 std::string_view name_of(Sense sense);
 
 std::string diagnosis_json(const Diagnosis& diagnosis);
-nlohmann::ordered_json diagnosis_object(const Diagnosis& diagnosis);
+Json diagnosis_object(const Diagnosis& diagnosis);
 
 }  // namespace gyrolog

@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
+#include "host/formats/json_fwd.hpp"
 
 namespace gyrolog {
 
 // Every effect in the order of its action: formula, parameters with meaning and plausible range, source.
 std::string effect_catalogue_text();
-nlohmann::ordered_json effect_catalogue_json();  // schema gyrolog-effects/1
+Json effect_catalogue_json();  // schema gyrolog-effects/1
 
 }  // namespace gyrolog

@@ -34,16 +34,15 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "analysis/simulate/sensor_model.hpp"
+#include "host/formats/json_fwd.hpp"
 
 namespace gyrolog {
 
 inline constexpr const char* gyroparams_schema = "gyrolog-gyroparams/1";
 
 // `problem`: the first thing that is wrong, with its key; the answer is then of no use.
-SensorModel read_gyroparams(const nlohmann::ordered_json& document, std::optional<std::string>& problem,
+SensorModel read_gyroparams(const Json& document, std::optional<std::string>& problem,
                             std::vector<std::string>& notes);
 
 }  // namespace gyrolog

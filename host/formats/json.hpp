@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-namespace gyrolog {
+#include "host/formats/json_fwd.hpp"
 
-using Json = nlohmann::ordered_json;
+namespace gyrolog {
 
 // As a file's text. What a device or a file's name says need not be UTF-8, which JSON is: such bytes become
 // U+FFFD.

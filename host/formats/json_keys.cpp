@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -15,63 +14,19 @@ namespace gyrolog {
 
 namespace {
 
-// What is beyond the limits, ends the reading: the library's own time grows with the square of an object's
-// keys.
-class LimitedParse {
+// Reads without keeping anything, up to the first error or what is beyond the limits.
+class Inspection final : public nlohmann::json_sax<Json> {
 public:
-    std::optional<Json> parse(std::string_view text) {
-        keys_ = 0;
-        const auto watch = [this](int depth, Json::parse_event_t event, Json& /*value*/) {
-            keys_ += event == Json::parse_event_t::key ? 1 : 0;
-            if (depth > input_limits.json_nesting_most) {
-                refusal_ = "nested more than " + std::to_string(input_limits.json_nesting_most) + " deep";
-            } else if (keys_ > input_limits.json_keys_most) {
-                refusal_ = "more than " + std::to_string(input_limits.json_keys_most) + " keys";
-            }
-            if (!refusal_.empty()) { throw std::length_error(refusal_); }
-            return true;
-        };
-        try {
-            Json document = Json::parse(text, watch, false);
-            if (!document.is_discarded()) { return document; }
-        } catch (const std::length_error&) {  // said in refusal_
-        }
-        return std::nullopt;
-    }
-    // Empty: within the limits.
+    explicit Inspection(std::string_view text) : text_(text), sound_(Json::sax_parse(text, this)) {}
+
+    // It is JSON, within the limits.
+    bool sound() const { return sound_; }
+    // Empty: within the limits, as far as it was read.
     const std::string& refusal() const { return refusal_; }
-
-private:
-    std::size_t keys_ = 0;
-    std::string refusal_;
-};
-
-// Reads without keeping anything, up to the first error.
-class ErrorFinder final : public nlohmann::json_sax<Json> {
-public:
-    bool null() override { return true; }
-    bool boolean(bool /*value*/) override { return true; }
-    bool number_integer(number_integer_t /*value*/) override { return true; }
-    bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
-    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
-    bool string(string_t& /*value*/) override { return true; }
-    bool binary(binary_t& /*value*/) override { return true; }
-    bool start_object(std::size_t /*elements*/) override { return true; }
-    bool key(string_t& /*value*/) override { return true; }
-    bool end_object() override { return true; }
-    bool start_array(std::size_t /*elements*/) override { return true; }
-    bool end_array() override { return true; }
-    bool parse_error(std::size_t position, const std::string& /*token*/,
-                     const Json::exception& error) override {
-        position_ = position;
-        what_ = error.what();
-        return false;
-    }
-
     // "line 3, column 7: unexpected ','; expected string literal"; empty without an error.
-    std::string told(std::string_view text) const {
+    std::string error() const {
         if (what_.empty()) { return {}; }
-        const std::string_view before = text.substr(0, std::min(position_, text.size()));
+        const std::string_view before = text_.substr(0, std::min(position_, text_.size()));
         const auto line = 1 + std::count(before.begin(), before.end(), '\n');
         const std::size_t line_end = before.rfind('\n');
         const std::size_t column = before.size() - (line_end == std::string_view::npos ? 0 : line_end + 1);
@@ -79,7 +34,41 @@ public:
                std::to_string(std::max<std::size_t>(column, 1)) + ": " + reason();
     }
 
+    bool null() override { return true; }
+    bool boolean(bool /*value*/) override { return true; }
+    bool number_integer(number_integer_t /*value*/) override { return true; }
+    bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
+    bool string(string_t& /*value*/) override { return true; }
+    bool binary(binary_t& /*value*/) override { return true; }
+    bool start_object(std::size_t /*elements*/) override { return enter(); }
+    bool key(string_t& /*value*/) override {
+        if (++keys_ > input_limits.json_keys_most) {
+            refusal_ = "more than " + std::to_string(input_limits.json_keys_most) + " keys";
+        }
+        return refusal_.empty();
+    }
+    bool end_object() override { return leave(); }
+    bool start_array(std::size_t /*elements*/) override { return enter(); }
+    bool end_array() override { return leave(); }
+    bool parse_error(std::size_t position, const std::string& /*token*/,
+                     const Json::exception& error) override {
+        position_ = position;
+        what_ = error.what();
+        return false;
+    }
+
 private:
+    bool enter() {
+        if (++depth_ > input_limits.json_nesting_most) {
+            refusal_ = "nested more than " + std::to_string(input_limits.json_nesting_most) + " deep";
+        }
+        return refusal_.empty();
+    }
+    bool leave() {
+        --depth_;
+        return true;
+    }
     // Of the library's own sentence, what is behind the last dash, and no more than fits a line.
     std::string reason() const {
         constexpr std::size_t shown_bytes_most = 120;
@@ -88,18 +77,21 @@ private:
         return printable(reason.substr(0, shown_bytes_most));
     }
 
+    std::string_view text_;
+    std::size_t keys_ = 0;
+    int depth_ = 0;
+    std::string refusal_;
     std::size_t position_ = 0;
     std::string what_;
+    bool sound_;  // the last, for it is known when all has been read
 };
 
-std::string syntax_error_in(const std::string& text) {
+std::string syntax_error(std::string_view text, const Inspection& inspection) {
     if (text.empty()) { return "the file is empty"; }
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
         return "the text is UTF-16: save it as UTF-8";
     }
-    ErrorFinder finder;
-    static_cast<void>(Json::sax_parse(text, &finder));
-    return finder.told(text);
+    return inspection.error();
 }
 
 // JSON has no NaN, no infinity and no 1e999, but programs write them. Put in quotes they parse, and the error
@@ -144,21 +136,21 @@ Result<JsonDocument> parse_json_document(std::string_view text, const std::strin
     const auto malformed = [&](const std::string& why) {
         return Error{ErrorCode::malformed, "model '" + name + "': " + why};
     };
-    LimitedParse limited;
-    std::optional<Json> document = limited.parse(text);
-    const bool plain = document.has_value();
+    Inspection inspection(text);
     std::string quoted;
-    if (!plain && limited.refusal().empty()) {
+    if (!inspection.sound() && inspection.refusal().empty()) {
         quoted = quote_non_finite(text);
-        document = limited.parse(quoted);
+        inspection = Inspection(quoted);
     }
-    if (!limited.refusal().empty()) { return malformed(limited.refusal()); }
-    if (!document) { return malformed("no JSON: " + syntax_error_in(quoted)); }
-    if (!document->is_object()) { return malformed("not a JSON object"); }
-    const auto schema = document->find("schema");
-    if (schema == document->end()) { return malformed("schema is missing"); }
+    if (!inspection.refusal().empty()) { return malformed(inspection.refusal()); }
+    if (!inspection.sound()) { return malformed("no JSON: " + syntax_error(text, inspection)); }
+    const bool plain = quoted.empty();
+    Json document = Json::parse(plain ? text : std::string_view(quoted));
+    if (!document.is_object()) { return malformed("not a JSON object"); }
+    const auto schema = document.find("schema");
+    if (schema == document.end()) { return malformed("schema is missing"); }
     if (!schema->is_string()) { return malformed("schema is not text"); }
-    return JsonDocument{std::move(*document), plain};
+    return JsonDocument{std::move(document), plain};
 }
 
 JsonKeys::JsonKeys(const Json& object, std::string path, std::optional<std::string>& problem)

@@ -1,9 +1,14 @@
 // Files that were made to harm who reads them: refused in time and memory that do not depend on what they ask
 // for.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -108,6 +113,64 @@ TEST_F(HostileText, OfAModelHasNoMoreKeysThanAnyModel) {
     EXPECT_THAT(refusal_of_model(file("nan.json", R"({"a": NaN, )" + keys.substr(1) + "}")),
                 HasSubstr("more than 10000 keys"));
     EXPECT_THAT(refusal_of_model(file("deep.json", std::string(100'000, '['))), HasSubstr("nested more"));
+}
+
+// Processor time of the fastest of some readings, and of writing what was read.
+double reading_s(const std::string& model) {
+    double least_s = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 5; ++i) {
+        const std::clock_t begin = std::clock();
+        const auto read = parse_model(model, "made.json");
+        if (read.ok()) { static_cast<void>(format_model(*read)); }
+        least_s = std::min(least_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+    }
+    return least_s;
+}
+
+// What a reader did for each key, or each element, with all those before it took 1 s below the limits, or
+// hours.
+TEST_F(HostileText, IsReadInTimeThatGrowsWithItAndNoFaster) {
+    const std::string model = format_model(typical_mpu9250());
+    // In place of the last brace, in an axis, in an effect's parameters.
+    const auto with = [&](const std::string& place, const std::string& more) {
+        std::string text = model;
+        if (place.empty()) { return text.replace(text.rfind('}'), 1, "," + more + "}"); }
+        const std::size_t at = text.find(place);
+        EXPECT_NE(at, std::string::npos) << place;
+        return text.insert(
+            at + place.size(),
+            more +
+                (std::string_view("]}").find(text[at + place.size()]) == std::string_view::npos ? "," : ""));
+    };
+    const auto keys = [](std::size_t count) {
+        std::string text = "\"k\": 0";
+        for (std::size_t i = 0; i < count; ++i) { text += ", \"k" + std::to_string(i) + "\": 1"; }
+        return text;
+    };
+    const auto elements = [](std::size_t count) {
+        std::string text = "\"list\": [{}";
+        for (std::size_t i = 0; i < count; ++i) { text += ", {}"; }
+        return text + "]";
+    };
+    const std::vector<std::pair<std::string, std::function<std::string(std::size_t)>>> made{
+        {"keys of the model", [&](std::size_t n) { return with("", keys(n)); }},
+        {"keys of an axis", [&](std::size_t n) { return with("\"x\": {", keys(n)); }},
+        {"uncertainties", [&](std::size_t n) { return with("\"sd_rel\": {", keys(n)); }},
+        {"parameters",
+         [&](std::size_t n) {
+             return with("\"effects\": [",
+                         R"({"effect": "warmup", "axes": [], "params": {)" + keys(n) + "}}");
+         }},
+        {"elements of a list", [&](std::size_t n) { return with("", elements(4 * n)); }}};
+    constexpr std::size_t few = 1200;
+    constexpr double times = 8.0;
+    for (const auto& [what, make] : made) {
+        ASSERT_TRUE(parse_model(make(few), "made.json").ok())
+            << what << parse_model(make(few), "made.json").error().message;
+        const double ratio = reading_s(make(static_cast<std::size_t>(times * few))) / reading_s(make(few));
+        // Halfway, in powers, between in proportion and with the square.
+        EXPECT_LT(ratio, times * std::sqrt(times)) << what;
+    }
 }
 
 TEST_F(HostileText, IsCutAndShownInMessages) {
