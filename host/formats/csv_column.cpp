@@ -54,6 +54,7 @@ std::optional<CsvColumn> with_unit(std::string name, std::string_view written,
 
 std::optional<CsvColumn> csv_column(std::string_view header) {
     if (header == "t_s") { return CsvColumn{Kind::time_stamp, "t", "s", "s", 1.0}; }
+    if (header == stopped_column) { return CsvColumn{Kind::stop, "stopped", "s", "s", 1.0}; }
     if (header == "temp_C") { return CsvColumn{Kind::temperature, "temp", "degC", "C", 1.0}; }
     constexpr std::array quaternion = {"ref_qw", "ref_qx", "ref_qy", "ref_qz"};
     if (std::ranges::find(quaternion, header) != quaternion.end()) {

@@ -17,6 +17,7 @@ struct CsvColumn {
         force,            // ax_g, ax_m_s2, ax_lsb
         temperature,      // temp_C
         reference,        // ref_x_dps, ref_x_rad_s, ref_qw
+        stop,             // stopped_s: how long the user had stopped the board before the sample, mostly 0
     };
     Kind kind = Kind::time_stamp;
     std::string name;         // as in Column
@@ -30,7 +31,9 @@ struct CsvColumn {
     bool is_counts() const { return source_unit == "lsb"; }
 };
 
-// Nothing for a name that recording.md does not know.
+inline constexpr std::string_view stopped_column = "stopped_s";
+
+// Nothing for a name that is neither in recording.md nor stopped_column.
 std::optional<CsvColumn> csv_column(std::string_view header);
 
 }  // namespace gyrolog

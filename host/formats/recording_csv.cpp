@@ -73,7 +73,8 @@ void keep_rows(std::vector<double>& values, const std::vector<bool>& present) {
 // The columns of one table on one grid.
 struct Gridded {
     std::vector<double> t_s;
-    std::vector<InputColumn> columns;  // known ones, without t_s
+    std::vector<double> stopped_s;
+    std::vector<InputColumn> columns;  // known ones, without these two
     Grid grid;
 
     void keep(const std::vector<bool>& present) {
@@ -81,6 +82,7 @@ struct Gridded {
         punch_holes(grid, present);
         for (InputColumn& column : columns) { keep_rows(column.values, present); }
         if (!t_s.empty()) { keep_rows(t_s, present); }
+        if (!stopped_s.empty()) { keep_rows(stopped_s, present); }
     }
 };
 
@@ -112,6 +114,8 @@ Result<Gridded> on_grid(std::vector<InputColumn> columns, const CsvReadOptions& 
         rows = column.values.size();
         if (column.is(CsvColumn::Kind::time_stamp)) {
             gridded.t_s = std::move(column.values);
+        } else if (column.is(CsvColumn::Kind::stop)) {
+            gridded.stopped_s = std::move(column.values);
         } else {
             gridded.columns.push_back(std::move(column));
         }
@@ -171,6 +175,24 @@ void differentiate_angles(Gridded& gridded, std::size_t samples_per_row) {
     gridded.keep(present);
 }
 
+// Of a hole, what the sample behind it says that the board was stopped for, the last part, is a stop; the
+// rest is missing.
+void tell_stops(Grid& grid, const std::vector<double>& stopped_s) {
+    if (stopped_s.empty() || grid.dropouts.size() + 1 != grid.segments.size()) { return; }
+    std::vector<Dropout> told;
+    for (std::size_t hole = 0; hole < grid.dropouts.size(); ++hole) {
+        Dropout& found = grid.dropouts[hole];
+        const double stop_s = stopped_s[grid.segments[hole + 1].first];
+        const double most = static_cast<double>(found.samples);
+        const std::int64_t stopped = stop_s > 0.0 ? std::llround(std::min(stop_s * grid.rate_hz, most)) : 0;
+        const std::int64_t missing = found.samples - stopped;
+        const double stop_at_s = found.at_s + static_cast<double>(missing) / grid.rate_hz;
+        if (missing > 0) { told.push_back({found.at_s, missing, std::move(found.cause)}); }
+        if (stopped > 0) { told.push_back({stop_at_s, stopped, std::string(stopped_cause)}); }
+    }
+    grid.dropouts = std::move(told);
+}
+
 bool fits_counts(const std::vector<double>& values) {
     return std::ranges::all_of(values,
                                [](double x) { return x >= -32768.0 && x <= 32767.0 && x == std::floor(x); });
@@ -219,6 +241,7 @@ Result<Recording> recording_of(std::vector<InputColumn> columns, std::string nam
     GYROLOG_TRY(Gridded gridded, on_grid(std::move(columns), options));
     drop_missing_samples(gridded);
     differentiate_angles(gridded, options.samples_per_row);
+    if (options.samples_per_row == 1) { tell_stops(gridded.grid, gridded.stopped_s); }
     if (gridded.columns.front().values.empty()) { return malformed("no complete sample"); }
     std::stable_partition(gridded.columns.begin(), gridded.columns.end(),
                           [](const InputColumn& column) { return column.is_gyro(); });

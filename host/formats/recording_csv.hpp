@@ -37,6 +37,10 @@ struct CsvReadOptions {
 // A row where any gyro field is empty or NaN is a missing sample; in other columns such a field stays NaN.
 // Columns of unknown name are ignored, with one warning that lists them.
 //
+// A hole is a loss, unless a column stopped_s says behind it, in its first sample, that the user had stopped
+// the board meanwhile, and for how long: that is a dropout of the cause stopped_cause, and nobody misses it.
+// It is not looked at where rows are means.
+//
 // Errors: malformed (names the line and the column), invalid_argument (what the text lacks and which option
 // gives it), and those of reading a file.
 Result<Recording> read_recording_csv(const std::string& path, const CsvReadOptions& options = {});
@@ -53,8 +57,8 @@ struct CsvWriteOptions {
     TextGrowth growth = TextGrowth::whole;
 };
 
-// Time stamps as they came, or index / rate where none did. Compressed by the name's ending. What was at
-// `path` before stays until all is written.
+// Time stamps as they came, or index / rate where none did. A column stopped_s comes last where there is a
+// stop. Compressed by the name's ending. What was at `path` before stays until all is written.
 Status write_recording_csv(const Recording& recording, const std::string& path,
                            const CsvWriteOptions& options = {});
 
@@ -79,6 +83,7 @@ private:
     TextWriter file_;
     std::string text_;
     bool headed_ = false;
+    bool tells_stops_ = false;
 };
 
 }  // namespace gyrolog

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "analysis/noise/noise_model.hpp"
+#include "host/formats/csv_column.hpp"
 #include "host/formats/recording_csv.hpp"
 
 namespace gyrolog {
@@ -147,7 +149,23 @@ void append_row(std::string& text, double t_s, std::size_t row, const std::vecto
         text += ',';
         column.append(text, row);
     }
-    text += '\n';
+}
+
+// For how long the board was stopped before each segment. Both lists are in order of time.
+std::vector<double> stops_before_segments(const Recording& recording) {
+    std::vector<double> stopped_s(recording.segments.size(), 0.0);
+    const double instants_per_s = recording.rate_hz * static_cast<double>(recording.samples_per_row);
+    std::size_t behind = 0;
+    for (const Dropout& hole : recording.dropouts) {
+        const std::int64_t at =
+            recording.segments.front().first_index + std::llround(hole.at_s * recording.rate_hz);
+        while (behind < stopped_s.size() && recording.segments[behind].first_index <= at) { ++behind; }
+        if (behind == stopped_s.size()) { break; }
+        if (hole.cause == stopped_cause) {
+            stopped_s[behind] += static_cast<double>(hole.samples) / instants_per_s;
+        }
+    }
+    return stopped_s;
 }
 
 }  // namespace
@@ -167,14 +185,23 @@ Status RecordingCsvWriter::append(const Recording& piece) {
     if (!headed_) {
         text_ = "t_s";
         for (const Formatter& column : columns) { text_ += "," + column.header(); }
+        tells_stops_ = piece.stops().events > 0;
+        if (tells_stops_) { text_.append(",").append(stopped_column); }
         text_ += '\n';
         headed_ = true;
     }
-    for (const Segment& segment : piece.segments) {
+    const std::vector<double> stopped_s = stops_before_segments(piece);
+    for (std::size_t s = 0; s < piece.segments.size(); ++s) {
+        const Segment& segment = piece.segments[s];
         for (std::size_t i = 0; i < segment.count; ++i) {
             const std::size_t row = segment.first + i;
             const auto index = static_cast<double>(segment.first_index + static_cast<std::int64_t>(i));
             append_row(text_, piece.t_s.empty() ? index / piece.rate_hz : piece.t_s[row], row, columns);
+            if (tells_stops_) {
+                text_ += ',';
+                append_exact(text_, i == 0 ? stopped_s[s] : 0.0);
+            }
+            text_ += '\n';
             if (text_.size() < piece_bytes) { continue; }
             Status written = file_.write(text_);
             if (!written.ok()) { return in_context("write '" + path_ + "'", std::move(written).error()); }

@@ -85,8 +85,12 @@ TEST_F(LiveTerminal, AStopIsToldAlikeWhereverTheCaptureIsToldOf) {
     const double told_s = stopped_s(terminal.screen());
     EXPECT_GE(told_s, 0.5) << terminal.screen();
     const std::string csv = folder.path("live.csv");
-    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-             {"info", path}, {"check", path}, {"analyze", path}, {"export", path, "-o", csv}}) {
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"info", path},
+                                               {"check", path},
+                                               {"analyze", path},
+                                               {"export", path, "-o", csv},
+                                               {"analyze", csv}}) {
         const ProgramResult result = run_gyrolog(arguments);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         const std::string text = result.out + result.err;

@@ -144,6 +144,64 @@ TEST(SimulatedText, ThatIsNotClosedLeavesWhatWasThere) {
     std::filesystem::remove(path);
 }
 
+// Ten samples, two lost, three that the user wanted away, ten samples, four lost, five samples.
+Recording stopped_once() {
+    Recording recording;
+    recording.rate_hz = 8.0;
+    recording.columns = {{"gx", "rad/s", std::vector<double>(25, 1.0), rad_per_deg, 0.0, "dps"}};
+    recording.segments = {{0, 10, 0}, {10, 10, 15}, {20, 5, 29}};
+    recording.dropouts = {
+        {10 / 8.0, 2, "link"}, {12 / 8.0, 3, std::string(stopped_cause)}, {25 / 8.0, 4, "link"}};
+    return recording;
+}
+
+TEST(RecordingText, SaysWhichHoleWasAStop) {
+    const std::string path = temporary("stopped.csv");
+    ASSERT_TRUE(write_recording_csv(stopped_once(), path).ok());
+    const auto read = read_recording_csv(path);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_TRUE(read->warnings.empty());
+    EXPECT_EQ(read->columns.size(), 1U);
+    EXPECT_EQ(read->stops().events, 1U);
+    EXPECT_EQ(read->stops().instants, 3);
+    EXPECT_NEAR(read->stops().s, 3 / 8.0, 1e-9);
+    ASSERT_EQ(read->dropouts.size(), 3U);
+    const Recording told = stopped_once();
+    for (std::size_t i = 0; i < told.dropouts.size(); ++i) {
+        EXPECT_NEAR(read->dropouts[i].at_s, told.dropouts[i].at_s, 1e-9) << i;
+        EXPECT_EQ(read->dropouts[i].samples, told.dropouts[i].samples) << i;
+        EXPECT_EQ(read->dropouts[i].cause == stopped_cause, i == 1) << i;
+    }
+    // Who does not know the column has the samples and holes all the same.
+    std::string text = contents(path);
+    text.replace(text.find("stopped_s"), 9, "something");
+    const auto unknowing = parse_recording_csv(text, "text");
+    ASSERT_TRUE(unknowing.ok());
+    EXPECT_EQ(unknowing->missing_samples(), read->missing_samples());
+    EXPECT_EQ(unknowing->warnings.size(), 1U);
+    std::filesystem::remove(path);
+}
+
+TEST(RecordingText, HasNoColumnOfStopsWithoutOne) {
+    Recording recording = stopped_once();
+    recording.dropouts[1].cause = "link";
+    const std::string path = temporary("lost.csv");
+    ASSERT_TRUE(write_recording_csv(recording, path).ok());
+    EXPECT_EQ(contents(path).substr(0, contents(path).find('\n')), "t_s,gx_dps");
+    std::filesystem::remove(path);
+}
+
+TEST(RecordingText, TakesNoStopBeyondItsHole) {
+    const auto read = parse_recording_csv(
+        "t_s,gx_dps,stopped_s\n0,1,5\n1,1,\n2,1,7\n5,1,1e300\n6,1,nan\n7,1,0\n8,1,0\n9,1,0\n10,1,0\n11,1,"
+        "0\n12,1,0\n",
+        "text");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->stops().events, 1U);
+    EXPECT_EQ(read->stops().instants, 2);
+    EXPECT_EQ(read->missing_samples(), 2);
+}
+
 TEST(EffectCatalogue, TellsEveryEffectWithItsFormulaAndParameters) {
     const std::string text = effect_catalogue_text();
     const auto json = effect_catalogue_json();
