@@ -84,30 +84,45 @@ static size_t section_size(const uint8_t* in, size_t size) {
 }
 
 // Within a section each code byte stands just where the zero in front of its group belongs, one place on: the
-// section is moved in one piece and its codes, which lead from one to the next, become zeros.
-static void decode_section(const uint8_t* in, size_t size, uint8_t* out) {
-    size_t at = (size_t)in[0] - 1U;
-    memmove(out, in + 1, size - 1U);
-    while (at < size - 1U) {
-        const uint8_t code = out[at];
+// section is moved in one piece and its codes, which lead from one to the next, become zeros. `out` holds
+// what stood behind the section's first code. Returns the plain bytes of the section: more than `size` when a
+// code byte claims more than there is.
+static size_t put_zeros(uint8_t code, uint8_t* out, size_t size) {
+    size_t at = (size_t)code - 1U;
+    while ((at < size) && (code != FULL_CODE)) {
+        code = out[at];
         out[at] = 0U;
         at += code;
     }
+    return at;
 }
+
+// What is short is moved as a whole, whatever its sections: following the codes takes most of the time, and
+// to find a section's end first would be a second time.
+#define MOVED_MAX 1024U
 
 glp_cobs_result glp_cobs_decode(const uint8_t* in, size_t size, uint8_t* out, size_t capacity) {
     const glp_cobs_result refused = {glp_status_bad_cobs, 0};
     if ((size == 0U) || has_zero(in, size)) { return refused; }
     size_t written = 0;
-    for (size_t at = 0; at < size;) {
+    for (size_t left = size; left > 0U;) {
+        const uint8_t code = *in;
         // An empty group at the very end says "no zero here". Behind a full group that was said already.
-        if ((at > 0U) && (size - at == 1U) && (in[at] == 1U)) { return refused; }
-        const size_t section = section_size(in + at, size - at);
-        if (section == 0U) { return refused; }
-        if (section - 1U > capacity - written) { return (glp_cobs_result){glp_status_no_space, 0}; }
-        decode_section(in + at, section, out + written);
-        at += section;
-        written += section - 1U;
+        if ((left < size) && (left == 1U) && (code == 1U)) { return refused; }
+        const bool whole = (left - 1U <= capacity - written) && (left <= MOVED_MAX);
+        size_t moved = left - 1U;
+        if (!whole) {
+            const size_t section = section_size(in, left);
+            if (section == 0U) { return refused; }
+            if (section - 1U > capacity - written) { return (glp_cobs_result){glp_status_no_space, 0}; }
+            moved = section - 1U;
+        }
+        memmove(out + written, in + 1, moved);
+        const size_t plain = put_zeros(code, out + written, moved);
+        if (plain > moved) { return refused; }
+        in = whole ? out + written + plain : in + 1 + plain;  // in place, the former place is overwritten
+        left -= plain + 1U;
+        written += plain;
     }
     return (glp_cobs_result){glp_status_ok, written};
 }

@@ -82,6 +82,23 @@ TEST(Cobs, EveryLengthOfABodyComesBackAndFitsItsBound) {
     }
 }
 
+// Longer than any frame, and into no byte more than it takes, also in place.
+TEST(Cobs, LongBytesComeBackIntoAsMuchAsTheyTake) {
+    std::mt19937 random(6);
+    for (const std::size_t size : {1023U, 1024U, 1025U, 5000U}) {
+        for (const unsigned zero_every : {0U, 1U, 4U, 250U, 1000U}) {
+            const WireBytes plain = bytes_with_zeros(random, size, zero_every);
+            WireBytes encoded = cobs_encoded(plain);
+            WireBytes decoded(size);
+            ASSERT_EQ(glp_cobs_decode(encoded.data(), encoded.size(), decoded.data(), size).size, size);
+            ASSERT_EQ(decoded, plain);
+            ASSERT_EQ(glp_cobs_decode(encoded.data(), encoded.size(), encoded.data(), size).size, size);
+            encoded.resize(size);
+            ASSERT_EQ(encoded, plain);
+        }
+    }
+}
+
 TEST(Cobs, NeverWritesPastTheCapacityAndSaysNoSpace) {
     std::mt19937 random(4);
     for (const unsigned zero_every : {0U, 2U, 300U}) {
