@@ -142,9 +142,9 @@ private:
     bool measure(const Hypotheses& first) {
         while (!found_.causes.empty()) {
             if (!judge_what_is_left() || !measure_causes(first)) { return false; }
-            const auto least = std::ranges::min_element(measured_.returning_nats);
+            const auto least = std::ranges::min_element(measured_->returning_nats);
             if (*least > 0.0) { break; }
-            leave_out(static_cast<std::size_t>(least - measured_.returning_nats.begin()));
+            leave_out(static_cast<std::size_t>(least - measured_->returning_nats.begin()));
         }
         if (found_.causes.empty()) {
             remainder_.reset();
@@ -185,11 +185,11 @@ private:
         options.on_progress = progress("measuring how far each cause closes the gap", 0.8, 0.1);
         std::optional<MeasuredGap> measured = measure_gap(trial, options);
         if (!measured) { return false; }
-        measured_ = *std::move(measured);
+        measured_ = std::move(measured);
         // What happened in the first recording alone the second does not judge: the fit speaks for it.
         for (std::size_t i = 0; options_.holdout && i < found_.causes.size(); ++i) {
             const Finding& finding = found_.causes[i].finding;
-            if (is_event(finding)) { measured_.returning_nats[i] = finding.evidence_nats; }
+            if (is_event(finding)) { measured_->returning_nats[i] = finding.evidence_nats; }
         }
         return true;
     }
@@ -286,18 +286,11 @@ private:
         answer_.left = places_that_stand_out(last.curves, last.reference);
         answer_.better_shape = better_shape(found_, prediction_, recording_,
                                             {.seed = options_.seed, .threads = options_.threads});
-        if (!found_.causes.empty()) {
-            answer_.gap_before = measured_.before;
-            answer_.gap_named = answer_.gap_after = measured_.named;
-            answer_.shrink = measured_.shrink;
-            answer_.shrink_modelled = measured_.shrink.value;
-            answer_.floor_nats = measured_.floor_nats;
-            answer_.excess_nats = measured_.excess_nats;
-        }
+        describe_measured_gap();
         for (std::size_t i = 0; i < found_.causes.size(); ++i) {
             Cause cause =
-                with_probability(found_.causes[i], measured_.returning_nats[i], answer_.better_shape, {});
-            cause.share = measured_.shares[i];
+                with_probability(found_.causes[i], measured_->returning_nats[i], answer_.better_shape, {});
+            cause.share = measured_->shares[i];
             cause.sense = sense_of(cause.finding);
             answer_.causes.push_back(std::move(cause));
         }
@@ -306,6 +299,18 @@ private:
         answer_.verdict = verdict();
         if (answer_.verdict == Verdict::known) { answer_.where = answer_.causes.front().finding.where; }
         propose_recordings();
+    }
+
+    // That is the first model's where every cause was left out.
+    void describe_measured_gap() {
+        if (!measured_) { return; }
+        answer_.gap_before = measured_->before;
+        answer_.gap_named = answer_.gap_after = found_.causes.empty() ? measured_->before : measured_->named;
+        answer_.floor_nats = measured_->floor_nats;
+        answer_.excess_nats = measured_->excess_nats;
+        if (found_.causes.empty()) { return; }
+        answer_.shrink = measured_->shrink;
+        answer_.shrink_modelled = measured_->shrink.value;
     }
 
     Verdict verdict() const {
@@ -367,7 +372,7 @@ private:
     NullJudgement null_;
     CauseSelection found_;
     std::optional<Remainder> remainder_;
-    MeasuredGap measured_;
+    std::optional<MeasuredGap> measured_;
 };
 
 }  // namespace
