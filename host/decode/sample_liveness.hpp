@@ -33,6 +33,8 @@ public:
 
     // Board's time from the last sample or the start up to the stop, or as last told.
     double silent_s() const;
+    // Longer than the limit that holds at any rate.
+    bool may_be_silent() const;
     // Sampling instants since then, once there are more than the limit allows; 0 before.
     std::uint64_t silent_instants(double rate_hz) const;
     // Samples in stretches of one reading that are longer than the limits.

@@ -167,8 +167,10 @@ void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& sa
     if (!place) { return; }
     run_ = place->run;
     timeline_.take_samples(*place, samples, frame.arrival);
-    settle(accounts_.joins(), joins_);
-    settle(accounts_.restarts(), restarts_);
+    if (open_joins() > 0) {
+        settle(accounts_.joins(), joins_);
+        settle(accounts_.restarts(), restarts_);
+    }
     liveness_.take_samples(samples, config_ ? config_->rate_mHz * 1e-3 : 0.0);
     if (options_.keep_samples) { builder_.take_samples(*place, samples); }
     if (options_.observer != nullptr) { options_.observer->on_samples(frame, samples); }
@@ -190,6 +192,7 @@ void StreamDecoder::on_event(const ReceivedFrame& frame, const glp_event& event)
 }
 
 void StreamDecoder::note_silence() {
+    if (!liveness_.may_be_silent()) { return; }  // else the rate is worked out for nothing
     accounts_.note_silence(liveness_.silent_instants(rate_hz().value_or(0.0)));
 }
 

@@ -1,6 +1,8 @@
 // A board whose frames are all in order, and that does not sample.
 #include "host/decode/sample_liveness.hpp"
 
+#include <cstdint>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -46,6 +48,50 @@ TEST(SampleLiveness, OneReadingForMoreThanTwoSecondsIsAFrozenSensor) {
     EXPECT_EQ(readings.liveness.frozen_now_s(), 0.0);
     readings.take(102, 30);
     EXPECT_EQ(readings.liveness.frozen_samples(), 598U);
+}
+
+// Counted one sample after the other, by the definition.
+struct RepeatCount {
+    void take(std::uint8_t reading) {
+        if (last == reading) {
+            ++repeats;
+        } else {
+            frozen_before += counted();
+            repeats = 0;
+        }
+        last = reading;
+    }
+    std::uint64_t counted() const { return repeats >= least ? repeats : 0; }
+
+    std::uint64_t least;
+    int last = -1;  // none yet
+    std::uint64_t repeats = 0;
+    std::uint64_t frozen_before = 0;
+};
+
+TEST(SampleLiveness, CountsEveryLongStretchWhereverTheFramesEnd) {
+    std::mt19937 random(7);
+    std::uint64_t frozen = 0;
+    for (std::uint64_t least = 1; least <= 9; ++least) {
+        SampleLiveness liveness({.frozen_s = 0.0, .frozen_samples = least});
+        RepeatCount expected{least};
+        for (int frame = 0; frame < 2000; ++frame) {
+            std::uint8_t reading = 0;
+            std::vector<std::uint8_t> values;
+            const std::size_t count = 1 + random() % 20;
+            for (std::size_t i = 0; i < count; ++i) {
+                if (random() % 5 == 0) { reading = static_cast<std::uint8_t>(random() % 3); }
+                values.insert(values.end(), 6, reading);
+                expected.take(reading);
+            }
+            liveness.take_samples(
+                {0, 0, 1, 100, 0, static_cast<std::uint8_t>(count), glp_layout_gyro, values.data()}, 100.0);
+            ASSERT_EQ(liveness.frozen_samples(), expected.frozen_before + expected.counted())
+                << "frame " << frame << ", least " << least;
+        }
+        frozen += expected.frozen_before;
+    }
+    EXPECT_GT(frozen, 10'000U);
 }
 
 TEST(SampleLiveness, BoardsClockRunsOnOverItsOwnWrap) {
