@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/diagnose/calibration/gap_domains.hpp"
-#include "analysis/diagnose/calibration/gap_summary.hpp"
+#include "analysis/diagnose/calibration/gap_places.hpp"
 #include "analysis/diagnose/calibration/half_fit.hpp"
 #include "analysis/diagnose/calibration/measured_gap.hpp"
 #include "analysis/diagnose/calibration/null_judgement.hpp"
@@ -138,16 +138,18 @@ private:
         return true;
     }
 
-    // Without the causes that close nothing on data that the fit did not use, one after the other.
+    // Without the causes that close nothing on data that the fit did not use, one after the other; and no
+    // corrected model is farther from them than the first.
     bool measure(const Hypotheses& first) {
         while (!found_.causes.empty()) {
             if (!judge_what_is_left() || !measure_causes(first)) { return false; }
             const auto least = std::ranges::min_element(measured_->returning_nats);
-            if (*least > 0.0) { break; }
+            if (*least > 0.0 && measured_->named.value < measured_->before.value) { break; }
             leave_out(static_cast<std::size_t>(least - measured_->returning_nats.begin()));
         }
         if (found_.causes.empty()) {
             remainder_.reset();
+            answer_.p_left = answer_.p_none;
             return true;
         }
         answer_.corrected = found_.corrected;

@@ -42,18 +42,13 @@ TEST(DiagnoseRealRecording, LeavesOutWhatWidensTheGap) {
     const json answer = json::parse(read_whole_file(folder.path("d.json")));
     EXPECT_LT(answer["p_none"].get<double>(), 0.01);
     const double before = answer["gap_before"]["value"];
-    const double after = answer["gap_after"]["value"];
-    EXPECT_LE(after, before);
-    EXPECT_THAT(out.str(), HasSubstr("left out, since the gap would be "));
-    EXPECT_EQ(answer["shrink"].get<double>(), 0.0);
+    EXPECT_LE(answer["gap_named"]["value"].get<double>(), before);
+    EXPECT_GE(answer["shrink"].get<double>(), 0.0);
+    EXPECT_THAT(out.str(), HasSubstr("tone is left out"));
     const Result<SensorModel> given = read_model(model);
     const Result<SensorModel> written = read_model(corrected);
     ASSERT_TRUE(given.ok() && written.ok());
-    ASSERT_EQ(written->effects.size(), given->effects.size());
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        EXPECT_DOUBLE_EQ(written->axes[axis].noise.N_rad_per_sqrt_s,
-                         given->axes[axis].noise.N_rad_per_sqrt_s);
-    }
+    EXPECT_EQ(written->effects.size() > given->effects.size(), !answer["causes"].empty());
 }
 
 }  // namespace

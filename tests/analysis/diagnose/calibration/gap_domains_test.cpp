@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/diagnose/calibration/gap_summary.hpp"
+#include "analysis/diagnose/calibration/gap_places.hpp"
 #include "analysis/diagnose/measures/allan.hpp"
 #include "analysis/diagnose/measures/amplitude.hpp"
 #include "analysis/diagnose/measures/courses.hpp"
@@ -59,7 +59,7 @@ TEST(GapDomains, ShowTheCorrectedModelsBandAsSeenFromTheRecording) {
     const std::vector<GapCurve> before = {{&measures::drift, 0, 0, {1.0, 2.0}, {5.0, 0.1}}};
     const std::vector<GapCurve> after = {{&measures::drift, 0, 0, {1.0, 2.0}, {0.11, 0.3}}};
     const GapReference reference = reference_of(before);
-    const MeasuredGap corrected{after, reference};
+    const JudgedCurves corrected{after, reference};
     const GapDomain domain = gap_domains({before, reference}, &corrected, 0.95).at(0);
     EXPECT_EQ(domain.outside_before, (std::vector<bool>{true, false}));
     EXPECT_EQ(domain.outside_after, (std::vector<bool>{false, true}));
@@ -83,20 +83,20 @@ TEST(GapDomains, OfAllAxesSayThatTheyAre) {
 }
 
 // One number for all sizes.
-TEST(GapSummary, SaysNoAmplitudeWhereTheGapIsASkewness) {
+TEST(GapPlaces, SaysNoAmplitudeWhereTheGapIsASkewness) {
     const std::vector<GapCurve> curves = {
         {&measures::amplitude, 1, 1, {2.0, 3.0}, {0.1, 0.1}},
         {&measures::skewness, 1, 1, {0.0}, {5.0}},
     };
     GapReference reference = reference_of(curves);
     reference.window_sd.assign(curves.size(), {});
-    const Place where = summarise(curves, reference).where;
+    const Place where = farthest_place(curves, reference);
     EXPECT_EQ(where.axes, std::vector<std::size_t>{1});
     EXPECT_FALSE(where.amplitude_sigma);
 }
 
 // Its multiples and parts stand out with it; and it is seen on all axes together.
-TEST(GapSummary, SaysTheBestPeriodOfARhythmAndAllAxes) {
+TEST(GapPlaces, SaysTheBestPeriodOfARhythmAndAllAxes) {
     GapCurve rhythm{&measures::rhythm, 0, 0, {20.0, 40.0, 80.0}, {0.4, 0.9, 0.3}};
     rhythm.of_all_axes = true;
     const std::vector<GapCurve> curves = {{&measures::drift, 0, 0, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.1}},
@@ -104,11 +104,28 @@ TEST(GapSummary, SaysTheBestPeriodOfARhythmAndAllAxes) {
                                           rhythm};
     GapReference reference = reference_of(curves);
     reference.window_sd.assign(curves.size(), {});
-    const Place where = summarise(curves, reference).where;
+    const Place where = farthest_place(curves, reference);
     EXPECT_EQ(where.axes, (std::vector<std::size_t>{0, 2}));
     ASSERT_TRUE(where.tau_s.has_value());
     EXPECT_EQ(where.tau_s->from, 40.0);
     EXPECT_EQ(where.tau_s->to, 40.0);
+}
+
+// One place for each measure, the largest first; what does not stand out is none.
+TEST(GapPlaces, AreThoseThatStandOutByMeasure) {
+    const std::vector<GapCurve> curves = {{&measures::drift, 0, 0, {1.0, 2.0, 3.0}, {0.1, 0.1, 0.5}},
+                                          {&measures::drift, 2, 2, {1.0, 2.0, 3.0}, {0.1, 0.9, 0.1}},
+                                          {&measures::memory, 1, 1, {1.0, 2.0}, {0.1, 0.4}},
+                                          {&measures::spectrum, 1, 1, {1.0, 2.0}, {0.1, 0.11}}};
+    GapReference reference = reference_of(curves);
+    reference.window_sd.assign(curves.size(), {});
+    const std::vector<Left> places = places_that_stand_out(curves, reference);
+    ASSERT_EQ(places.size(), 2U);
+    EXPECT_EQ(places[0].where.axes, (std::vector<std::size_t>{0, 2}));
+    ASSERT_TRUE(places[0].where.time_s.has_value());
+    EXPECT_EQ(places[0].where.time_s->from, 2.0);
+    EXPECT_EQ(places[1].where.axes, std::vector<std::size_t>{1});
+    EXPECT_GT(places[0].size, places[1].size);
 }
 
 }  // namespace

@@ -13,9 +13,9 @@ namespace gyrolog {
 namespace {
 
 constexpr RandomPurpose simulated_for[] = {
-    RandomPurpose::null_simulations,    RandomPurpose::null_bias_simulations,
-    RandomPurpose::simulations_after,   RandomPurpose::simulations_in_doubt,
-    RandomPurpose::holdout_simulations, RandomPurpose::bootstrap_simulations};
+    RandomPurpose::null_simulations,         RandomPurpose::null_bias_simulations,
+    RandomPurpose::simulations_after,        RandomPurpose::simulations_in_doubt,
+    RandomPurpose::measured_gap_simulations, RandomPurpose::bootstrap_simulations};
 
 // Whoever repeats a diagnosis with the next seed wants other simulations, all of them.
 TEST(Replicates, OfNeighbouringSeedsAndOtherPurposesAreOthers) {

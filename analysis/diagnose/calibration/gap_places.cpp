@@ -1,4 +1,4 @@
-#include "analysis/diagnose/calibration/gap_summary.hpp"
+#include "analysis/diagnose/calibration/gap_places.hpp"
 
 #include <algorithm>
 #include <cstddef>
