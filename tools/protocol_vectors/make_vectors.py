@@ -2,6 +2,7 @@
 """Writes the conformance vectors and the fuzzers' first inputs. With --check it only compares them with what is there."""
 
 import pathlib
+import re
 import random
 import struct
 import sys
@@ -11,6 +12,7 @@ from codec import Receiver, body, cobs, crc32, form, judge, wire
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 VECTORS = ROOT / "firmware_protocol/vectors"
 CORPUS = ROOT / "tests/fuzz/corpus"
+FOUND_BY_FUZZER = re.compile("[0-9a-f]{40}")  # the name that libFuzzer gives an input
 
 HELLO, CONFIG, SAMPLES, STATUS, EVENT, REPLY = 1, 2, 3, 4, 5, 6
 GET_HELLO, CONFIGURE, START, STOP, GET_STATUS = 0x81, 0x82, 0x83, 0x84, 0x85
@@ -308,7 +310,8 @@ def main():
     payload_corpus(folder)
     wanted = {path: data if isinstance(data, bytes) else data.encode() for path, data in folder.files.items()}
     ours = [VECTORS / "accept", VECTORS / "reject", *sorted({path.parent for path in wanted if CORPUS in path.parents})]
-    present = {path for directory in ours if directory.is_dir() for path in directory.iterdir()}
+    present = {path for directory in ours if directory.is_dir() for path in directory.iterdir()
+               if not FOUND_BY_FUZZER.fullmatch(path.name)}
     if sys.argv[1:] == ["--check"]:
         wrong = sorted(str(path.relative_to(ROOT)) for path in present | set(wanted)
                        if path not in wanted or not path.exists() or path.read_bytes() != wanted[path])
