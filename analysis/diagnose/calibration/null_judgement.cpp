@@ -15,6 +15,9 @@ namespace {
 
 constexpr double chance_of_an_effect = 0.005;
 constexpr double evidence_least_nats = 3.0;
+// Of all false alarms, those of the stamps (a weighted Bonferroni bound: Holm 1979). Simulations copy the
+// stamps, so that their chance is not known as well as the others'.
+constexpr double share_of_stamps = 0.05;
 constexpr std::size_t times_more_in_doubt = 4;
 constexpr std::size_t times_more_in_motion = 2;
 
@@ -35,6 +38,39 @@ double best_evidence_nats(const Hypotheses& hypotheses, bool in_stamps) {
 
 double sum_of(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+std::vector<double> without(std::vector<double> values, std::size_t left_out) {
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>(left_out));
+    return values;
+}
+
+// How rarely the best effect or the worst curve is as far off, whichever is rarer: in nats.
+class RarestOfTwo {
+public:
+    RarestOfTwo(std::vector<double> effects_nats, std::vector<double> curves_nats)
+        : effects_(std::move(effects_nats)), curves_(std::move(curves_nats)) {}
+
+    double nats(double effect_nats, double curve_nats) const {
+        return -std::log(std::min(effects_.probability(effect_nats), curves_.probability(curve_nats)));
+    }
+
+private:
+    EvidenceTail effects_;
+    EvidenceTail curves_;
+};
+
+// The rank of the recording's rarest look among the simulations', of which each is held against the others as
+// the recording is against all: right over its whole range, however the looks hang together.
+double probability_by_rank(double effect_nats, const std::vector<double>& effects_nats, double curve_nats,
+                           const std::vector<double>& curves_nats) {
+    std::vector<double> simulated_nats;
+    for (std::size_t i = 0; i < effects_nats.size(); ++i) {
+        const RarestOfTwo others(without(effects_nats, i), without(curves_nats, i));
+        simulated_nats.push_back(others.nats(effects_nats[i], curves_nats[i]));
+    }
+    const RarestOfTwo all(effects_nats, curves_nats);
+    return EvidenceTail(std::move(simulated_nats)).probability(all.nats(effect_nats, curve_nats));
 }
 
 // Some simulations are enough for their mean.
@@ -77,15 +113,14 @@ std::optional<NullJudgement> judge_null(const Hypotheses& hypotheses, const Null
     NullJudgement judgement;
     judgement.reference = gap_reference(null->curves);
     judgement.curves = gap_curves(*hypotheses.observation);
-    const EvidenceTail effects(best_evidence_nats(*null));
-    const double p_effects = effects.probability(best_evidence_nats(hypotheses, false));
-    const double p_curves = EvidenceTail(simulated_surprises_nats(null->curves))
-                                .probability(worst_surprise_nats(judgement.curves, judgement.reference));
+    const std::vector<double> effects_nats = best_evidence_nats(*null);
+    const double p = probability_by_rank(best_evidence_nats(hypotheses, false), effects_nats,
+                                         worst_surprise_nats(judgement.curves, judgement.reference),
+                                         simulated_surprises_nats(null->curves));
     const double p_stamps = std::exp(-stamp_evidence_nats(hypotheses));
-    // The smallest of three: exact where they are independent, a little cautious where they are not.
-    const double least = std::min({p_effects, p_curves, p_stamps});
-    judgement.p_none = -std::expm1(3.0 * std::log1p(-std::min(least, 1.0 - 1e-15)));
-    judgement.evidence_min_nats = std::max(effects.threshold_nats(chance_of_an_effect), evidence_least_nats);
+    judgement.p_none = std::min({p / (1.0 - share_of_stamps), p_stamps / share_of_stamps, 1.0});
+    judgement.evidence_min_nats =
+        std::max(EvidenceTail(effects_nats).threshold_nats(chance_of_an_effect), evidence_least_nats);
     judgement.floor_nats = mean_surprisal_nats(null->curves);
     judgement.excess_nats =
         sum_of(measure_surprises_nats(judgement.curves, judgement.reference)) - judgement.floor_nats;
