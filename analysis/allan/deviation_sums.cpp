@@ -15,14 +15,14 @@ template <typename T>
 using Exact = std::conditional_t<std::integral<T>, std::int64_t, double>;
 
 template <typename T>
-Exact<T> second_difference(const T* theta, std::size_t m) {
+Exact<T> exact_second_difference(const T* theta, std::size_t m) {
     using E = Exact<T>;
     return (E{theta[2 * m]} - E{theta[m]}) - (E{theta[m]} - E{theta[0]});
 }
 
 template <typename T>
 Exact<T> third_difference(const T* theta, std::size_t m) {
-    return second_difference(theta + m, m) - second_difference(theta, m);
+    return exact_second_difference(theta + m, m) - exact_second_difference(theta, m);
 }
 
 // Sum of squares in fixed lanes: the same bits with any vector width, and a shorter chain of roundings.
@@ -85,7 +85,7 @@ double window_squares(const T* theta, const TermRun& run, std::size_t m) {
     using Number = std::conditional_t<std::same_as<Sum, WholeMovingSum>, std::int64_t, double>;
     Sum window;
     for (std::size_t i = 0; i < m; ++i) {
-        window.add(static_cast<Number>(second_difference(theta + run.begin + i, m)));
+        window.add(static_cast<Number>(exact_second_difference(theta + run.begin + i, m)));
     }
     Squares squares;
     squares.add(window.value());
@@ -134,7 +134,7 @@ double squares_of(const IntegratedSignal& signal, const DeviationRule& rule, std
                                        [m](const T* at) { return third_difference(at, m); });
             }
             return strided_squares(data, run, rule.stride(factor),
-                                   [m](const T* at) { return second_difference(at, m); });
+                                   [m](const T* at) { return exact_second_difference(at, m); });
         },
         signal.stretches[stretch].theta.values());
 }

@@ -7,7 +7,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::array<std::pair<DenoiseMethod, std::string_view>, 3> names{
+constexpr std::array<std::pair<DenoiseMethod, std::string_view>, 3> method_names{
     {{DenoiseMethod::kalman, "kalman"},
      {DenoiseMethod::wavelet, "wavelet"},
      {DenoiseMethod::joint, "joint"}}};
@@ -24,14 +24,14 @@ RateDesign filter_design(const DenoiseDesign& design) {
 }  // namespace
 
 std::string_view name_of(DenoiseMethod method) {
-    for (const auto& [value, name] : names) {
+    for (const auto& [value, name] : method_names) {
         if (value == method) { return name; }
     }
     return "";
 }
 
 std::optional<DenoiseMethod> denoise_method(std::string_view name) {
-    for (const auto& [value, known] : names) {
+    for (const auto& [value, known] : method_names) {
         if (known == name) { return value; }
     }
     return std::nullopt;

@@ -10,10 +10,11 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::array<std::pair<RateModel, std::string_view>, 4> names{{{RateModel::free, "free"},
-                                                                       {RateModel::walk, "walk"},
-                                                                       {RateModel::trend, "trend"},
-                                                                       {RateModel::adaptive, "adaptive"}}};
+constexpr std::array<std::pair<RateModel, std::string_view>, 4> rate_model_names{
+    {{RateModel::free, "free"},
+     {RateModel::walk, "walk"},
+     {RateModel::trend, "trend"},
+     {RateModel::adaptive, "adaptive"}}};
 
 double walk_intensity(double radians_per_sample) {
     const double k = 1.0 - std::cos(radians_per_sample);
@@ -45,14 +46,14 @@ double trend_intensity(double radians_per_sample) {
 }  // namespace
 
 std::string_view name_of(RateModel model) {
-    for (const auto& [value, name] : names) {
+    for (const auto& [value, name] : rate_model_names) {
         if (value == model) { return name; }
     }
     return "";
 }
 
 std::optional<RateModel> rate_model(std::string_view name) {
-    for (const auto& [value, known] : names) {
+    for (const auto& [value, known] : rate_model_names) {
         if (known == name) { return value; }
     }
     return std::nullopt;

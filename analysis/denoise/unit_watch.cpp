@@ -6,7 +6,8 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::array<std::string_view, unit_states> names{"good", "missing", "stuck", "saturated", "noisy"};
+constexpr std::array<std::string_view, unit_states> state_names{"good", "missing", "stuck", "saturated",
+                                                                "noisy"};
 constexpr double far_off = 8.0;
 constexpr double noisy_above = 4.0;
 constexpr double good_below = 2.0;
@@ -19,7 +20,7 @@ constexpr double median_variance = 1.5707963267948966;
 
 }  // namespace
 
-std::string_view name_of(UnitState state) { return names.at(static_cast<std::size_t>(state)); }
+std::string_view name_of(UnitState state) { return state_names.at(static_cast<std::size_t>(state)); }
 
 std::size_t repeats_allowed(double repeat_share) {
     constexpr double rare = 1e-12;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <utility>
 
@@ -18,7 +17,6 @@ namespace {
 
 using Kind = CurveTerm::Kind;
 
-constexpr double db_per_neper = 10.0 / std::numbers::ln10;  // of a variance
 constexpr double margin_to_enter = 10.0;
 constexpr double margin_to_stay = 2.0;
 // A size of which none at all lies within a standard deviation is none that the curve shows.
@@ -29,8 +27,6 @@ constexpr int rounds = 3;        // of fit and scatter
 constexpr double coarse = 1e-3;  // tolerance of a fit that is only one of many starts
 constexpr std::array all_kinds = {Kind::N,       Kind::B, Kind::K, Kind::Q, Kind::R, Kind::gauss_markov,
                                   Kind::sinusoid};
-
-bool has_shape(Kind kind) { return kind == Kind::gauss_markov || kind == Kind::sinusoid; }
 
 double total_variance(const std::vector<CurveTerm>& terms, double tau_s) {
     double sum = 0.0;
@@ -55,7 +51,7 @@ struct Target {
         residuals.reserve(tau_s.size());
         for (std::size_t i = 0; i < tau_s.size(); ++i) {
             const double model = std::max(total_variance(terms, tau_s[i]), 1e-300);
-            residuals.push_back(db_per_neper * (2.0 * std::log(deviation[i]) - std::log(model)));
+            residuals.push_back(variance_db_per_neper * (2.0 * std::log(deviation[i]) - std::log(model)));
         }
         return residuals;
     }
@@ -349,7 +345,7 @@ void put_place(CurveCause& cause, const Target& target, const std::vector<CurveT
         const double with = total_variance(corrected, tau_s);
         const double without = with - cause.term.allan_variance(tau_s) +
                                (cause.in_model ? cause.in_model->allan_variance(tau_s) : 0.0);
-        change_db.push_back(std::abs(db_per_neper * std::log(std::max(without, 1e-300) / with)));
+        change_db.push_back(std::abs(variance_db_per_neper * std::log(std::max(without, 1e-300) / with)));
     }
     const auto most = std::ranges::max_element(change_db);
     auto first = most;
@@ -472,7 +468,7 @@ CurveDiagnosis diagnose_curve(const AllanCurve& curve, const std::vector<Modelle
     for (const ModelledTerm& modelled : model) { as_it_is.push_back(modelled.term); }
     CurveDiagnosis diagnosis;
     diagnosis.points = target.tau_s.size();
-    const double reading_sd_db = 2.0 * db_per_neper * options.reading_error;
+    const double reading_sd_db = 2.0 * variance_db_per_neper * options.reading_error;
     diagnosis.floor_db = std::max(reading_sd_db, fit_curve_model(curve, options).residual.rms_db);
     diagnosis.before = residual_of(target, as_it_is);
     diagnosis.stretches = stretches_of(target, as_it_is);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
@@ -24,9 +23,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double db_per_neper = 10.0 / std::numbers::ln10;  // of a variance
-constexpr double margin_to_enter = 6.0;
-constexpr double margin_to_stay = 2.0;
+constexpr double term_margin_to_enter = 6.0;
+constexpr double term_margin_to_stay = 2.0;
 constexpr std::size_t steps_max = 30;
 constexpr std::size_t terms_max = 9;
 constexpr std::array linear_kinds = {Kind::Q, Kind::N, Kind::B, Kind::K, Kind::R};
@@ -36,7 +34,6 @@ constexpr std::array linear_kinds = {Kind::Q, Kind::N, Kind::B, Kind::K, Kind::R
 constexpr double gauss_markov_peak = 1.89;
 constexpr double sinusoid_peak = 0.371;
 
-bool has_shape(Kind kind) { return kind == Kind::gauss_markov || kind == Kind::sinusoid; }
 std::size_t parameters_of(Kind kind) { return has_shape(kind) ? 2 : 1; }
 
 std::size_t parameters_of(const std::vector<CurveTerm>& terms) {
@@ -46,15 +43,15 @@ std::size_t parameters_of(const std::vector<CurveTerm>& terms) {
 }
 
 // The curve as it is fitted.
-struct Target {
+struct FittedCurve {
     std::vector<double> tau_s;
     VectorXd log_variance;  // natural logarithm of the Allan variance
 
     Index points() const { return log_variance.size(); }
 };
 
-Target target_of(const AllanCurve& curve) {
-    Target target;
+FittedCurve target_of(const AllanCurve& curve) {
+    FittedCurve target;
     std::vector<double> logs;
     for (const AllanPoint& point : curve.points) {
         if (!(point.deviation > 0.0 && point.tau_s > 0.0)) { continue; }
@@ -100,14 +97,14 @@ MatrixXd variances_of(const std::vector<CurveTerm>& terms, const std::vector<dou
 }
 
 // Curve over model, dB.
-VectorXd residuals_db(const Target& target, const std::vector<CurveTerm>& terms) {
+VectorXd residuals_db(const FittedCurve& target, const std::vector<CurveTerm>& terms) {
     const VectorXd model = variances_of(terms, target.tau_s).rowwise().sum().cwiseMax(1e-300);
-    return db_per_neper * (target.log_variance - model.array().log().matrix());
+    return variance_db_per_neper * (target.log_variance - model.array().log().matrix());
 }
 
 // Derivatives of the model in dB by the logarithms of its parameters: for a size it is the share that the
 // term has of the variance.
-MatrixXd sensitivities_db(const Target& target, const std::vector<CurveTerm>& terms) {
+MatrixXd sensitivities_db(const FittedCurve& target, const std::vector<CurveTerm>& terms) {
     const MatrixXd variances = variances_of(terms, target.tau_s);
     const VectorXd total = variances.rowwise().sum().cwiseMax(1e-300);
     MatrixXd slopes(target.points(), static_cast<Index>(parameters_of(terms)));
@@ -121,7 +118,7 @@ MatrixXd sensitivities_db(const Target& target, const std::vector<CurveTerm>& te
         slopes.col(column++) =
             (variances_of({above}, target.tau_s) - variances_of({below}, target.tau_s)) / (2.0 * step);
     }
-    return db_per_neper * total.cwiseInverse().asDiagonal() * slopes;
+    return variance_db_per_neper * total.cwiseInverse().asDiagonal() * slopes;
 }
 
 struct Candidate {
@@ -131,7 +128,7 @@ struct Candidate {
 };
 
 // Least squares from where `start` is. `tolerance`: relative, of the sum of squares.
-Candidate fitted_from(const Target& target, const std::vector<CurveTerm>& start, double tolerance) {
+Candidate fitted_from(const FittedCurve& target, const std::vector<CurveTerm>& start, double tolerance) {
     LeastSquaresProblem problem;
     problem.residuals = static_cast<std::size_t>(target.points());
     problem.evaluate = [&](std::span<const double> logs, std::span<double> residuals) {
@@ -148,13 +145,13 @@ Candidate fitted_from(const Target& target, const std::vector<CurveTerm>& start,
     return candidate;
 }
 
-struct Judged {
+struct JudgedCandidate {
     Candidate candidate;
     double criterion = std::numeric_limits<double>::infinity();
     double smooth_sd_db = 0.0;
 };
 
-Judged judged(const CurveScatter& scatter, Candidate candidate) {
+JudgedCandidate judged(const CurveScatter& scatter, Candidate candidate) {
     if (candidate.terms.empty()) { return {}; }
     const auto fit = scatter.fit(values_of(candidate.residuals));
     const double penalty = static_cast<double>(parameters_of(candidate.terms)) *
@@ -163,7 +160,7 @@ Judged judged(const CurveScatter& scatter, Candidate candidate) {
 }
 
 // A size at which the term stays below the curve everywhere.
-CurveTerm below_curve(const Target& target, Kind kind, double shape) {
+CurveTerm below_curve(const FittedCurve& target, Kind kind, double shape) {
     CurveTerm unit{kind, 1.0, shape};
     double least = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < target.points(); ++i) {
@@ -176,7 +173,7 @@ CurveTerm below_curve(const Target& target, Kind kind, double shape) {
 }
 
 // Correlation times or frequencies of which the curve has the hump, evenly on a logarithmic axis.
-std::vector<double> shapes_to_try(const Target& target, Kind kind) {
+std::vector<double> shapes_to_try(const FittedCurve& target, Kind kind) {
     if (!has_shape(kind)) { return {0.0}; }
     const auto [first, last] = std::minmax_element(target.tau_s.begin(), target.tau_s.end());
     const double per_octave = kind == Kind::sinusoid ? 4.0 : 1.5;
@@ -190,14 +187,14 @@ std::vector<double> shapes_to_try(const Target& target, Kind kind) {
 }
 
 // Its hump lies on the curve: elsewhere it is another name for N, K or R.
-bool within_curve(const Target& target, const CurveTerm& term) {
+bool within_curve(const FittedCurve& target, const CurveTerm& term) {
     if (!has_shape(term.kind)) { return true; }
     const auto [first, last] = std::minmax_element(target.tau_s.begin(), target.tau_s.end());
     return term.hump_tau_s() >= *first && term.hump_tau_s() <= *last;
 }
 
 // The best fit with one more term; without terms where there is none.
-Candidate with_term(const Target& target, const Candidate& before, Kind kind) {
+Candidate with_term(const FittedCurve& target, const Candidate& before, Kind kind) {
     constexpr double coarse = 1e-3;
     constexpr double fine = 1e-10;
     Candidate best;
@@ -216,13 +213,13 @@ Candidate with_term(const Target& target, const Candidate& before, Kind kind) {
     return inside && refined.sum <= best.sum ? refined : best;
 }
 
-Candidate without_term(const Target& target, const Candidate& before, std::size_t term) {
+Candidate without_term(const FittedCurve& target, const Candidate& before, std::size_t term) {
     std::vector<CurveTerm> start = before.terms;
     start.erase(start.begin() + static_cast<std::ptrdiff_t>(term));
     return fitted_from(target, start, 1e-10);
 }
 
-CurveResidual residual_of(const Target& target, const VectorXd& residuals) {
+CurveResidual residual_of(const FittedCurve& target, const VectorXd& residuals) {
     CurveResidual residual;
     residual.rms_db = std::sqrt(residuals.squaredNorm() / static_cast<double>(residuals.size()));
     Index worst = 0;
@@ -235,7 +232,7 @@ CurveResidual residual_of(const Target& target, const VectorXd& residuals) {
 // Stepwise search for the terms that the curve calls for.
 class TermSearch {
 public:
-    TermSearch(const Target& target, double reading_sd_db)
+    TermSearch(const FittedCurve& target, double reading_sd_db)
         : target_(target), scatter_(target.tau_s, reading_sd_db) {}
 
     void run() {
@@ -243,7 +240,7 @@ public:
         do { remove_idle_terms(); } while (steps.size() < steps_max && add_term());
     }
 
-    const Judged& result() const { return now_; }
+    const JudgedCandidate& result() const { return now_; }
     const CurveScatter& scatter() const { return scatter_; }
     std::vector<CurveFitStep> steps;
     std::vector<RejectedTerm> rejected;
@@ -271,13 +268,13 @@ private:
     }
 
     bool add_term() {
-        Judged best;
+        JudgedCandidate best;
         Kind added = Kind::N;
         rejected.clear();
         for (const Kind kind :
              {Kind::Q, Kind::N, Kind::B, Kind::K, Kind::R, Kind::gauss_markov, Kind::sinusoid}) {
             if ((!has_shape(kind) && has(kind)) || !room_for(kind)) { continue; }
-            Judged with = judged(scatter_, with_term(target_, now_.candidate, kind));
+            JudgedCandidate with = judged(scatter_, with_term(target_, now_.candidate, kind));
             if (with.candidate.terms.empty()) { continue; }
             rejected.push_back({with.candidate.terms.back(), now_.criterion - with.criterion,
                                 residual_of(target_, with.candidate.residuals).rms_db});
@@ -286,7 +283,7 @@ private:
                 added = kind;
             }
         }
-        if (!(best.criterion < now_.criterion - margin_to_enter)) { return false; }
+        if (!(best.criterion < now_.criterion - term_margin_to_enter)) { return false; }
         now_ = std::move(best);
         note(CurveFitStep::Change::added, added);
         return true;
@@ -294,16 +291,16 @@ private:
 
     void remove_idle_terms() {
         while (now_.candidate.terms.size() > 1) {
-            Judged best;
+            JudgedCandidate best;
             Kind removed = Kind::N;
             for (std::size_t i = 0; i < now_.candidate.terms.size(); ++i) {
-                Judged without = judged(scatter_, without_term(target_, now_.candidate, i));
+                JudgedCandidate without = judged(scatter_, without_term(target_, now_.candidate, i));
                 if (without.criterion < best.criterion) {
                     best = std::move(without);
                     removed = now_.candidate.terms[i].kind;
                 }
             }
-            if (!(best.criterion < now_.criterion + margin_to_stay)) { return; }
+            if (!(best.criterion < now_.criterion + term_margin_to_stay)) { return; }
             now_ = std::move(best);
             note(CurveFitStep::Change::removed, removed);
         }
@@ -314,9 +311,9 @@ private:
                          now_.criterion});
     }
 
-    const Target& target_;
+    const FittedCurve& target_;
     CurveScatter scatter_;
-    Judged now_;
+    JudgedCandidate now_;
 };
 
 // How the estimates of the parameters' logarithms depend on the curve in dB.
@@ -354,7 +351,7 @@ NoiseModel model_of(const std::vector<CurveTerm>& terms) {
 
 // The square of an absent term at which the curve would lie as many standard deviations below as the
 // confidence says; its scatter is that of a curve that holds it.
-double upper_limit(const Target& target, const TermSearch& search, Kind kind, double sigmas) {
+double upper_limit(const FittedCurve& target, const TermSearch& search, Kind kind, double sigmas) {
     const Candidate& fit = search.result().candidate;
     const Matrix covariance = search.scatter().covariance(search.result().smooth_sd_db);
     CurveTerm term = below_curve(target, kind, 0.0);
@@ -377,7 +374,7 @@ double upper_limit(const Target& target, const TermSearch& search, Kind kind, do
     return std::sqrt(square * scale);
 }
 
-void report_coefficients(const Target& target, const TermSearch& search, CurveModelFit& fit) {
+void report_coefficients(const FittedCurve& target, const TermSearch& search, CurveModelFit& fit) {
     const double sigmas = normal_quantile(0.5 + fit.noise.confidence / 2.0);
     const Matrix estimators = estimators_of(sensitivities_db(target, fit.terms));
     const Matrix covariance = product_with_transposed(
@@ -459,10 +456,10 @@ CurveModelFit fit_curve_model(const AllanCurve& curve, const CurveFitOptions& op
     CurveModelFit fit;
     fit.noise.method = FitMethod::curve;
     fit.noise.confidence = options.confidence;
-    const Target target = target_of(curve);
+    const FittedCurve target = target_of(curve);
     fit.noise.points = target.tau_s.size();
     if (target.tau_s.size() < curve_fit_points_min) { return fit; }
-    const double reading_sd_db = 2.0 * db_per_neper * options.reading_error;
+    const double reading_sd_db = 2.0 * variance_db_per_neper * options.reading_error;
     TermSearch search(target, reading_sd_db);
     search.run();
     fit.terms = search.result().candidate.terms;

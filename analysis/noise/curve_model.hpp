@@ -17,6 +17,7 @@
 // pay for themselves: those without which BIC rises by less than 2 ("positive").
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,14 @@ struct CurveTerm {
     double hump_tau_s() const;
 };
 
+// Whether the term is told by a second number.
+constexpr bool has_shape(CurveTerm::Kind kind) {
+    return kind == CurveTerm::Kind::gauss_markov || kind == CurveTerm::Kind::sinusoid;
+}
+
 std::string_view name_of(CurveTerm::Kind kind);  // "Q", ..., "Gauss-Markov", "sinusoid"
+
+inline constexpr double variance_db_per_neper = 10.0 / std::numbers::ln10;  // of a variance
 
 // How far a curve lies from a model, in dB of deviation: 20 log10(curve / model).
 struct CurveResidual {

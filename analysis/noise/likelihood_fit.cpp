@@ -8,11 +8,10 @@
 #include "analysis/numerics/distributions.hpp"
 #include "analysis/numerics/matrix_products.hpp"
 #include "analysis/numerics/pseudo_inverse.hpp"
+#include "analysis/numerics/square.hpp"
 
 namespace gyrolog {
 namespace {
-
-double square(double x) { return x * x; }
 
 Matrix inverse_information(const Matrix& information) {
     std::vector<double> scale;

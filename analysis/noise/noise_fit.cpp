@@ -303,7 +303,7 @@ unsigned terms_for(std::size_t points) {
     return terms;
 }
 
-std::vector<AllanPoint> usable_points(const AllanCurve& curve) {
+std::vector<AllanPoint> points_of_fit(const AllanCurve& curve) {
     std::vector<AllanPoint> points;
     std::ranges::copy_if(curve.points, std::back_inserter(points),
                          [](const AllanPoint& p) { return p.deviation > 0.0 && p.tau_s > 0.0; });
@@ -335,7 +335,7 @@ NoiseModel NoiseFit::identified() const {
 NoiseFit fit_noise(const AllanCurve& curve, double confidence) {
     NoiseFit fit;
     fit.confidence = confidence;
-    const std::vector<AllanPoint> points = usable_points(curve);
+    const std::vector<AllanPoint> points = points_of_fit(curve);
     fit.points = points.size();
     if (points.empty()) { return fit; }
     std::vector<PointScatter> scatter;

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/numerics/cholesky.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/matrix_products.hpp"
 #include "analysis/numerics/symmetric_eigen.hpp"
 
 namespace gyrolog {
 namespace {
-
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 using Vector = std::vector<double>;
 

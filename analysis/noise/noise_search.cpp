@@ -5,10 +5,12 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/numerics/square.hpp"
+
 namespace gyrolog {
 namespace {
 
-using Squares = std::vector<double>;
+using ComponentSquares = std::vector<double>;
 
 constexpr double price_of_a_term = 4.0;  // in the sparse model
 // A Gauss-Markov term has two parameters, and its correlation time was searched for.
@@ -18,10 +20,10 @@ constexpr double gauss_markov_gain = 8.0;
 constexpr double fastest_drift_s = 0.1;
 constexpr double clear_error = 0.05;  // a departure beyond which the model is amended
 
-double square(double x) { return x * x; }
-
-// Squares to begin with, from the curve's fit; white noise from the fastest contrasts, so that it is never 0.
-Squares first_guess(const ContrastPyramid& pyramid, const SpectrumModel& model, const NoiseFit& start) {
+// ComponentSquares to begin with, from the curve's fit; white noise from the fastest contrasts, so that it is
+// never 0.
+ComponentSquares first_guess(const ContrastPyramid& pyramid, const SpectrumModel& model,
+                             const NoiseFit& start) {
     const NoiseCoefficients& curve = start.best.coefficients;
     double white = 0.0;
     if (!pyramid.levels.empty()) {
@@ -30,7 +32,7 @@ Squares first_guess(const ContrastPyramid& pyramid, const SpectrumModel& model, 
         for (const TopAverage& sample : pyramid.top) { white += square(sample.value) / pyramid.rate_hz; }
         white /= static_cast<double>(pyramid.top.size());
     }
-    Squares squares(model.components(), 0.0);
+    ComponentSquares squares(model.components(), 0.0);
     squares[0] = std::max(square(curve.N_rad_per_sqrt_s), 0.01 * white);
     squares[1] = square(curve.B_rad_per_s);
     squares[2] = square(curve.K_rad_per_s_sqrt_s);
@@ -69,7 +71,7 @@ std::optional<double> departure(const std::vector<ContrastMisfit>& misfits, doub
 }
 
 // Fits a model, and again with the departure that the first fit shows, until it stands still.
-Fitted fit(const ContrastPyramid& pyramid, SpectrumModel model, Squares start) {
+Fitted fit(const ContrastPyramid& pyramid, SpectrumModel model, ComponentSquares start) {
     Fitted fitted{std::move(model), {}};
     for (int pass = 0; pass < 6; ++pass) {
         const NoiseLikelihood likelihood = likelihood_of(pyramid, fitted.model);
@@ -104,7 +106,7 @@ Fitted without_upper_end(const ContrastPyramid& pyramid, const Fitted& whole) {
     return best;
 }
 
-Squares with_component(Squares squares, std::size_t at, double value) {
+ComponentSquares with_component(ComponentSquares squares, std::size_t at, double value) {
     squares.insert(squares.begin() + static_cast<std::ptrdiff_t>(at), value);
     return squares;
 }
@@ -173,7 +175,7 @@ Fitted without_needless_angle_noise(const ContrastPyramid& pyramid, Fitted fitte
     if (likelihood_ratio(likelihood, fitted.maximum, at) > optional_ratio) { return fitted; }
     SpectrumModel model = fitted.model;
     model.angle_noise = false;
-    Squares squares = fitted.maximum.squares;
+    ComponentSquares squares = fitted.maximum.squares;
     squares.erase(squares.begin() + static_cast<std::ptrdiff_t>(at));
     return fit(pyramid, model, squares);
 }
@@ -234,7 +236,7 @@ LikelihoodMaximum with_needed_terms(const ContrastPyramid& pyramid, const Fitted
     for (const std::vector<std::size_t>& left_out :
          {std::vector<std::size_t>{1, 2}, std::vector<std::size_t>{2}, std::vector<std::size_t>{1},
           std::vector<std::size_t>{}}) {
-        Squares start = fitted.maximum.squares;
+        ComponentSquares start = fitted.maximum.squares;
         for (const std::size_t component : left_out) { start[component] = 0.0; }
         LikelihoodMaximum tried = maximise(likelihood, start, left_out);
         const double kept = 2.0 * tried.value + price_of_a_term * static_cast<double>(left_out.size());

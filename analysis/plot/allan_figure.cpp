@@ -144,16 +144,16 @@ void Drafting::add_slopes(Panel& panel, const Extent& shown) const {
 }
 
 // The table's columns: those for which at least one trace has a value.
-struct Column {
+struct LegendColumn {
     std::string header;
     std::optional<PlottedCoefficient> AllanTrace::*coefficient;
     double factor;  // from the curve's unit to the header's
 };
 
-std::vector<Column> columns_of(const AllanFigure& allan) {
+std::vector<LegendColumn> columns_of(const AllanFigure& allan) {
     const DeviationUnit& unit = allan.unit;
     const double to_paper = unit.per_unit_of_data;
-    std::vector<Column> columns{{"N  (" + unit.name + ")/√Hz", &AllanTrace::N, to_paper}};
+    std::vector<LegendColumn> columns{{"N  (" + unit.name + ")/√Hz", &AllanTrace::N, to_paper}};
     if (unit.deg_per_h > 0.0) {
         // 1 °/√h = 1 °/h √h, and √h = 60 √s.
         columns.push_back({"N  °/√h", &AllanTrace::N, to_paper * unit.deg_per_h / std::sqrt(s_per_h)});
@@ -163,7 +163,7 @@ std::vector<Column> columns_of(const AllanFigure& allan) {
     }
     columns.push_back({"K  (" + unit.name + ")√Hz", &AllanTrace::K, to_paper});
     columns.erase(std::remove_if(columns.begin(), columns.end(),
-                                 [&](const Column& column) {
+                                 [&](const LegendColumn& column) {
                                      return std::none_of(allan.traces.begin(), allan.traces.end(),
                                                          [&](const AllanTrace& t) {
                                                              return (t.*column.coefficient).has_value();
@@ -181,7 +181,7 @@ std::string cell(const std::optional<PlottedCoefficient>& coefficient, double fa
 }
 
 // Of several traces the smallest and the largest value.
-std::string cell(const TraceGroup& group, const Column& column) {
+std::string cell(const TraceGroup& group, const LegendColumn& column) {
     if (group.traces.size() == 1) { return cell(group.traces[0]->*column.coefficient, column.factor); }
     std::vector<double> values;
     for (const AllanTrace* trace : group.traces) {
@@ -194,10 +194,10 @@ std::string cell(const TraceGroup& group, const Column& column) {
     return rounded_number(*least) + " … " + rounded_number(*most);
 }
 
-std::vector<std::string> legend_row(const TraceGroup& group, const std::vector<Column>& columns) {
+std::vector<std::string> legend_row(const TraceGroup& group, const std::vector<LegendColumn>& columns) {
     const std::size_t count = group.traces.size();
     std::vector<std::string> row{count == 1 ? group.name : std::to_string(count) + " × " + group.name};
-    for (const Column& column : columns) { row.push_back(cell(group, column)); }
+    for (const LegendColumn& column : columns) { row.push_back(cell(group, column)); }
     return row;
 }
 
@@ -257,10 +257,10 @@ Panel allan_panel(const AllanFigure& allan) {
     panel.y = {allan.deviation + " σ(τ) (" + allan.unit.name + ")", ScaleKind::logarithmic, {}};
     if (allan.unit.deg_per_h > 0.0) { panel.right = SecondUnit{"σ(τ) (°/h)", allan.unit.deg_per_h}; }
 
-    const std::vector<Column> columns = columns_of(allan);
+    const std::vector<LegendColumn> columns = columns_of(allan);
     if (!columns.empty()) {
         panel.legend_header.emplace_back();
-        for (const Column& column : columns) { panel.legend_header.push_back(column.header); }
+        for (const LegendColumn& column : columns) { panel.legend_header.push_back(column.header); }
     }
     const std::vector<TraceLook> looks = passes_of(allan.traces);
     const std::vector<TraceGroup> groups = groups_of(allan.traces);

@@ -9,8 +9,8 @@
 namespace gyrolog {
 namespace {
 
-constexpr int heading_px = 130;
-constexpr int row_px = 350;
+constexpr int comparison_heading_px = 130;
+constexpr int panel_row_px = 350;
 
 // In grey the one is darker, and it is drawn over the other.
 constexpr Colour recording_colour = colours::blue;
@@ -24,9 +24,9 @@ std::vector<double> on_paper(std::vector<double> rates_rad_s) {
     return rates_rad_s;
 }
 
-class AxisPanels {
+class ComparedAxisPanels {
 public:
-    AxisPanels(const Comparison& comparison, const AxisComparison& axis)
+    ComparedAxisPanels(const Comparison& comparison, const AxisComparison& axis)
         : comparison_(comparison),
           axis_(axis),
           is_first_(&axis == comparison.axes.data()),
@@ -206,10 +206,13 @@ Figure figure_of(const ComparisonFigure& request) {
     figure.facts = request.facts;
     figure.columns = 3;
     figure.scale = request.scale;
-    for (const AxisComparison& axis : comparison.axes) { AxisPanels(comparison, axis).add_to(figure); }
+    for (const AxisComparison& axis : comparison.axes) {
+        ComparedAxisPanels(comparison, axis).add_to(figure);
+    }
     const auto rows = 2 * static_cast<int>(comparison.axes.size());
     figure.width_px = request.width_px;
-    figure.height_px = static_cast<int>(std::lround((heading_px + rows * row_px) * request.scale));
+    figure.height_px =
+        static_cast<int>(std::lround((comparison_heading_px + rows * panel_row_px) * request.scale));
     return figure;
 }
 

@@ -10,8 +10,8 @@
 namespace gyrolog {
 namespace {
 
-constexpr int heading_px = 130;
-constexpr int row_px = 420;
+constexpr int denoised_heading_px = 130;
+constexpr int denoised_row_px = 420;
 constexpr double shown_at_rest_s = 10.0;
 constexpr double shown_in_motion_s = 5.0;
 constexpr double shown_at_start_s = 3.0;
@@ -31,9 +31,9 @@ Colour colour_of(DenoiseMethod method) {
     return colours::vermillion;
 }
 
-class AxisPanels {
+class DenoisedAxisPanels {
 public:
-    AxisPanels(const DenoiseFigure& figure, const AxisDenoising& axis)
+    DenoisedAxisPanels(const DenoiseFigure& figure, const AxisDenoising& axis)
         : figure_(figure), axis_(axis), units_(units_of(figure.recording, axis.knowledge.axis)) {}
 
     void add_to(Figure& figure) const {
@@ -288,9 +288,10 @@ Figure figure_of(const DenoiseFigure& denoise) {
     figure.source = denoise.recording.name;
     figure.facts = denoise.facts;
     figure.columns = 2;
-    for (const AxisDenoising& axis : denoise.axes) { AxisPanels(denoise, axis).add_to(figure); }
+    for (const AxisDenoising& axis : denoise.axes) { DenoisedAxisPanels(denoise, axis).add_to(figure); }
     figure.width_px = denoise.width_px;
-    figure.height_px = heading_px + row_px * static_cast<int>((figure.panels.size() + 1) / 2);
+    figure.height_px =
+        denoised_heading_px + denoised_row_px * static_cast<int>((figure.panels.size() + 1) / 2);
     return figure;
 }
 

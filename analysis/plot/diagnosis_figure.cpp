@@ -13,9 +13,9 @@
 namespace gyrolog {
 namespace {
 
-constexpr double heading_px = 130.0;
-constexpr double fact_line_px = 30.0;
-constexpr double row_px = 350.0;
+constexpr double diagnosis_heading_px = 130.0;
+constexpr double diagnosis_fact_line_px = 30.0;
+constexpr double domain_row_px = 350.0;
 constexpr double lone_panel_px = 640.0;
 constexpr std::size_t columns_most = 3;
 constexpr std::size_t rows_most = 6;
@@ -23,11 +23,11 @@ constexpr std::size_t rows_most = 6;
 // From light to dark in grey, too: band before, band after, recording.
 constexpr Colour before_colour = colours::orange;
 constexpr Colour after_colour = colours::blue;
-constexpr Colour recording_colour = colours::ink;
+constexpr Colour measured_colour = colours::ink;
 
 const Stroke before_edge{mixed(before_colour, colours::ink, 0.25), 1.3, {6.0, 4.0}};
 const Stroke after_edge{mixed(after_colour, colours::ink, 0.2), 1.3, {}};
-const Stroke recording_line{recording_colour, 2.2, {}};
+const Stroke recording_line{measured_colour, 2.2, {}};
 constexpr double before_opacity = 0.30;
 constexpr double after_opacity = 0.50;
 
@@ -320,7 +320,8 @@ Figure figure_of(const DiagnosisFigure& request) {
     std::vector<DomainPanel> panels;
     panels.reserve(domains.size());
     for (const GapDomain* domain : domains) { panels.emplace_back(*domain, diagnosis.band_probability); }
-    double height_px = heading_px + fact_line_px * static_cast<double>(request.facts.size());
+    double height_px =
+        diagnosis_heading_px + diagnosis_fact_line_px * static_cast<double>(request.facts.size());
     const std::optional<Panel> bars = share_bars(diagnosis);
     if (bars) {
         figure.panels.push_back(*bars);
@@ -331,7 +332,7 @@ Figure figure_of(const DiagnosisFigure& request) {
         }
         height_px += bars->height_share;
     }
-    const double panel_px = domains.size() == 1 ? lone_panel_px : row_px;
+    const double panel_px = domains.size() == 1 ? lone_panel_px : domain_row_px;
     LegendParts legend(domains.size());
     for (const DomainPanel& panel : panels) {
         figure.panels.push_back(panel.panel(bars ? std::vector<Part>{} : legend.take(panel), panel_px));

@@ -12,7 +12,7 @@ namespace gyrolog {
 namespace {
 
 // At scale 1.
-constexpr double edge_px = 26.0;
+constexpr double figure_edge_px = 26.0;
 constexpr double title_px = 30.0;
 constexpr double fact_px = 19.0;
 constexpr double fact_line_px = 28.0;
@@ -77,7 +77,7 @@ std::string problem_with(const Figure& figure) {
 }
 
 std::vector<Box> panel_areas(const Figure& figure, double top) {
-    const double edge = edge_px * figure.scale;
+    const double edge = figure_edge_px * figure.scale;
     const double gap_px = between_panels_px * figure.scale;
     const std::vector<PanelRow> rows = rows_of(figure);
     double shares = 0.0;
@@ -128,9 +128,9 @@ std::vector<std::string> fact_lines(const Figure& figure, const Typeface& typefa
 
 // Returns the y below the heading.
 double draw_heading(Canvas& canvas, const Figure& figure, const Typeface& regular, const Typeface& bold) {
-    const double left = edge_px * figure.scale;
+    const double left = figure_edge_px * figure.scale;
     const double width_px = figure.width_px - 2.0 * left;
-    double y = edge_px * figure.scale;
+    double y = figure_edge_px * figure.scale;
     if (!figure.title.empty()) {
         const double size_px = title_px * figure.scale;
         canvas.text(bold, bold.shortened(figure.title, size_px, width_px, Ellipsis::end), {left, y},

@@ -10,7 +10,7 @@ namespace gyrolog {
 namespace {
 
 constexpr std::size_t most_in_one_column = 4;
-constexpr int heading_px = 130;
+constexpr int histogram_heading_px = 130;
 constexpr int wide_panel_px = 430;
 constexpr int small_panel_px = 380;
 
@@ -114,8 +114,8 @@ Figure figure_of(const HistogramFigure& histograms) {
     const auto columns = static_cast<std::size_t>(figure.columns);
     const auto rows = static_cast<int>((figure.panels.size() + columns - 1) / columns);
     figure.width_px = histograms.width_px;
-    figure.height_px = static_cast<int>(
-        std::lround((heading_px + rows * (are_many ? small_panel_px : wide_panel_px)) * histograms.scale));
+    figure.height_px = static_cast<int>(std::lround(
+        (histogram_heading_px + rows * (are_many ? small_panel_px : wide_panel_px)) * histograms.scale));
     return figure;
 }
 

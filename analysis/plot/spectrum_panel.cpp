@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_lines_named = 3;  // of each trace
 
-double on_paper(double density, const DeviationUnit& unit) {
+double density_on_paper(double density, const DeviationUnit& unit) {
     return std::sqrt(density) * unit.per_unit_of_data;
 }
 
@@ -20,10 +20,10 @@ Curve measured(const AllanTrace& trace, const TraceLook& look, const DeviationUn
     Curve curve;
     for (const SpectrumPoint& p : trace.spectrum.points) {
         curve.x.push_back(p.f_hz);
-        curve.y.push_back(on_paper(p.density, unit));
+        curve.y.push_back(density_on_paper(p.density, unit));
         if (look.is_one_of_many) { continue; }
-        curve.lo.push_back(on_paper(p.lo, unit));
-        curve.hi.push_back(on_paper(p.hi, unit));
+        curve.lo.push_back(density_on_paper(p.lo, unit));
+        curve.hi.push_back(density_on_paper(p.hi, unit));
     }
     curve.stroke = {look.colour, look.is_one_of_many ? look.width_px : 1.8, {}};
     curve.marker = look.marker;
@@ -36,7 +36,7 @@ Curve model(const AllanTrace& trace, const TraceLook& look, const DeviationUnit&
     Curve curve;
     for (const ModelDensity& p : trace.model_spectrum) {
         curve.x.push_back(p.f_hz);
-        curve.y.push_back(on_paper(p.density, unit));
+        curve.y.push_back(density_on_paper(p.density, unit));
     }
     curve.stroke = {look.model_colour(), 2.0, model_dash_px};
     curve.sets_range = false;
@@ -53,7 +53,7 @@ void add_lines(Panel& panel, const AllanTrace& trace, const TraceLook& look, con
             if (top == nullptr || p.density > top->density) { top = &p; }
         }
         if (top == nullptr) { continue; }
-        panel.callouts.push_back({top->f_hz, on_paper(top->density, unit),
+        panel.callouts.push_back({top->f_hz, density_on_paper(top->density, unit),
                                   rounded_number(line.f_hz, 4) + " Hz",
                                   mixed(look.colour, colours::ink, 0.25), Marker::triangle_down});
     }

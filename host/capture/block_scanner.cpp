@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t window_bytes_max = 4 * pcapng::block_bytes_max;
 constexpr std::size_t damage_kept = 1000;
-constexpr std::int64_t ns_per_s = 1'000'000'000;
+constexpr std::int64_t captured_ns_per_s = 1'000'000'000;
 
 constexpr std::uint32_t swapped_byte_order_magic = 0x4D3C2B1A;
 constexpr std::size_t pcap_header_bytes = 24;
@@ -48,10 +48,10 @@ std::int64_t to_ns(std::uint64_t time, std::uint64_t ticks_per_s) {
     const std::uint64_t seconds = std::min<std::uint64_t>(time / ticks_per_s, 9'000'000'000U);
     const std::uint64_t part = time % ticks_per_s;
     const std::uint64_t part_ns =
-        ns_per_s % ticks_per_s == 0
-            ? part * (ns_per_s / ticks_per_s)
+        captured_ns_per_s % ticks_per_s == 0
+            ? part * (captured_ns_per_s / ticks_per_s)
             : static_cast<std::uint64_t>(static_cast<double>(part) * 1e9 / static_cast<double>(ticks_per_s));
-    return static_cast<std::int64_t>(seconds * ns_per_s + part_ns);
+    return static_cast<std::int64_t>(seconds * captured_ns_per_s + part_ns);
 }
 
 }  // namespace
@@ -223,7 +223,7 @@ std::optional<CaptureBlock> BlockScanner::judge_packet(ByteView bytes, bool sear
     if (own_section_) {
         const auto record = read_usbmon_record(packet->bytes);
         block.link_type = link_type_usb_linux_mmapped;
-        block.time_ns = to_ns(packet->time, ns_per_s);
+        block.time_ns = to_ns(packet->time, captured_ns_per_s);
         const bool agrees = record && packet->interface == 0 &&
                             packet->original_bytes == packet->bytes.size() &&
                             block.time_ns / 1000 == record->time_us;
@@ -252,7 +252,7 @@ std::optional<CaptureBlock> BlockScanner::judge_pcap_record(ByteView bytes) cons
     block.original_bytes = get<std::uint32_t>(bytes, 12);
     block.link_type = interface.link_type;
     block.time_ns =
-        std::int64_t{get<std::uint32_t>(bytes, 0)} * ns_per_s + to_ns(part, interface.ticks_per_s);
+        std::int64_t{get<std::uint32_t>(bytes, 0)} * captured_ns_per_s + to_ns(part, interface.ticks_per_s);
     const bool usb = interface.link_type == link_type_usb_linux_mmapped;
     if (part >= interface.ticks_per_s || block.original_bytes < block.packet.size() ||
         (usb && !read_usbmon_record(block.packet))) {

@@ -11,7 +11,7 @@
 namespace gyrolog {
 namespace {
 
-Error errno_error(const std::string& what) {
+Error reading_error(const std::string& what) {
     const int error_number = errno;
     const ErrorCode code = error_number == ENOENT || error_number == ENOTDIR ? ErrorCode::not_found
                            : error_number == EACCES                          ? ErrorCode::permission_denied
@@ -28,7 +28,7 @@ public:
 
     Status measure() {
         struct stat status {};
-        if (::fstat(descriptor_, &status) != 0) { return errno_error("open '" + path_ + "'"); }
+        if (::fstat(descriptor_, &status) != 0) { return reading_error("open '" + path_ + "'"); }
         if (!S_ISREG(status.st_mode)) {
             return Error{ErrorCode::unsupported, "open '" + path_ + "': not a regular file"};
         }
@@ -45,7 +45,7 @@ public:
                                         static_cast<off_t>(offset + filled));
             if (got == 0) { break; }
             if (got < 0 && errno == EINTR) { continue; }
-            if (got < 0) { return errno_error("read '" + path_ + "'"); }
+            if (got < 0) { return reading_error("read '" + path_ + "'"); }
             filled += static_cast<std::size_t>(got);
         }
         return filled;
@@ -78,7 +78,7 @@ private:
 
 Result<std::unique_ptr<InputFile>> open_input_file(const std::string& path) {
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) { return errno_error("open '" + path + "'"); }
+    if (descriptor < 0) { return reading_error("open '" + path + "'"); }
     auto file = std::make_unique<PosixInputFile>(descriptor, path);
     GYROLOG_CHECK(file->measure());
     return std::unique_ptr<InputFile>(std::move(file));

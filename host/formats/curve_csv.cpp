@@ -14,8 +14,8 @@ namespace gyrolog {
 namespace {
 
 // Wide enough for any sensor and narrow enough that squares stay finite.
-constexpr double smallest = 1e-15;
-constexpr double largest = 1e15;
+constexpr double smallest_read = 1e-15;
+constexpr double largest_read = 1e15;
 
 struct CurveUnit {
     std::string_view ending;
@@ -61,8 +61,8 @@ Status judge_header(std::vector<CsvTableColumn>& columns) {
             names.push_back(deviation->name);
         }
         column.used = true;
-        column.lowest = smallest;
-        column.highest = largest;
+        column.lowest = smallest_read;
+        column.highest = largest_read;
     }
     if (!tau) {
         return malformed(fmt::format("line 1: no column tau_s; it must name the columns, {}", example));

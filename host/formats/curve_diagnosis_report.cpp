@@ -13,10 +13,10 @@
 namespace gyrolog {
 namespace {
 
-constexpr double band_probability = 0.95;
+constexpr double probability_in_band = 0.95;
 constexpr double band_sd = 1.96;
 
-double deviation_of(const std::vector<CurveTerm>& terms, double tau_s) {
+double modelled_deviation(const std::vector<CurveTerm>& terms, double tau_s) {
     double variance = 0.0;
     for (const CurveTerm& term : terms) { variance += term.allan_variance(tau_s); }
     return std::sqrt(variance);
@@ -39,7 +39,7 @@ Band band_of(const std::vector<CurveTerm>& terms, const GapDomain& domain, doubl
     Band band;
     const double factor = std::exp(band_sd * reading_error);
     for (std::size_t i = 0; i < domain.x.size(); ++i) {
-        const double deviation = deviation_of(terms, domain.x[i]) * deg_per_rad;
+        const double deviation = modelled_deviation(terms, domain.x[i]) * deg_per_rad;
         band.lo.push_back(deviation / factor);
         band.hi.push_back(deviation * factor);
         band.outside.push_back(domain.recording[i] < band.lo.back() || domain.recording[i] > band.hi.back());
@@ -209,7 +209,7 @@ Diagnosis as_diagnosis(const CurveDiagnosisReport& report) {
     Diagnosis diagnosis;
     diagnosis.recording_name = report.curve_name;
     diagnosis.model_name = report.model_name;
-    diagnosis.band_probability = band_probability;
+    diagnosis.band_probability = probability_in_band;
     diagnosis.where = place_of(report);
     diagnosis.left = left_of(report);
     diagnosis.warnings = report.warnings;

@@ -12,7 +12,6 @@ namespace {
 
 using Range = JsonKeys::Range;
 
-constexpr double percent = 0.01;
 constexpr double rad_per_s_per_deg_per_h = rad_per_deg / 3600.0;
 
 // The factor by which the roots of the sheet's densities exceed the two-sided ones.

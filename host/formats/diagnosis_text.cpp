@@ -64,12 +64,14 @@ std::string odds_text(double p) {
 
 std::string probability_text(double p) { return p < 1e-6 ? "p < 1e-6" : fmt::format("p = {:.2g}", p); }
 
-std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
+std::string percent_text(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
 std::string share_text(const Share& share) {
-    if (percent(share.lo) == percent(share.hi)) { return percent(share.value) + " of the gap"; }
-    return fmt::format("{} of the gap ({} to {})", percent(share.value), percent(share.lo),
-                       percent(share.hi));
+    if (percent_text(share.lo) == percent_text(share.hi)) {
+        return percent_text(share.value) + " of the gap";
+    }
+    return fmt::format("{} of the gap ({} to {})", percent_text(share.value), percent_text(share.lo),
+                       percent_text(share.hi));
 }
 
 std::string times_floor(double value, const Gap& gap) {
@@ -127,7 +129,7 @@ std::string cause_text(const Cause& cause, std::size_t rank) {
     return wrapped_text(
         fmt::format("  {}. ", rank),
         fmt::format("{}: {}, probability {}. {}{}", cause_name(cause), share_text(cause.share),
-                    percent(cause.score), with_full_stop(cause_words(cause)), tie_clause(cause)));
+                    percent_text(cause.score), with_full_stop(cause_words(cause)), tie_clause(cause)));
 }
 
 std::string explained_section(const Diagnosis& diagnosis) {
@@ -164,7 +166,7 @@ std::string words_of_form(const std::string& form) {
 std::string unnamed_text(const Unnamed& unnamed) {
     const std::string place = place_text(unnamed.where);
     return fmt::format("without a name, {}{}: {} of the gap", words_of_form(unnamed.form),
-                       place.empty() ? "" : " (" + place + ")", percent(unnamed.share));
+                       place.empty() ? "" : " (" + place + ")", percent_text(unnamed.share));
 }
 
 std::string left_text(const Left& left) {
@@ -190,10 +192,10 @@ std::string fall_text(const Diagnosis& diagnosis) {
 
 std::string left_section(const Diagnosis& diagnosis) {
     std::string text =
-        fmt::format("left: {} of the gap", percent(std::max(1.0 - diagnosis.shrink.value, 0.0)));
+        fmt::format("left: {} of the gap", percent_text(std::max(1.0 - diagnosis.shrink.value, 0.0)));
     if (!diagnosis.unnamed.empty()) {
         text += fmt::format(", {} beside what has no name",
-                            percent(std::max(1.0 - diagnosis.shrink_modelled, 0.0)));
+                            percent_text(std::max(1.0 - diagnosis.shrink_modelled, 0.0)));
     }
     text += "; " + fall_text(diagnosis);
     if (!diagnosis.causes.empty()) {
@@ -236,7 +238,7 @@ std::string verdict_on(const std::string& causes, const Diagnosis& diagnosis, st
             return fmt::format("known: {} {} the gap", causes, explain);
         case Verdict::partly:
             return fmt::format("partly: {} {} {} of the gap", causes, explain,
-                               percent(diagnosis.shrink.value));
+                               percent_text(diagnosis.shrink.value));
         case Verdict::unexplained:
             break;
     }

@@ -13,8 +13,8 @@ ExportedTerm term_of(const FittedCoefficient& fitted) {
     return {false, 0.0, fitted.upper};
 }
 
-ExportedAxis axis_of(const std::string& name, const NoiseFit& fit, double bias,
-                     std::optional<double> flat_tau_s) {
+ExportedAxis exported_axis(const std::string& name, const NoiseFit& fit, double bias,
+                           std::optional<double> flat_tau_s) {
     return {
         name,      term_of(fit[NoiseTerm::N]), term_of(fit[NoiseTerm::B]), term_of(fit[NoiseTerm::K]), bias,
         flat_tau_s};
@@ -34,7 +34,8 @@ void add_accelerometer(ExportSource& source, const Recording& recording) {
         AllanOptions options;
         options.threads = 0;
         const AllanCurve curve = allan_deviation(*column, recording.segments, recording.rate_hz, options);
-        source.accelerometer.push_back(axis_of(axis, fit_noise(curve), 0.0, flat_tau_of(read_slopes(curve))));
+        source.accelerometer.push_back(
+            exported_axis(axis, fit_noise(curve), 0.0, flat_tau_of(read_slopes(curve))));
     }
 }
 
@@ -60,7 +61,7 @@ ExportSource export_source(const Recording& recording, const AnalysisReport& rep
     for (const char* name : axis_names) {
         const auto axis = std::ranges::find(report.axes, name, &AxisReport::axis);
         if (axis == report.axes.end()) { continue; }
-        source.gyro.push_back(axis_of(name, axis->fit, axis->bias.value, flat_tau_of(axis->slopes)));
+        source.gyro.push_back(exported_axis(name, axis->fit, axis->bias.value, flat_tau_of(axis->slopes)));
         const Column* column = recording.find(std::string("g") + name);
         if (column != nullptr && column->is_counts() && column->unit == "rad/s") {
             constexpr double codes_of_a_side = 32768.0;  // of a 16-bit converter

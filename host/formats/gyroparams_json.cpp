@@ -13,7 +13,6 @@ namespace {
 
 using Range = JsonKeys::Range;
 
-constexpr double percent = 0.01;
 // Stands for MathWorks' Inf, which JSON lacks.
 constexpr double no_range_rad_s = 1e9 * rad_per_deg;
 

@@ -14,6 +14,9 @@
 
 namespace gyrolog {
 
+// What the number of a key that ends in _percent is multiplied by.
+inline constexpr double percent = 0.01;
+
 struct JsonDocument {
     Json json;          // an object with the text "schema"
     bool plain = true;  // false: a number in it was not finite, and stands as text in its place

@@ -29,14 +29,13 @@ using Range = JsonKeys::Range;
 using Keys = JsonKeys;
 
 constexpr const char* schema_name = "gyrolog-model/1";
-constexpr double percent = 0.01;
 
 void carry(Json& carried, const std::string& key, Json rest) {
     if (!rest.empty()) { carried[key] = std::move(rest); }
 }
 
 // The factor by which N, B and K of the file exceed those of the two-sided convention.
-double noise_factor(Keys& keys) {
+double coefficient_factor(Keys& keys) {
     const Json* noise_type = keys.find("noise_type");
     if (noise_type == nullptr || *noise_type == "two_sided") { return 1.0; }
     if (*noise_type != "one_sided") { keys.fail("noise_type", "is neither two_sided nor one_sided"); }
@@ -126,7 +125,7 @@ SensorModel read_document(const Json& document, std::optional<std::string>& prob
     read_sensor(keys, model);
 
     Json carried = Json::object();
-    const double factor = noise_factor(keys);
+    const double factor = coefficient_factor(keys);
     const Json& axes = keys.need("axes");
     Keys axes_keys = keys.inside(axes, "axes");
     Json axes_carried = Json::object();

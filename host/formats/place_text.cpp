@@ -13,7 +13,7 @@ namespace gyrolog {
 namespace {
 
 // Four digits: lines are narrow.
-std::string frequency_text(double f_hz) {
+std::string frequency_of_place(double f_hz) {
     if (f_hz < 0.1) { return fmt::format("{:.4g} mHz", f_hz * 1e3); }
     return f_hz < 1000.0 ? fmt::format("{:.4g} Hz", f_hz) : fmt::format("{:.4g} kHz", f_hz / 1e3);
 }
@@ -36,7 +36,7 @@ std::string place_text(const Place& place) {
     if (place.tau_s) {
         parts.push_back(span_text(*place.tau_s, duration_text, "averaging times ", "averaging time "));
     }
-    if (place.freq_hz) { parts.push_back(span_text(*place.freq_hz, frequency_text, "", "at ")); }
+    if (place.freq_hz) { parts.push_back(span_text(*place.freq_hz, frequency_of_place, "", "at ")); }
     if (place.time_s) {
         parts.push_back(span_text(*place.time_s, duration_text, "from ", "at ") + " after the first sample");
     }

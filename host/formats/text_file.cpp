@@ -10,7 +10,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::size_t piece_bytes = std::size_t{1} << 18;
+constexpr std::size_t read_bytes = std::size_t{1} << 18;
 
 // What libarchive says of compressed bytes, beside EILSEQ: ARCHIVE_ERRNO_MISC of a header that is not
 // installed.
@@ -72,7 +72,7 @@ Result<TextReader> TextReader::open(const std::string& path) {
     GYROLOG_CHECK(know_compressions(file));
     archive_read_support_format_raw(file);
     archive_read_support_format_empty(file);
-    if (archive_read_open_filename(file, path.c_str(), piece_bytes) != ARCHIVE_OK) { return error_of(file); }
+    if (archive_read_open_filename(file, path.c_str(), read_bytes) != ARCHIVE_OK) { return error_of(file); }
     // The last filter is the file itself.
     if (archive_filter_count(file) > 2) {
         return Error{ErrorCode::malformed, "compressed more than once: decompress it first"};
@@ -80,7 +80,7 @@ Result<TextReader> TextReader::open(const std::string& path) {
     archive_entry* entry = nullptr;
     const int header = archive_read_next_header(file, &entry);
     if (header != ARCHIVE_OK && header != ARCHIVE_EOF) { return error_of(file); }
-    reader.buffer_.resize(header == ARCHIVE_EOF ? 0 : piece_bytes);
+    reader.buffer_.resize(header == ARCHIVE_EOF ? 0 : read_bytes);
     return reader;
 }
 

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 
+#include "host/formats/text_width.hpp"
+
 namespace gyrolog {
 namespace {
 
 constexpr std::size_t space_between = 2;
-
-// Columns on a terminal: every byte but the continuation bytes of UTF-8.
-std::size_t width_of(const std::string& text) {
-    return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-}
 
 using Line = std::vector<std::string>;
 

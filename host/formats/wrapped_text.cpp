@@ -1,17 +1,8 @@
 #include "host/formats/wrapped_text.hpp"
 
-#include <algorithm>
+#include "host/formats/text_width.hpp"
 
 namespace gyrolog {
-namespace {
-
-// Characters of UTF-8.
-std::size_t width_of(std::string_view text) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0U) != 0x80U; }));
-}
-
-}  // namespace
 
 std::string wrapped_text(std::string_view first, std::string_view text, std::size_t width_max) {
     const std::size_t indent = width_of(first);

@@ -7,7 +7,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::chrono::milliseconds progress_interval(100);
+constexpr std::chrono::milliseconds longest_wait(100);
 constexpr std::int64_t sync_interval_ns = 1'000'000'000;
 constexpr std::uint64_t checkpoint_bytes = std::uint64_t{1} << 20U;
 constexpr double fastest_hz = 33'000.0;  // of an MPU-9250, with its clock's error
@@ -47,7 +47,7 @@ CaptureProgress WriterThread::progress() const {
 void WriterThread::run() {
     if (request_.observer != nullptr) { request_.observer->on_decoder(decoder_); }
     while (!queue_.finished()) {
-        const TransferQueue::Batch batch = queue_.pop(std::min(progress_interval, until_flush()));
+        const TransferQueue::Batch batch = queue_.pop(std::min(longest_wait, until_flush()));
         const std::int64_t came_until_ns = clock_ns(CLOCK_MONOTONIC);
         batch.for_each([&](const Transfer& transfer) { take(transfer); });
         write_out(came_until_ns, append_marks());

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t write_timeout_ms = 1000;
 
-SourceIdentity identity_of(const UsbBoard& board) {
+SourceIdentity identity_of_board(const UsbBoard& board) {
     return {board.uri(),
             board.vendor_id,
             board.product_id,
@@ -61,7 +61,7 @@ UsbSource::UsbSource(std::shared_ptr<UsbContext> usb, std::unique_ptr<UsbDevice>
 
 void UsbSource::use(std::unique_ptr<UsbDevice> device) {
     device_ = std::move(device);
-    identity_ = identity_of(device_->board());
+    identity_ = identity_of_board(device_->board());
     TransferObserver& self = *this;
     stream_ = std::make_unique<BulkInStream>(*usb_, device_->handle(), device_->board().layout.endpoint_in,
                                              plan_, self);

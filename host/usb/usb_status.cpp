@@ -27,7 +27,7 @@ int kernel_status_of_transfer(int status) {
 
 namespace {
 
-ErrorCode error_code_of(int code) {
+ErrorCode code_of_libusb(int code) {
     switch (code) {
         case LIBUSB_ERROR_ACCESS:
             return ErrorCode::permission_denied;
@@ -80,7 +80,7 @@ const char* words_of(int code) {
 }  // namespace
 
 Error usb_error(const std::string& doing, int code) {
-    return {error_code_of(code), doing + ": " + words_of(code)};
+    return {code_of_libusb(code), doing + ": " + words_of(code)};
 }
 
 }  // namespace gyrolog

@@ -28,13 +28,13 @@ enum Request : std::uint8_t {
     get_interface = 10,
     set_interface = 11,
 };
-enum DescriptorType : std::uint8_t { device = 1, configuration = 2, string = 3 };
+enum AskedDescriptor : std::uint8_t { device = 1, configuration = 2, string = 3 };
 
 constexpr std::uint8_t only_configuration = 1;
 // The endpoint's own: two packets (double buffering).
-constexpr std::size_t endpoint_bytes = std::size_t{2} * GLP_USB_PACKET_BYTES;
+constexpr std::size_t control_bytes = std::size_t{2} * GLP_USB_PACKET_BYTES;
 
-unsigned field(const std::array<std::uint8_t, 8>& setup, std::size_t at) {
+unsigned setup_field(const std::array<std::uint8_t, 8>& setup, std::size_t at) {
     return setup[at] | static_cast<unsigned>(setup[at + 1]) << 8U;
 }
 
@@ -43,7 +43,7 @@ const UsbFunction::ControlResponse stalled = {true, {}};
 }  // namespace
 
 UsbFunction::UsbFunction(VirtualBoard& board) : board_(board) {
-    board_.in_endpoint().set_capacity(endpoint_bytes);
+    board_.in_endpoint().set_capacity(control_bytes);
 }
 
 void UsbFunction::advance_to(std::int64_t host_monotonic_ns) {
@@ -56,7 +56,7 @@ UsbFunction::ControlResponse UsbFunction::control(const std::array<std::uint8_t,
     ControlResponse response = stalled;
     if ((setup[0] & kind_mask) == kind_standard) { response = standard_request(setup); }
     if ((setup[0] & kind_mask) == kind_class) { response = class_request(setup, out_data); }
-    const std::size_t asked = (setup[0] & direction_in) != 0 ? field(setup, 6) : 0;
+    const std::size_t asked = (setup[0] & direction_in) != 0 ? setup_field(setup, 6) : 0;
     if (response.data.size() > asked) { response.data.resize(asked); }
     return response;
 }
@@ -86,7 +86,7 @@ UsbFunction::ControlResponse UsbFunction::standard_request(const std::array<std:
         case get_interface:
             return {false, {0}};
         case set_interface:
-            return field(setup, 2) == 0 ? ControlResponse{} : stalled;
+            return setup_field(setup, 2) == 0 ? ControlResponse{} : stalled;
         case clear_feature:
         case set_feature:
         case set_address:
@@ -114,7 +114,7 @@ UsbFunction::ControlResponse UsbFunction::class_request(const std::array<std::ui
 }
 
 std::optional<std::size_t> UsbFunction::bulk_in(std::span<std::uint8_t> buffer) {
-    board_.in_endpoint().set_capacity(buffer.size() + endpoint_bytes);
+    board_.in_endpoint().set_capacity(buffer.size() + control_bytes);
     const auto size = board_.in_endpoint().take_transfer(buffer);
     if (size) { return size; }
     board_.advance_to(board_.now_ns());
@@ -127,7 +127,7 @@ void UsbFunction::bus_reset() {
     configuration_ = 0;
     board_.on_line_state(false);
     board_.in_endpoint().clear();
-    board_.in_endpoint().set_capacity(endpoint_bytes);
+    board_.in_endpoint().set_capacity(control_bytes);
 }
 
 }  // namespace gyrolog

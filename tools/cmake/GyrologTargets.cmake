@@ -92,9 +92,10 @@ gyrolog_precompile_standard_headers(${GYROLOG_STANDARD_HEADERS}_brief ${GYROLOG_
 
 # gyrolog_library(NAME SOURCES ... LINK ... [PRECOMPILE <header>...] [RUNS_BRIEFLY | FASTER_IN benchmark]): a static
 # library with the project's settings. PRECOMPILE: headers that most of its sources include and that are long to read,
-# in place of those of the standard library. RUNS_BRIEFLY: nothing in it runs for long: GYROLOG_BRIEF_OPTIMIZATION is
-# enough. FASTER_IN: -O3, which that benchmark shows to pay; without the precompiled parts of the standard library,
-# with which GCC reads their -O2 for functions that have a target of their own.
+# in place of those of the standard library; where all its sources are compiled as one, that one reads them itself.
+# RUNS_BRIEFLY: nothing in it runs for long: GYROLOG_BRIEF_OPTIMIZATION is enough. FASTER_IN: -O3, which that benchmark
+# shows to pay; without the precompiled parts of the standard library, with which GCC reads their -O2 for functions
+# that have a target of their own.
 function(gyrolog_library name)
   cmake_parse_arguments(arg "RUNS_BRIEFLY" "FASTER_IN" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   gyrolog_join(sources ${name} ${arg_SOURCES})
@@ -109,7 +110,8 @@ function(gyrolog_library name)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)
     set(precompiled "")
   endif()
-  if(arg_PRECOMPILE)
+  list(LENGTH sources units)
+  if(arg_PRECOMPILE AND units GREATER 1)
     target_precompile_headers(${name} PRIVATE ${arg_PRECOMPILE})
   elseif(precompiled AND NOT arg_SOURCES MATCHES "\\.c(;|$)")
     target_precompile_headers(${name} REUSE_FROM ${precompiled})

@@ -8,6 +8,7 @@
 #include "analysis/diagnose/calibration/replicates.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/measures/gap_curves.hpp"
+#include "analysis/numerics/square.hpp"
 
 namespace gyrolog {
 
@@ -16,8 +17,6 @@ namespace {
 constexpr double sds_of_95_percent = 1.96;
 
 using Curves = std::vector<GapCurve>;
-
-double square(double value) { return value * value; }
 
 std::vector<GapCurve> seen_under(const std::shared_ptr<const Prediction>& prediction,
                                  const std::shared_ptr<const Recording>& recording, std::uint64_t seed,

@@ -14,7 +14,7 @@ constexpr std::size_t terms = drift_parts + 1;  // white noise is the last
 constexpr double spacing = 16.0;
 constexpr int rounds = 60;
 
-struct Place {
+struct DensityPlace {
     double weight = 0.0;
     double density = 0.0;
     std::array<double, terms> unit{};
@@ -37,18 +37,18 @@ std::array<double, terms> unit_densities(double f_hz, double step_s) {
     return unit;
 }
 
-std::array<double, terms> fitted(const std::vector<Place>& places) {
+std::array<double, terms> fitted_amounts(const std::vector<DensityPlace>& places) {
     std::array<double, terms> amount{};
     // Each at first alone.
     for (std::size_t j = 0; j < terms; ++j) {
         double least = 1e300;
-        for (const Place& place : places) { least = std::min(least, place.density / place.unit[j]); }
+        for (const DensityPlace& place : places) { least = std::min(least, place.density / place.unit[j]); }
         amount[j] = least;
     }
     for (int round = 0; round < rounds; ++round) {
         std::array<double, terms> up{};
         std::array<double, terms> down{};
-        for (const Place& place : places) {
+        for (const DensityPlace& place : places) {
             double model = 0.0;
             for (std::size_t j = 0; j < terms; ++j) { model += amount[j] * place.unit[j]; }
             for (std::size_t j = 0; j < terms; ++j) {
@@ -66,7 +66,7 @@ std::array<double, terms> fitted(const std::vector<Place>& places) {
 
 DriftStates drift_states(std::span<const double> f_hz, std::span<const double> density, double step_s,
                          double duration_s) {
-    std::vector<Place> places;
+    std::vector<DensityPlace> places;
     for (std::size_t i = 0; i < f_hz.size() && f_hz[i] < 0.5 / step_s; ++i) {
         const double next = i + 1 < f_hz.size() ? f_hz[i + 1] : f_hz[i];
         const double octaves = std::log2(next / f_hz[i]);
@@ -74,7 +74,7 @@ DriftStates drift_states(std::span<const double> f_hz, std::span<const double> d
     }
     DriftStates states;
     if (places.empty()) { return states; }
-    const std::array<double, terms> amount = fitted(places);
+    const std::array<double, terms> amount = fitted_amounts(places);
     const double walk = amount[drift_parts - 1];
     double variance = walk * duration_s;
     for (std::size_t part = 0; part + 1 < drift_parts; ++part) {

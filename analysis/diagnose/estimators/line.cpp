@@ -29,7 +29,7 @@ constexpr std::size_t group = 16;
 constexpr std::size_t candidates_most = 32;
 constexpr std::size_t refined_most = 3;
 constexpr std::size_t coarse_reach = 12;
-constexpr std::size_t reach = 64;
+constexpr std::size_t line_reach = 64;
 constexpr std::size_t removed_reach = 4096;
 
 // Median of chi-square with 16 degrees of freedom over its mean (Wilson and Hilferty 1931).
@@ -205,7 +205,7 @@ private:
     double refined_place(const Observation& observation, double place) const {
         double step = 0.25;
         while (step > 1e-5) {
-            place = best_place(observation, place - 2.0 * step, step, 5, reach).second;
+            place = best_place(observation, place - 2.0 * step, step, 5, line_reach).second;
             step *= 0.25;
         }
         return place;
@@ -263,7 +263,7 @@ private:
         std::vector<AxesFit> fits;
         for (const std::size_t axis : prediction_->axes()) {
             const AxisObservation& seen = observation.axis(axis);
-            AxisLine line{axis, fit_axis(seen, place, reach), 1.0};
+            AxisLine line{axis, fit_axis(seen, place, line_reach), 1.0};
             if (!(line.fit.gain_nats > 0.0)) { continue; }
             line.floor = floor_around(seen, line.fit.line);
             line.fit.gain_nats = std::max(refitted_gain(seen, axis, line.fit.line), 0.0);

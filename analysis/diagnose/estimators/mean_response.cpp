@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
@@ -10,6 +9,7 @@
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/effect_response.hpp"
 #include "analysis/diagnose/likelihood/mean_regression.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog {
@@ -23,7 +23,6 @@ constexpr double simplex_width = 0.05;
 // Where the evidence falls by more than this over the simplex' width, its answer is not good enough.
 constexpr double fall_polished_nats = 0.25;
 constexpr std::size_t polishing_passes = 2;
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 struct Trial {
     TrialPoint point;

@@ -3,11 +3,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
 #include "analysis/diagnose/likelihood/whittle.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog {
@@ -19,7 +19,6 @@ constexpr int amplitudes_tried = 9;
 constexpr double worth_refining_nats = 1.0;
 // Parameters may leave their plausible range by this factor.
 constexpr double beyond_plausible = 3.0;
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 class NoiseSpectrumEstimator final : public Estimator {
 public:

@@ -138,7 +138,7 @@ Mixed mix(const AxisSamples& samples, const Limits& limits) {
 }
 
 template <typename Function>
-double top_between(double from, double to, Function function) {
+double top_by_thirds(double from, double to, Function function) {
     constexpr int thirds = 14;
     for (int i = 0; i < thirds; ++i) {
         const double left = from + (to - from) / 3.0;
@@ -282,14 +282,15 @@ private:
         };
         Limits limits = choice.limits_dps;
         for (int round = 0; round < 2; ++round) {
-            limits.from = top_between(limits.from / size_step,
-                                      std::min(limits.from * size_step, 0.98 * limits.to), [&](double from) {
-                                          return worth({from, limits.to});
+            limits.from =
+                top_by_thirds(limits.from / size_step, std::min(limits.from * size_step, 0.98 * limits.to),
+                              [&](double from) {
+                                  return worth({from, limits.to});
+                              });
+            limits.to = top_by_thirds(std::max(limits.to / size_step, 1.02 * limits.from),
+                                      limits.to * size_step, [&](double to) {
+                                          return worth({limits.from, to});
                                       });
-            limits.to = top_between(std::max(limits.to / size_step, 1.02 * limits.from),
-                                    limits.to * size_step, [&](double to) {
-                                        return worth({limits.from, to});
-                                    });
         }
         const double there = worth(limits);
         if (there < choice.worth_nats) { return; }

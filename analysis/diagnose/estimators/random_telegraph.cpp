@@ -5,18 +5,16 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/telegraph_filter.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 // Correlation times tried: from half the shortest plausible dwell time on, by factors of 1.6.
 constexpr double correlation_ratio = 1.6;

@@ -29,7 +29,7 @@ struct AxisBins {
 
 constexpr int bins_per_octave = 4;
 constexpr double bins_most = 40.0 * bins_per_octave;
-constexpr double trace_nats = 2.0;
+constexpr double jitter_trace_nats = 2.0;
 constexpr double worth_checking_nats = 100.0;
 
 double level_log_likelihood_nats(const AxisBins& axis, double level, double sd_s) {
@@ -90,12 +90,12 @@ public:
                          std::log(0.2 * range.plausible_from), std::log(3.0 * range.plausible_to));
         const double sd_s = std::exp(log_sd);
         double gain_nats = nats(sd_s) - without;
-        if (gain_nats < trace_nats) { return std::nullopt; }
+        if (gain_nats < jitter_trace_nats) { return std::nullopt; }
         // What a model misses of the motion's mean answer is larger where the rate changes, too.
         if (gain_nats > worth_checking_nats) {
             gain_nats = std::min(gain_nats, checked_nats(observation, sd_s));
         }
-        if (gain_nats < trace_nats) { return std::nullopt; }
+        if (gain_nats < jitter_trace_nats) { return std::nullopt; }
         constexpr double step = 0.05;
         const double curvature =
             2.0 * nats(sd_s) - nats(sd_s * std::exp(step)) - nats(sd_s * std::exp(-step));

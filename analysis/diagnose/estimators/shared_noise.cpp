@@ -10,6 +10,7 @@
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
+#include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
@@ -24,7 +25,6 @@ constexpr double line_power = 25.0;
 constexpr double worth_scanning_nats = 2.0;
 // The axes' gains differ by less than this.
 constexpr double gain_ratio_least = 0.3;
-constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
 
 // Of the scaled coefficients of all axes.
 struct Statistics {

@@ -22,12 +22,12 @@ constexpr std::size_t ramp_ends = 32;     // times between which ramps are tried
 constexpr std::size_t ramp_blocks = 256;  // of which the variances are compared with a ramp
 constexpr double side_samples_min = 256.0;
 // Worth less at their best, no courses are looked at closely.
-constexpr double worth_refining_nats = 2.0;
+constexpr double change_worth_refining_nats = 2.0;
 // From here on the samples' distribution about the course is worth knowing.
 constexpr double worth_tails_nats = 3.0;
 // The level before the change counts where the change is certain and that level lies this near to the
 // model's.
-constexpr double certain_nats = 5.0;
+constexpr double change_certain_nats = 5.0;
 constexpr double near_nats = 4.5;
 const double log_factor_most = std::log(20.0);
 
@@ -120,7 +120,7 @@ double log_factor_sd(const Scan& scan, double spread) {
 
 // Golden section.
 template <typename Function>
-double top_between(double from, double to, Function function) {
+double top_by_golden_section(double from, double to, Function function) {
     const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
     double left = to - golden * (to - from);
     double right = from + golden * (to - from);
@@ -184,7 +184,7 @@ public:
         if (best.empty()) { return std::nullopt; }
         Fit step = rough_fit(best, sum_of(best, &Scan::steps), steps_);
         Fit ramp = rough_fit(best, sum_of(best, &Scan::ramps), ramps_);
-        if (std::max(gain_of(step), gain_of(ramp)) < worth_refining_nats) { return std::nullopt; }
+        if (std::max(gain_of(step), gain_of(ramp)) < change_worth_refining_nats) { return std::nullopt; }
         refine(observation, step);
         refine(observation, ramp);
         return finding_of(observation, step.evidence_nats > ramp.evidence_nats ? step : ramp);
@@ -348,7 +348,7 @@ private:
             return course_gain_nats(blocks, levels(reached, scan.share, log_factor));
         };
         Factor factor;
-        factor.log_value = top_between(-log_factor_most, log_factor_most, gain);
+        factor.log_value = top_by_golden_section(-log_factor_most, log_factor_most, gain);
         factor.gain_nats = gain(factor.log_value);
         factor.log_sd = log_factor_sd(scan, spread(blocks, reached));
         return factor;
@@ -546,7 +546,7 @@ private:
         finding.evidence_nats = fit.evidence_nats;
         for (std::size_t a = 0; a < fit.scans.size(); ++a) {
             double gain = fit.factors[a].gain_nats;
-            if (fit.evidence_nats > certain_nats) {
+            if (fit.evidence_nats > change_certain_nats) {
                 const double of_level = level_gain_nats(observation, fit, a);
                 gain += of_level;
                 finding.evidence_nats += of_level;

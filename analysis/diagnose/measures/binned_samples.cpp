@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/numerics/square.hpp"
+
 namespace gyrolog {
 
 namespace {
@@ -11,8 +13,6 @@ constexpr double samples_of_bin_least = 30.0;
 // Quantiles are those of as many samples as this, spread over all.
 constexpr std::size_t samples_for_quantiles = 20'000;
 constexpr std::size_t course_blocks = 16;
-
-double square(double value) { return value * value; }
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "analysis/diagnose/measures/shown_values.hpp"
+#include "analysis/numerics/square.hpp"
 #include "analysis/numerics/tail_probability.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
@@ -18,8 +19,6 @@ namespace {
 constexpr std::size_t codes_around = 6;  // on either side
 constexpr double code_count_least = 8.0;
 constexpr double log_mean_most = 40.0;
-
-double square(double value) { return value * value; }
 
 // How often each code of the converter was shown, from codes_around below the least to as far above the
 // largest.

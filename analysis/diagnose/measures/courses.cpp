@@ -5,14 +5,13 @@
 
 #include "analysis/diagnose/measures/curve_place.hpp"
 #include "analysis/diagnose/measures/shown_values.hpp"
+#include "analysis/numerics/square.hpp"
 
 namespace gyrolog {
 
 namespace {
 
 constexpr std::size_t course_blocks = 32;
-
-double square(double value) { return value * value; }
 
 }  // namespace
 

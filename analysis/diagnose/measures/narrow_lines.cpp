@@ -7,6 +7,7 @@
 #include "analysis/diagnose/measures/curve_place.hpp"
 #include "analysis/diagnose/measures/frequency_bands.hpp"
 #include "analysis/diagnose/measures/shown_values.hpp"
+#include "analysis/numerics/square.hpp"
 #include "analysis/numerics/tail_probability.hpp"
 
 namespace gyrolog {
@@ -17,8 +18,6 @@ namespace {
 constexpr std::array<std::size_t, 4> narrow_widths = {4, 16, 64, 256};
 // Below the bands that hold the broadest of them.
 constexpr std::array<std::size_t, 3> slow_widths = {2, 4, 16};
-
-double square(double value) { return value * value; }
 
 struct Window {
     double surprise_nats = 0.0;

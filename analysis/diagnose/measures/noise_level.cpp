@@ -7,6 +7,7 @@
 #include "analysis/diagnose/measures/curve_place.hpp"
 #include "analysis/diagnose/measures/shown_values.hpp"
 #include "analysis/numerics/repetition.hpp"
+#include "analysis/numerics/square.hpp"
 #include "analysis/numerics/tail_probability.hpp"
 
 namespace gyrolog {
@@ -21,8 +22,6 @@ constexpr std::size_t rhythm_steps_least = 128;
 const double even_chance_nats = std::log(2.0);
 // What one block may have: spikes are no rhythm.
 constexpr double deviates_most = 4.0;
-
-double square(double value) { return value * value; }
 
 // Of the samples that are judged, in the order of time.
 std::vector<float> squares_of(const Observation& observation, std::size_t axis) {

@@ -6,6 +6,7 @@
 
 #include "analysis/diagnose/measures/curve_place.hpp"
 #include "analysis/diagnose/measures/shown_values.hpp"
+#include "analysis/numerics/square.hpp"
 #include "analysis/numerics/tail_probability.hpp"
 
 namespace gyrolog {
@@ -17,8 +18,6 @@ constexpr std::size_t period_most = 4096;
 constexpr double repetitions_least = 8.0;
 // A drift or a line is none of this; of what comes back often, no multiple is this strong by itself.
 constexpr double power_most = 8.0;
-
-double square(double value) { return value * value; }
 
 GapCurve period_curve(const Observation& observation, std::size_t axis) {
     const Prediction& prediction = observation.prediction();

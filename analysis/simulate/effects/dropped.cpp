@@ -7,8 +7,6 @@ namespace gyrolog {
 
 namespace {
 
-constexpr double seconds_per_hour = 3600.0;
-
 class Dropped final : public Stage {
 public:
     explicit Dropped(const EffectUse& use)

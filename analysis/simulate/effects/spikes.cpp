@@ -13,8 +13,6 @@ namespace gyrolog {
 
 namespace {
 
-constexpr double seconds_per_hour = 3600.0;
-
 struct Spikes {
     Arrivals arrivals;
     RandomStream sizes;
