@@ -144,7 +144,7 @@ private:
         while (!found_.causes.empty()) {
             if (!judge_what_is_left() || !measure_causes(first)) { return false; }
             const auto least = std::ranges::min_element(measured_->returning_nats);
-            if (*least > 0.0 && measured_->named.value < measured_->before.value) { break; }
+            if (*least > 0.0 && measured_->named.value <= measured_->before.value) { break; }
             leave_out(static_cast<std::size_t>(least - measured_->returning_nats.begin()));
         }
         if (found_.causes.empty()) {
