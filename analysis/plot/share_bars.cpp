@@ -117,7 +117,10 @@ void add_interval(Panel& panel, const Share& share, double at) {
 std::vector<AxisName> percent_ticks(const Range& range, double longest) {
     const double step = step_least * std::ceil(longest / step_least / static_cast<double>(steps_most));
     std::vector<AxisName> ticks;
-    for (double at = step * std::ceil(range.lo / step); at <= longest + 1e-9; at += step) {
+    const int first = static_cast<int>(std::ceil(range.lo / step));
+    const int last = static_cast<int>(std::floor(longest / step + 1e-9));
+    for (int number = first; number <= last; ++number) {
+        const double at = step * number;
         ticks.push_back({at, percent(at)});
     }
     return ticks;

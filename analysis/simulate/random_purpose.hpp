@@ -20,10 +20,10 @@ enum class RandomPurpose : std::uint32_t {
     reference_measured_anew,
     // Numbered are simulations.
     compared_simulations,
-    null_simulations,       // of the model as it is given
-    null_bias_simulations,  // of the model with its main cause
-    simulations_after,      // of the corrected model
-    simulations_in_doubt,   // of the corrected model, once more
+    null_simulations,          // of the model as it is given
+    null_bias_simulations,     // of the model with its main cause
+    simulations_after,         // of the corrected model
+    simulations_in_doubt,      // of the corrected model, once more
     measured_gap_simulations,  // of the corrected model, for the parts of the data that judge
     bootstrap_simulations,
 };

@@ -61,6 +61,7 @@ std::vector<Left> places_that_stand_out(const std::vector<GapCurve>& curves, con
         }
     }
     std::vector<Left> places;
+    places.reserve(worst_of_measure.size());
     for (const JudgedCurve* worst : worst_of_measure) {
         places.push_back({place_of(*worst, all), worst->distance.distance});
     }
