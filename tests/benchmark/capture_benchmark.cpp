@@ -176,6 +176,8 @@ void measure(benchmark::State& state, double rate_hz, double hurry, Reader kind,
         constexpr int new_file = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
         const int out = open(folder.path("out").c_str(), new_file, 0600);
         const int err = open(folder.path("err").c_str(), new_file, 0600);
+        // What runs this in the background ignores it, and the program would keep that.
+        std::signal(SIGINT, SIG_DFL);
         const pid_t reader = start_program(command_of(kind, lines, folder.path("capture.pcapng")), out, err);
         close(out);
         close(err);
