@@ -93,7 +93,7 @@ def main():
                 found = json.load(file)
             causes = "; ".join(cause(one) for one in found["causes"]) or "none"
             print(f"| {described(judged)} | {described(fitted)} | {found['verdict']} | {causes} | "
-                  f"{place(found.get('left', {}))} |", flush=True)
+                  f"{place(found['left'][0]['where'] if found.get('left') else {})} |", flush=True)
     return 0
 
 
