@@ -59,17 +59,20 @@ public:
         if (!told("looking for effects", 0.0)) { return std::nullopt; }
         const Hypotheses first = examine(prediction_, recording_, options_.seed, options_.threads);
         describe_tests(first);
-        NullSimulationOptions simulations =
-            simulation_options(options_.simulations, RandomPurpose::null_simulations);
-        simulations.on_progress = progress("simulating the model", 0.1, 0.5);
-        std::optional<NullJudgement> null = judge_null(first, simulations);
+        NullJudgementOptions judging;
+        judging.simulations = simulation_options(options_.simulations, RandomPurpose::null_simulations);
+        judging.simulations.on_progress = progress("simulating the model", 0.1, 0.5);
+        std::optional<NullJudgement> null = judge_null(first, judging);
         if (!null) { return std::nullopt; }
         null_ = *std::move(null);
         answer_.p_none = null_.p_none;
         describe_gap_of_null();
-        answer_.corrected = prediction_->model();
+        answer_.corrected = found_.corrected = prediction_->model();
         const bool has_gap = answer_.p_none < options_.false_alarms_most;
         if (has_gap && (!select(first) || !measure(first))) { return std::nullopt; }
+        // A second recording has its say of a model without causes, too.
+        if (options_.holdout && !measured_ && !measure_causes(first)) { return std::nullopt; }
+        describe_measured_gap();
         describe_places();
         if (has_gap) { decide(); }
         if (!widen_uncertainties()) { return std::nullopt; }
@@ -274,21 +277,21 @@ private:
     void describe_places() {
         answer_.where = farthest_place(null_.curves, null_.reference);
         const JudgedCurves before{null_.curves, null_.reference};
-        if (!remainder_) {
-            answer_.domains = gap_domains(before, nullptr, answer_.band_probability);
-            return;
-        }
-        const JudgedCurves after{remainder_->curves, remainder_->reference};
-        answer_.domains = gap_domains(before, &after, answer_.band_probability);
+        const JudgedCurves after = last_curves();
+        answer_.domains = gap_domains(before, remainder_ ? &after : nullptr, answer_.band_probability);
+    }
+
+    // Of the corrected model where there is one.
+    JudgedCurves last_curves() const {
+        return remainder_ ? JudgedCurves{remainder_->curves, remainder_->reference}
+                          : JudgedCurves{null_.curves, null_.reference};
     }
 
     void decide() {
-        const JudgedCurves last = remainder_ ? JudgedCurves{remainder_->curves, remainder_->reference}
-                                             : JudgedCurves{null_.curves, null_.reference};
+        const JudgedCurves last = last_curves();
         answer_.left = places_that_stand_out(last.curves, last.reference);
         answer_.better_shape = better_shape(found_, prediction_, recording_,
                                             {.seed = options_.seed, .threads = options_.threads});
-        describe_measured_gap();
         for (std::size_t i = 0; i < found_.causes.size(); ++i) {
             Cause cause =
                 with_probability(found_.causes[i], measured_->returning_nats[i], answer_.better_shape, {});

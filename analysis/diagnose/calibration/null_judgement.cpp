@@ -13,19 +13,6 @@ namespace gyrolog {
 
 namespace {
 
-constexpr double chance_of_an_effect = 0.005;
-constexpr double evidence_least_nats = 3.0;
-// Of all false alarms, those of the stamps (a weighted Bonferroni bound: Holm 1979). Simulations copy the
-// stamps, so that their chance is not known as well as the others'.
-constexpr double share_of_stamps = 0.05;
-constexpr std::size_t times_more_in_doubt = 4;
-constexpr std::size_t times_more_in_motion = 2;
-
-bool are_alike(const GapCurve& a, const GapCurve& b) {
-    return a.measure == b.measure && a.axis == b.axis && a.other == b.other &&
-           a.value.size() == b.value.size();
-}
-
 double best_evidence_nats(const Hypotheses& hypotheses, bool in_stamps) {
     double best = no_evidence_nats;
     for (const std::optional<Finding>& finding : hypotheses.findings) {
@@ -60,22 +47,8 @@ private:
     EvidenceTail curves_;
 };
 
-// The rank of the recording's rarest look among the simulations', of which each is held against the others as
-// the recording is against all: right over its whole range, however the looks hang together.
-double probability_by_rank(double effect_nats, const std::vector<double>& effects_nats, double curve_nats,
-                           const std::vector<double>& curves_nats) {
-    std::vector<double> simulated_nats;
-    for (std::size_t i = 0; i < effects_nats.size(); ++i) {
-        const RarestOfTwo others(without(effects_nats, i), without(curves_nats, i));
-        simulated_nats.push_back(others.nats(effects_nats[i], curves_nats[i]));
-    }
-    const RarestOfTwo all(effects_nats, curves_nats);
-    return EvidenceTail(std::move(simulated_nats)).probability(all.nats(effect_nats, curve_nats));
-}
-
 // Some simulations are enough for their mean.
-double mean_surprisal_nats(const SimulatedCurves& simulations) {
-    constexpr std::size_t simulations_most = 40;
+double mean_surprisal_nats(const SimulatedCurves& simulations, std::size_t simulations_most) {
     const std::size_t count = std::min(simulations_most, simulations.size());
     double sum = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -102,13 +75,24 @@ bool judge(Remainder& remainder, const std::shared_ptr<const Prediction>& predic
 
 }  // namespace
 
+double probability_by_rank(double effect_nats, const std::vector<double>& effects_nats, double curve_nats,
+                           const std::vector<double>& curves_nats) {
+    std::vector<double> simulated_nats;
+    for (std::size_t i = 0; i < effects_nats.size(); ++i) {
+        const RarestOfTwo others(without(effects_nats, i), without(curves_nats, i));
+        simulated_nats.push_back(others.nats(effects_nats[i], curves_nats[i]));
+    }
+    const RarestOfTwo all(effects_nats, curves_nats);
+    return EvidenceTail(std::move(simulated_nats)).probability(all.nats(effect_nats, curve_nats));
+}
+
 double stamp_evidence_nats(const Hypotheses& hypotheses) {
     return std::max(best_evidence_nats(hypotheses, true), 0.0);
 }
 
-std::optional<NullJudgement> judge_null(const Hypotheses& hypotheses, const NullSimulationOptions& options) {
+std::optional<NullJudgement> judge_null(const Hypotheses& hypotheses, const NullJudgementOptions& options) {
     const std::optional<NullSimulations> null =
-        simulate_null(hypotheses.prediction, &hypotheses.catalogue, options);
+        simulate_null(hypotheses.prediction, &hypotheses.catalogue, options.simulations);
     if (!null) { return std::nullopt; }
     NullJudgement judgement;
     judgement.reference = gap_reference(null->curves);
@@ -118,10 +102,11 @@ std::optional<NullJudgement> judge_null(const Hypotheses& hypotheses, const Null
                                          worst_surprise_nats(judgement.curves, judgement.reference),
                                          simulated_surprises_nats(null->curves));
     const double p_stamps = std::exp(-stamp_evidence_nats(hypotheses));
-    judgement.p_none = std::min({p / (1.0 - share_of_stamps), p_stamps / share_of_stamps, 1.0});
-    judgement.evidence_min_nats =
-        std::max(EvidenceTail(effects_nats).threshold_nats(chance_of_an_effect), evidence_least_nats);
-    judgement.floor_nats = mean_surprisal_nats(null->curves);
+    judgement.p_none =
+        std::min({p / (1.0 - options.share_of_stamps), p_stamps / options.share_of_stamps, 1.0});
+    judgement.evidence_min_nats = std::max(
+        EvidenceTail(effects_nats).threshold_nats(options.chance_of_an_effect), options.evidence_least_nats);
+    judgement.floor_nats = mean_surprisal_nats(null->curves, options.simulations_for_floor);
     judgement.excess_nats =
         sum_of(measure_surprises_nats(judgement.curves, judgement.reference)) - judgement.floor_nats;
     return judgement;
@@ -135,7 +120,7 @@ std::optional<Remainder> judge_remainder(const std::shared_ptr<const Prediction>
     if (!judge(remainder, prediction, simulations)) { return std::nullopt; }
     if (remainder.p >= options.doubted_below_p || remainder.p < options.doubted_above_p) { return remainder; }
     const bool moves = prediction->moves();
-    simulations.simulations *= moves ? times_more_in_motion : times_more_in_doubt;
+    simulations.simulations *= moves ? options.times_more_in_motion : options.times_more_at_rest;
     simulations.purpose = RandomPurpose::simulations_in_doubt;
     simulations.measure_anew = moves && can_be_measured_anew(observation.recording());
     if (!judge(remainder, prediction, simulations)) { return std::nullopt; }

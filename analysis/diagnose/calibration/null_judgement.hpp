@@ -24,8 +24,28 @@ struct NullJudgement {
     double excess_nats = 0.0;
 };
 
+struct NullJudgementOptions {
+    NullSimulationOptions simulations;
+    // Probability that one effect more is found where there is none: half of the false alarms that a
+    // diagnosis allows itself.
+    double chance_of_an_effect = 0.005;
+    // A Bayes factor below 20 is no strong evidence (Kass, Raftery 1995), whatever simulations have.
+    double evidence_least_nats = 3.0;
+    // Of all false alarms, those of the stamps: a weighted Bonferroni bound (Holm 1979). Simulations copy the
+    // stamps, so that their chance is not known as well as the others'.
+    double share_of_stamps = 0.05;
+    // A mean surprisal is known to a sixth of its standard deviation.
+    std::size_t simulations_for_floor = 40;
+};
+
 // `hypotheses` are those of the recording under the model. The function returns no value when ended early.
-std::optional<NullJudgement> judge_null(const Hypotheses& hypotheses, const NullSimulationOptions& options);
+std::optional<NullJudgement> judge_null(const Hypotheses& hypotheses, const NullJudgementOptions& options);
+
+// The rank of the recording's rarest look, the best effect or the worst curve, among the simulations': each
+// of them is held against the others as the recording is against all, so that the probability is right over
+// its whole range, however the looks hang together. `effects_nats`, `curves_nats`: by simulation.
+double probability_by_rank(double effect_nats, const std::vector<double>& effects_nats, double curve_nats,
+                           const std::vector<double>& curves_nats);
 
 // The evidence that the time stamps give to an effect, 0 or more. Simulations copy the stamps.
 double stamp_evidence_nats(const Hypotheses& hypotheses);
@@ -39,10 +59,12 @@ struct Remainder {
 
 struct RemainderOptions {
     NullSimulationOptions simulations;
-    // Where p is between these, simulations are added: in motion, where each is measured anew, twice as many,
-    // else four times.
+    // Where p is between these, it is asked of so many times more simulations: a tail of the first, some five
+    // of fifty, is known to half of its length. In motion each is measured anew, which takes longer.
     double doubted_below_p = 0.005;
     double doubted_above_p = 1e-6;
+    std::size_t times_more_at_rest = 4;
+    std::size_t times_more_in_motion = 2;
 };
 
 // `prediction` is of the model with the causes. The function returns no value when ended early.

@@ -39,4 +39,9 @@ std::vector<GapCurve> gap_curves(const Observation& observation) {
     return curves;
 }
 
+bool are_alike(const GapCurve& a, const GapCurve& b) {
+    return a.measure == b.measure && a.axis == b.axis && a.other == b.other &&
+           a.of_all_axes == b.of_all_axes && a.value.size() == b.value.size();
+}
+
 }  // namespace gyrolog

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -119,6 +120,36 @@ TEST(Diagnosis, JudgesASecondRecordingWithoutTheEventsOfTheFirst) {
         std::ranges::count(diagnosis.warnings,
                            "bias_step happened in the first recording: the second is judged without it"),
         1);
+}
+
+// A second recording is asked also where the first calls for no cause.
+TEST(Diagnosis, MeasuresAModelWithoutCausesOnASecondRecording) {
+    const SensorModel model = calibrated_sensor();
+    DiagnosisOptions options;
+    options.simulations = 20;
+    Recording second = *recorded(with_effect(model, "arw_scale", {{"factor", 1.5}}, {}), 8000, 96);
+    second.name = "second.csv";
+    options.holdout = std::make_shared<const Recording>(std::move(second));
+    const Diagnosis diagnosis = *diagnose(recorded(model, 8000, 95), model, "model", options);
+    ASSERT_EQ(diagnosis.verdict, Verdict::none);
+    EXPECT_EQ(diagnosis.held_out, "second.csv");
+    EXPECT_GT(diagnosis.gap_before.value, 5.0);
+    EXPECT_EQ(diagnosis.gap_named.value, diagnosis.gap_before.value);
+}
+
+TEST(Diagnosis, SaysOfALineThatOnlyTheModelHasThatTheModelHasIt) {
+    const SensorModel sensor = calibrated_sensor();
+    const std::map<std::string, double> line = {{"amplitude_dps", 0.02}, {"f_hz", 17.3}, {"phase_rad", 1.0}};
+    DiagnosisOptions options;
+    options.simulations = 20;
+    const auto sense = [&](const SensorModel& has, const SensorModel& model) {
+        const Diagnosis diagnosis = *diagnose(recorded(has, 24000, 97), model, "model", options);
+        EXPECT_EQ(effects_of(diagnosis), std::set<std::string>{"tone"});
+        return diagnosis.causes.empty() ? std::nullopt : std::optional(diagnosis.causes.front().sense);
+    };
+    const SensorModel with_line = with_effect(sensor, "tone", line, {"x"});
+    EXPECT_EQ(sense(sensor, with_line), Sense::model_has);
+    EXPECT_EQ(sense(with_line, sensor), Sense::recording_has);
 }
 
 // What a diagnosis does not look for may be in a model.

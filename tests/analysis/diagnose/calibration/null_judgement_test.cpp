@@ -12,15 +12,15 @@ namespace gyrolog {
 namespace {
 
 // Where there is no gap every probability is as likely as any other.
-TEST(NullJudgement, IsRightOverItsWholeRange) {
+TEST(NullJudgement, OfASensorAsItsModelSaysIsRightOverItsWholeRange) {
     constexpr int recordings = 60;
     const SensorModel model = calibrated_sensor();
-    NullSimulationOptions options;
-    options.simulations = 40;
+    NullJudgementOptions options;
+    options.simulations.simulations = 40;
     std::vector<double> p;
     for (int i = 0; i < recordings; ++i) {
         const auto recording = recorded(model, 2048, 7000 + static_cast<std::uint64_t>(i));
-        options.seed = static_cast<std::uint64_t>(i);
+        options.simulations.seed = static_cast<std::uint64_t>(i);
         p.push_back(judge_null(examine(prediction_of(recording, model), recording, 1, 0), options)->p_none);
     }
     for (const double level : {0.05, 0.1, 0.25, 0.5, 0.75, 0.9}) {
