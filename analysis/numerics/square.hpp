@@ -1,4 +1,3 @@
-// The square of a number, for what is too long to write twice.
 #pragma once
 
 namespace gyrolog {

@@ -94,8 +94,8 @@ gyrolog_precompile_standard_headers(${GYROLOG_STANDARD_HEADERS}_brief ${GYROLOG_
 # library with the project's settings. PRECOMPILE: headers that most of its sources include and that are long to read,
 # in place of those of the standard library; where all its sources are compiled as one, that one reads them itself.
 # RUNS_BRIEFLY: nothing in it runs for long: GYROLOG_BRIEF_OPTIMIZATION is enough. FASTER_IN: -O3, which that benchmark
-# shows to pay; without the precompiled parts of the standard library, with which GCC reads their -O2 for functions
-# that have a target of their own.
+# shows to pay. Such a library reads no precompiled headers: they were compiled with -O2, and GCC 12 then compiles
+# functions with a target attribute with -O2, too.
 function(gyrolog_library name)
   cmake_parse_arguments(arg "RUNS_BRIEFLY" "FASTER_IN" "SOURCES;LINK;PRECOMPILE" ${ARGN})
   gyrolog_join(sources ${name} ${arg_SOURCES})

@@ -6,15 +6,15 @@
 
 #include "analysis/diagnose/calibration/gap_reference.hpp"
 #include "analysis/diagnose/calibration/replicates.hpp"
+#include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/measures/gap_curves.hpp"
+#include "analysis/numerics/distributions.hpp"
 #include "analysis/numerics/square.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-constexpr double sds_of_95_percent = 1.96;
 
 using Curves = std::vector<GapCurve>;
 
@@ -32,10 +32,8 @@ std::vector<GapCurve> seen_under(const std::shared_ptr<const Prediction>& predic
 Curves matched(const Curves& curves, const Curves& like) {
     Curves result = like;
     for (GapCurve& one : result) {
-        const auto same = std::ranges::find_if(curves, [&](const GapCurve& other) {
-            return other.measure == one.measure && other.axis == one.axis && other.other == one.other &&
-                   other.of_all_axes == one.of_all_axes && other.value.size() == one.value.size();
-        });
+        const auto same =
+            std::ranges::find_if(curves, [&](const GapCurve& other) { return are_alike(one, other); });
         if (same != curves.end()) { one.value = same->value; }
     }
     return result;
@@ -176,18 +174,20 @@ private:
 
     void simulate_corrected(std::size_t i, std::uint64_t seed) {
         const auto recording = replicate(corrected_, seed);
+        const auto seen = [&](const std::shared_ptr<const Prediction>& view) {
+            return seen_under(view, recording, seed, Observation::ReferenceNoise::drawn);
+        };
         for (std::size_t f = 0; f < folds(); ++f) {
-            simulated_[f][i] = seen_under(views_[f], recording, seed, Observation::ReferenceNoise::drawn);
+            simulated_[f][i] = seen(views_[f]);
+            if (i >= options_.paired_simulations) { continue; }
+            for (PairedModel& paired : paired_) { paired.of_corrected[f][i] = seen(paired.views[f]); }
         }
     }
 
     void simulate_paired(PairedModel& paired, std::size_t i, std::uint64_t seed) const {
-        const auto drawn = Observation::ReferenceNoise::drawn;
         const auto own = replicate(paired.model, seed);
-        const auto of_corrected = replicate(corrected_, seed);
         for (std::size_t f = 0; f < folds(); ++f) {
-            paired.own[f][i] = seen_under(paired.views[f], own, seed, drawn);
-            paired.of_corrected[f][i] = seen_under(paired.views[f], of_corrected, seed, drawn);
+            paired.own[f][i] = seen_under(paired.views[f], own, seed, Observation::ReferenceNoise::drawn);
         }
     }
 
@@ -308,35 +308,36 @@ private:
 
     double stamps_without_nats(std::size_t cause) const {
         const Finding& finding = trial_.causes[cause];
-        return finding.where.structure.starts_with("timestamp") ? std::max(finding.evidence_nats, 0.0) : 0.0;
+        return traits_of(finding.effect).is_in_stamps ? std::max(finding.evidence_nats, 0.0) : 0.0;
     }
 
-    // Of the surprisal, by how much chance moves it. What exceeds the floor is the square of a distance,
-    // which chance moves by 1, seen by so many measures at once.
-    double sd_nats(double excess_nats, const Surprisal& of) const {
+    // The root of the sum: what exceeds the floor is the square of a distance, which chance moves by 1, seen
+    // by so many measures at once; `other_sd_nats` is chance's part beside it.
+    static double half_interval_nats(double excess_nats, const Surprisal& of, double other_sd_nats) {
         const double measures = of.largest_nats > 0.0 ? std::max(of.nats / of.largest_nats, 1.0) : 1.0;
-        return std::sqrt(square(floor_sd_nats_) + 2.0 * measures * std::max(excess_nats, 0.0));
+        return normal_quantile(0.975) *
+               std::sqrt(square(other_sd_nats) + 2.0 * measures * std::max(excess_nats, 0.0));
     }
 
     Gap gap_of_nats(double nats, const Surprisal& of) const {
-        const double sd = sds_of_95_percent * sd_nats(nats - floor_nats_, of);
+        const double half = half_interval_nats(nats - floor_nats_, of, floor_sd_nats_);
         const auto distance = [&](double at) { return std::sqrt(std::max(at, 0.0) / floor_nats_); };
-        return {distance(nats), 1.0, distance(nats - sd), distance(nats + sd)};
+        return {distance(nats), 1.0, distance(nats - half), distance(nats + half)};
     }
 
     Share shrink(double named_nats, const Surprisal& named, double excess_nats) const {
         const double left_nats = named_nats - floor_nats_;
-        const double sd = sds_of_95_percent * sd_nats(left_nats, named);
+        const double half = half_interval_nats(left_nats, named, floor_sd_nats_);
         const auto closed = [&](double left) { return std::min(1.0 - left / excess_nats, 1.0); };
-        return {closed(left_nats), closed(left_nats + sd), closed(left_nats - sd)};
+        return {closed(left_nats), closed(left_nats + half), closed(left_nats - half)};
     }
 
+    // The difference of two surprisals of the same data: of chance's part only the distance's 1 is left.
     static Share share(double returning_nats, const Surprisal& of, double excess_nats) {
-        const double measures = of.largest_nats > 0.0 ? std::max(of.nats / of.largest_nats, 1.0) : 1.0;
-        const double sd = sds_of_95_percent * std::sqrt(1.0 + 2.0 * measures * std::max(returning_nats, 0.0));
+        const double half = half_interval_nats(returning_nats, of, 1.0);
         // Causes that hide each other return more than the gap was.
         const auto part = [&](double nats) { return std::min(nats / excess_nats, 1.0); };
-        return {part(returning_nats), part(returning_nats - sd), part(returning_nats + sd)};
+        return {part(returning_nats), part(returning_nats - half), part(returning_nats + half)};
     }
 
     const GapTrial& trial_;

@@ -12,6 +12,7 @@ namespace gyrolog {
 
 namespace {
 
+// Of the amplitude: nearer to be absent than present.
 constexpr double faint_line_share = 0.5;
 
 std::string faint_line_sentence(const EffectModel& line, double share) {

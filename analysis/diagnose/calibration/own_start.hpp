@@ -15,7 +15,7 @@ namespace gyrolog {
 
 struct OwnStart {
     std::shared_ptr<const Prediction> prediction;  // of the model with the recording's start
-    // Lines of the model that the recording has with less than half their amplitude.
+    // Lines of the model that are nearer to be absent than present: less than half of their amplitude.
     std::vector<double> faint_lines_hz;
     std::vector<std::string> warnings;  // of those
 };

@@ -96,6 +96,28 @@ TEST(MeasuredGap, GrowsByACauseThatIsNotThere) {
     EXPECT_LT(gap.returning_nats.front(), -10.0);
 }
 
+// The model that was given is held against its own simulations. Those of the corrected one have the tails,
+// too.
+TEST(MeasuredGap, HoldsEveryModelAgainstItsOwnSimulations) {
+    const SensorModel model = calibrated_sensor();
+    const auto recording = recorded(with_effect(model, "heavy_tail", {{"nu", 6.0}}, {}), samples, 55);
+    const MeasuredGap gap =
+        measured(trial_of(model, recording, {finding_of("heavy_tail", model, recording)}));
+    EXPECT_GT(gap.before.value, 2.5);
+    EXPECT_LT(gap.named.value, 1.5);
+    EXPECT_GT(gap.shrink.value, 0.9);
+}
+
+// What is little at every point of the curves is seen by all of them together.
+TEST(MeasuredGap, SeesAWeakCauseByItsDirection) {
+    SensorModel model = calibrated_sensor();
+    model.sd_rel = {{"N", 1e-4}, {"B", 1e-4}, {"K", 1e-4}};
+    const auto recording = recorded(with_effect(model, "arw_scale", {{"factor", 1.04}}, {"x"}), samples, 56);
+    const Finding finding = finding_of("arw_scale", model, recording);
+    const MeasuredGap gap = measured(trial_of(model, recording, {finding}));
+    EXPECT_GT(gap.returning_nats.front(), 145.0) << "127 where no direction is looked along";
+}
+
 // A change of noise in the coefficients of one half alone, which no law of nature would make: what either
 // half says is wrong for the other.
 TEST(MeasuredGap, OfWhatOnlyOneHalfHasIsNotClosed) {

@@ -44,6 +44,16 @@ TEST(CodesCurve, ShowsAConverterWhoseLowestBitIsWeak) {
     EXPECT_GT(curve_of(curves, measures::codes, changed_axis).value[1], 10.0);
 }
 
+// Where the noise is less than a code, the bias alone says whether the code is even.
+TEST(CodesCurve, TakesNoBalanceForGrantedWhereTheNoiseIsLessThanACode) {
+    const std::vector<GapCurve> curves = curves_of(11, [](std::vector<double>& codes) {
+        std::mt19937_64 random(6);
+        std::normal_distribution<double> noise(0.2, 0.3);
+        for (double& code : codes) { code = std::round(noise(random)); }
+    });
+    EXPECT_LT(curve_of(curves, measures::codes, changed_axis).value[1], 3.0);
+}
+
 TEST(CodesCurve, JudgesCodesOfASensorAtRestOnly) {
     const SensorModel model = calibrated_sensor();
     const auto recording = recorded(model, 20'000, 10, tumbling_world(5.0));
