@@ -167,52 +167,61 @@ Vector NoiseLikelihood::relative_expectations(std::size_t contrast, double squar
     return relative;
 }
 
-double NoiseLikelihood::value(std::span<const double> squares) const {
+// What the value and its derivatives are worked out from.
+struct NoiseLikelihood::Point {
+    double value = minus_infinity;
+    std::optional<Inverse> inverse;  // of the top
+    Vector weighted;                 // C^-1 z
+    Vector level_squares;            // by contrast, with the ramp's
+};
+
+NoiseLikelihood::Point NoiseLikelihood::point_at(std::span<const double> squares) const {
+    Point point;
     double sum = 0.0;
     double ramp_square = 0.0;
     if (!top_.empty()) {
-        const Inverse inverse(covariance(squares), ramp_);
-        if (!inverse.factor.is_positive_definite()) { return minus_infinity; }
-        sum -= 0.5 * (inverse.log_determinant() + dot(top_, inverse.of(top_)));
+        const Inverse& inverse = point.inverse.emplace(covariance(squares), ramp_);
+        if (!inverse.factor.is_positive_definite()) { return point; }
+        point.weighted = inverse.of(top_);
+        sum -= 0.5 * (inverse.log_determinant() + dot(top_, point.weighted));
         if (!ramp_.empty()) { ramp_square = std::pow(inverse.slope_of(top_), 2); }
     }
-    const Vector e = expected(squares);
+    point.level_squares = expected(squares);
     for (std::size_t c = 0; c < contrasts_.size(); ++c) {
+        double& square = point.level_squares[c];
+        square += ramp_square * contrasts_[c].ramp_square;
         const double weight = weight_of(contrasts_[c]);
         if (weight == 0.0) { continue; }
-        const double square = e[c] + ramp_square * contrasts_[c].ramp_square;
-        if (!(square > 0.0)) { return minus_infinity; }
+        if (!(square > 0.0)) { return point; }
         sum -= weight * (std::log(square) + contrasts_[c].power / square);
     }
-    return std::isfinite(sum) ? sum : minus_infinity;
+    if (std::isfinite(sum)) { point.value = sum; }
+    return point;
 }
+
+double NoiseLikelihood::value(std::span<const double> squares) const { return point_at(squares).value; }
 
 NoiseLikelihood::Evaluation NoiseLikelihood::evaluate(std::span<const double> squares) const {
     const std::size_t count = components();
-    Evaluation at{value(squares), Vector(count, 0.0), Matrix(count, count)};
+    const Point point = point_at(squares);
+    Evaluation at{point.value, Vector(count, 0.0), Matrix(count, count)};
     if (!std::isfinite(at.value)) { return at; }
-    double ramp_square = 0.0;
-    if (!top_.empty()) {
-        const Inverse inverse(covariance(squares), ramp_);
-        const Vector weighted = inverse.of(top_);
-        const Matrix full = inverse.matrix();
-        if (!ramp_.empty()) { ramp_square = std::pow(inverse.slope_of(top_), 2); }
+    if (point.inverse) {
+        const Matrix full = point.inverse->matrix();
         Matrix pulled(top_.size(), count);
         for (std::size_t j = 0; j < count; ++j) {
-            const Vector column = product(matrices_[j], weighted);
+            const Vector column = product(matrices_[j], point.weighted);
             std::ranges::copy(column, pulled.column(j).begin());
-            at.gradient[j] = 0.5 * (dot(weighted, column) - dot(full.values(), matrices_[j].values()));
+            at.gradient[j] = 0.5 * (dot(point.weighted, column) - dot(full.values(), matrices_[j].values()));
         }
         // The average of observed and expected information of a linear covariance model.
         add_scaled(at.information, 0.5, product(transposed_product(pulled, full), pulled));
     }
-    const Vector e = expected(squares);
     for (std::size_t c = 0; c < contrasts_.size(); ++c) {
         const double weight = weight_of(contrasts_[c]);
         if (weight == 0.0) { continue; }
-        const double square = e[c] + ramp_square * contrasts_[c].ramp_square;
-        const Vector relative = relative_expectations(c, square);
-        const double excess = weight * (contrasts_[c].power / square - 1.0);
+        const Vector relative = relative_expectations(c, point.level_squares[c]);
+        const double excess = weight * (contrasts_[c].power / point.level_squares[c] - 1.0);
         for (std::size_t j = 0; j < count; ++j) { at.gradient[j] += excess * relative[j]; }
         add_square(at.information, weight, relative);
     }

@@ -71,6 +71,8 @@ private:
         double ramp_square;  // its square for a ramp of slope 1
         bool counts = true;
     };
+    struct Point;
+    Point point_at(std::span<const double> squares) const;
     double weight_of(const Contrast& contrast) const;
     std::vector<double> expected(std::span<const double> squares) const;
     Matrix covariance(std::span<const double> squares) const;
