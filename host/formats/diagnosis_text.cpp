@@ -64,7 +64,8 @@ std::string odds_text(double p) {
 
 std::string probability_text(double p) { return p < 1e-6 ? "p < 1e-6" : fmt::format("p = {:.2g}", p); }
 
-std::string percent_text(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
+// Nothing has no sign.
+std::string percent_text(double share) { return fmt::format("{:.0f} %", std::round(100.0 * share) + 0.0); }
 
 std::string share_text(const Share& share) {
     if (percent_text(share.lo) == percent_text(share.hi)) {
@@ -91,11 +92,14 @@ std::string gap_section(const Diagnosis& diagnosis) {
     const Gap& gap = diagnosis.gap_before;
     std::string text = fmt::format("Of recordings that do come from the model, {} would differ as much ({}).",
                                    odds_text(diagnosis.p_none), probability_text(diagnosis.p_none));
-    if (diagnosis.verdict != Verdict::none) {
+    // A second recording was measured of a model without a gap, too.
+    if (diagnosis.verdict != Verdict::none || !diagnosis.held_out.empty()) {
         text += fmt::format(
-            " The recording is {} times as far from a simulation as two simulations are from each other "
-            "({} to {}).",
-            times_floor(gap.value, gap), times_floor(gap.lo, gap), times_floor(gap.hi, gap));
+            " {} is {} times as far from a simulation as two simulations are from each other ({} to {}).",
+            diagnosis.held_out.empty() ? "The recording" : diagnosis.held_out, times_floor(gap.value, gap),
+            times_floor(gap.lo, gap), times_floor(gap.hi, gap));
+    }
+    if (diagnosis.verdict != Verdict::none) {
         const std::string place = place_text(diagnosis.where);
         if (!place.empty()) { text += fmt::format(" It differs most here: {}.", place); }
     }

@@ -123,6 +123,23 @@ TEST(DiagnosisText, SaysOnWhatTheSharesWereMeasured) {
                 HasSubstr("measured by simulating, on day2.csv, which had no part in the fit"));
 }
 
+TEST(DiagnosisText, SaysOfASecondRecordingHowFarItIs) {
+    for (Diagnosis diagnosis : {known(), none()}) {
+        diagnosis.held_out = "day2.csv";
+        diagnosis.gap_before = {4.1, 1.0, 3.6, 4.7};
+        EXPECT_THAT(
+            joined(diagnosis_text(diagnosis)),
+            HasSubstr("day2.csv is 4.1 times as far from a simulation as two simulations are from each "
+                      "other (3.6 to 4.7)."));
+    }
+}
+
+TEST(DiagnosisText, HasNoNegativeZero) {
+    Diagnosis diagnosis = partly();
+    diagnosis.causes[0].share = {-0.004, -0.2, 0.1};
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)), HasSubstr(": 0 % of the gap (-20 % to 10 %)"));
+}
+
 TEST(DiagnosisText, HasTheDetailsAtItsEnd) {
     const std::string text = joined(diagnosis_text(known()));
     EXPECT_THAT(text, HasSubstr("the recording has no reference rate: scale_factor, latency - it is too"));
