@@ -1,40 +1,18 @@
 #include "analysis/simulate/fitted_model.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "analysis/simulate/recorded_converter.hpp"
 
 namespace gyrolog {
 namespace {
-
-constexpr double codes_of_a_side = 32768.0;  // of a 16-bit converter
 
 void add_relative_sd(const NoiseFit& fit, NoiseTerm term, std::map<std::string, double>& sd_rel) {
     const FittedCoefficient& coefficient = fit[term];
     if (coefficient.state == FittedCoefficient::State::identified && coefficient.value > 0.0) {
         sd_rel[std::string(name_of(term))] = coefficient.sd / coefficient.value;
     }
-}
-
-// Steps and range of the converter. Numbers on a grid come from 16 bits like counts; of numbers that are on
-// none, only the largest is known, and the range is the smallest usual one that holds it.
-void set_converter(const Column& column, double step_rad_s, SensorModel& model) {
-    constexpr std::array usual_dps = {250.0, 500.0, 1000.0, 2000.0};
-    if (step_rad_s > 0.0) {
-        model.lsb_rad_s = step_rad_s;
-        model.full_scale_rad_s = codes_of_a_side * step_rad_s;
-        model.saturation_rad_s = (codes_of_a_side - 1.0) * step_rad_s;
-        return;
-    }
-    double largest = 0.0;
-    for (std::size_t i = 0; i < column.size(); ++i) {
-        largest = std::max(largest, std::abs(column.value(i)));
-    }
-    const auto* const range_dps = std::ranges::find_if(usual_dps, [&](double dps) {
-        return dps * rad_per_deg >= std::max(largest, model.full_scale_rad_s);
-    });
-    model.full_scale_rad_s = range_dps == usual_dps.end() ? largest : *range_dps * rad_per_deg;
-    model.saturation_rad_s = model.full_scale_rad_s;
 }
 
 // Noise beyond the five coefficients is an effect of the model. A line's phase is not reported: it is that of
@@ -93,9 +71,12 @@ SensorModel fitted_model(const AnalysisReport& report, const Recording& recordin
         add_effects(found->fit, axis_names[axis], model.effects);
         const Column* column = recording.find(std::string("g") + axis_names[axis]);
         if (column != nullptr && model.lsb_rad_s == 0.0) {
-            set_converter(*column,
-                          column->is_counts() ? column->scale : found->fit.best.converter.step_rad_per_s,
-                          model);
+            const RecordedConverter converter = recorded_converter(
+                *column, column->is_counts() ? column->scale : found->fit.best.converter.step_rad_per_s,
+                model.full_scale_rad_s);
+            model.lsb_rad_s = converter.step_rad_s;
+            model.full_scale_rad_s = converter.full_scale_rad_s;
+            model.saturation_rad_s = converter.saturation_rad_s;
         }
     }
     if (report.rate_sd_hz && report.rate_hz > 0.0) {

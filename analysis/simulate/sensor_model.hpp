@@ -18,6 +18,9 @@ using Matrix3 = std::array<Vector3, 3>;  // rows
 inline constexpr Matrix3 identity_matrix = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
 inline constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
+// A range that nothing reaches: of a model that has none.
+inline constexpr double no_range_rad_s = 1e9 * rad_per_deg;
+
 struct AxisModel {
     NoiseCoefficients noise;  // two-sided convention
     double bias_rad_s = 0.0;

@@ -67,7 +67,7 @@ Result<Recording> comparable_recording(const CompareRequest& request, const std:
 }
 
 Result<Comparison> with_model(Console& console, const CompareRequest& request) {
-    GYROLOG_TRY(const ModelFile file, read_model_file(request.other_path, 1));
+    GYROLOG_TRY(ModelFile file, read_model_file(request.other_path, 1));
     if (file.is_drawn) {
         return Error{
             ErrorCode::unsupported,
@@ -75,11 +75,11 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
                         "{0} -o unit.csv --model-out unit.json` and compare with that",
                         request.other_path)};
     }
-    const SensorModel& model = file.model;
-    if (const auto refusal = simulation_refusal(model)) {
+    if (const auto refusal = simulation_refusal(file.model)) {
         return Error{ErrorCode::failed, "model '" + request.other_path + "': " + *refusal};
     }
     GYROLOG_TRY(Recording recording, comparable_recording(request, request.recording_path));
+    complete_from(recording, file);
     ModelComparisonOptions options = request.simulations;
     options.on_progress = [&](std::size_t done) {
         if (console.progress) {
@@ -89,7 +89,7 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
         return true;
     };
     auto comparison =
-        compare_with_model(std::make_shared<const Recording>(std::move(recording)), model,
+        compare_with_model(std::make_shared<const Recording>(std::move(recording)), file.model,
                            std::filesystem::path(request.other_path).filename().string(), options);
     if (console.progress) { console.drawing() << "\r\x1b[K" << std::flush; }
     comparison->notes = file.notes;

@@ -144,6 +144,7 @@ Result<std::shared_ptr<const RecordedWorld>> read_like(const SimulateOptions& op
     for (const std::string& warning : recording->warnings) {
         story.warnings.push_back(options.like + ": " + warning);
     }
+    complete_from(*recording, story.file);
     warn_of_axes(*recording, options.like, story.warnings);
     auto world = std::make_shared<const RecordedWorld>(recording);
     for (const std::string& warning : world->warnings()) {
@@ -328,6 +329,14 @@ ExitCode simulate(Console& console, const SimulateOptions& options) {
     if (const auto refusal = simulation_refusal(story.file.model)) {
         return fail({ErrorCode::malformed, "model '" + options.model + "': " + *refusal +
                                                "; `gyrolog simulate --effects` lists what there is"});
+    }
+    if (story.file.unstated.rate && options.like.empty()) {
+        if (!options.rate_hz) {
+            return fail({ErrorCode::malformed, "model '" + options.model +
+                                                   "': rate_hz is missing: state it there, or give --rate or "
+                                                   "--like"});
+        }
+        story.file.model.rate_hz = *options.rate_hz;
     }
     return options.makes_capture() ? make_capture(console, options, story)
                                    : make_text(console, options, story);

@@ -124,6 +124,10 @@ Result<Outcome> diagnose(const CurveDiagnosisRequest& request) {
         return Outcome{against.take_report(), std::nullopt};
     }
     GYROLOG_TRY(ModelFile file, read_single_model(request.model_path));
+    if (file.unstated.rate) {
+        return Error{ErrorCode::malformed,
+                     "model '" + request.model_path + "': rate_hz is missing, and a curve does not tell it"};
+    }
     against.name_model(std::filesystem::path(request.model_path).filename().string());
     GYROLOG_CHECK(against.model(file.model));
     Outcome outcome{against.take_report(), std::move(file.model)};

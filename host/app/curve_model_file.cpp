@@ -7,9 +7,6 @@
 namespace gyrolog {
 namespace {
 
-// A curve does not tell the sensor's range; this one no rate reaches.
-constexpr double no_range_rad_s = 1e9 * rad_per_deg;
-
 void put_axis(const PrintedCurveReport& curve, std::size_t axis, ModelOfCurves& result) {
     AxisModel& noise = result.model.axes[axis];
     noise.noise = curve.fit.noise.best.coefficients;

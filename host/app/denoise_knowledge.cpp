@@ -51,8 +51,8 @@ Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<
                        double rate_hz) {
     std::vector<SensorModel> models;
     for (const std::string& path : paths) {
-        GYROLOG_TRY(SensorModel model, read_model(path));
-        models.push_back(std::move(model));
+        GYROLOG_TRY(ModelFile file, read_model_file(path, 1));
+        models.push_back(std::move(file.model));
     }
     std::vector<std::vector<NoiseModel>> given;
     for (const AxisKnowledge& axis : knowledge) {

@@ -76,10 +76,11 @@ DiagnosisOptions options_of(Console& console, const RecordingDiagnosisRequest& r
 }
 
 Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& request) {
-    GYROLOG_TRY(const ModelFile file, read_single_model(request.model_path));
+    GYROLOG_TRY(ModelFile file, read_single_model(request.model_path));
     RecordingInput input{request.recording_path, std::nullopt, request.lsb_dps};
     input.samples_per_row = request.average;
     GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
+    complete_from(*read.samples, file);
     DiagnosisInput second;
     if (!request.holdout_path.empty()) {
         input.path = request.holdout_path;

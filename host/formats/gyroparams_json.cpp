@@ -13,9 +13,6 @@ namespace {
 
 using Range = JsonKeys::Range;
 
-// Stands for MathWorks' Inf, which JSON lacks.
-constexpr double no_range_rad_s = 1e9 * rad_per_deg;
-
 Vector3 vector_or_zero(JsonKeys& keys, const std::string& key, Range range) {
     Vector3 values{};
     const Json* given = keys.find(key);

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "analysis/recording/standard_gravity.hpp"
+#include "analysis/simulate/recorded_converter.hpp"
 #include "host/base/file_output.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/datasheet_json.hpp"
@@ -44,12 +45,31 @@ double coefficient_factor(Keys& keys) {
     return std::sqrt(2.0);
 }
 
-AxisModel read_axis(Keys& keys, double factor) {
+// Keys that a file need not have, with those that it has not.
+class StatedNumbers {
+public:
+    // 0 where it is not stated.
+    double number(Keys& keys, const std::string& key, Range range) {
+        const std::optional<double> stated = keys.optional_number(key, range);
+        if (!stated && std::ranges::count(absent_, key) == 0) { absent_.push_back(key); }
+        return stated.value_or(0.0);
+    }
+
+    const std::vector<std::string>& absent() const { return absent_; }
+
+private:
+    std::vector<std::string> absent_;
+};
+
+AxisModel read_axis(Keys& keys, double factor, StatedNumbers& stated) {
     AxisModel axis;
-    axis.noise.N_rad_per_sqrt_s = keys.number("N", Range::not_negative) * rad_per_deg / factor;
-    axis.noise.B_rad_per_s = keys.number("B", Range::not_negative) * rad_per_deg / factor;
-    axis.noise.K_rad_per_s_sqrt_s = keys.number("K", Range::not_negative) * rad_per_deg / factor;
-    axis.bias_rad_s = keys.number("bias", Range::any) * rad_per_deg;
+    const bool has_any = std::ranges::any_of(std::array{"N", "B", "K", "bias"},
+                                             [&](const char* key) { return keys.find(key) != nullptr; });
+    if (!has_any) { keys.fail(keys.name("N"), "is missing, as are B, K and bias: one of them is needed"); }
+    axis.noise.N_rad_per_sqrt_s = stated.number(keys, "N", Range::not_negative) * rad_per_deg / factor;
+    axis.noise.B_rad_per_s = stated.number(keys, "B", Range::not_negative) * rad_per_deg / factor;
+    axis.noise.K_rad_per_s_sqrt_s = stated.number(keys, "K", Range::not_negative) * rad_per_deg / factor;
+    axis.bias_rad_s = stated.number(keys, "bias", Range::any) * rad_per_deg;
     axis.noise.Q_rad = keys.number_or("Q", Range::not_negative, 0.0) * rad_per_deg;
     axis.noise.R_rad_per_s2 = keys.number_or("R", Range::any, 0.0) * rad_per_deg;
     if (const Json* sd = keys.find("sd")) { axis.sd_rel = keys.uncertainties(*sd, "sd"); }
@@ -98,19 +118,28 @@ EffectModel read_effect(Keys& keys) {
     return effect;
 }
 
-void read_sensor(Keys& keys, SensorModel& model) {
-    model.rate_hz = keys.number("rate_hz", Range::positive);
-    model.full_scale_rad_s = keys.number("full_scale_dps", Range::positive) * rad_per_deg;
-    model.lsb_rad_s = keys.number("lsb_dps", Range::not_negative) * rad_per_deg;
-    model.saturation_rad_s = keys.number("saturation_dps", Range::positive) * rad_per_deg;
-    model.M = keys.matrix("M");
-    model.latency_s = keys.number("latency_s", Range::any);
-    model.timestamp_jitter_s = keys.number("timestamp_jitter_s", Range::not_negative);
-    model.sd_rel = keys.uncertainties(keys.need("sd_rel"), "sd_rel");
-    model.sd_abs = keys.uncertainties(keys.need("sd_abs"), "sd_abs");
-    model.ref_noise_rad_s = keys.number("ref_noise_dps", Range::not_negative) * rad_per_deg;
-    model.acc_noise_m_s2 = keys.number("acc_noise_g", Range::not_negative) * standard_gravity_m_s2;
-    model.temp_noise_C = keys.number("temp_noise_C", Range::not_negative);
+// The converter and the rate.
+Unstated read_sampling(Keys& keys, SensorModel& model) {
+    const auto rate_hz = keys.optional_number("rate_hz", Range::positive);
+    const auto step_dps = keys.optional_number("lsb_dps", Range::not_negative);
+    const auto full_scale_dps = keys.optional_number("full_scale_dps", Range::positive);
+    const auto saturation_dps = keys.optional_number("saturation_dps", Range::positive);
+    model.rate_hz = rate_hz.value_or(0.0);
+    model.lsb_rad_s = step_dps.value_or(0.0) * rad_per_deg;
+    model.full_scale_rad_s = full_scale_dps ? *full_scale_dps * rad_per_deg : no_range_rad_s;
+    model.saturation_rad_s = saturation_dps ? *saturation_dps * rad_per_deg : model.full_scale_rad_s;
+    return {!rate_hz, !step_dps, !full_scale_dps, !saturation_dps && !full_scale_dps};
+}
+
+void read_sensor(Keys& keys, SensorModel& model, StatedNumbers& stated) {
+    if (keys.find("M") != nullptr) { model.M = keys.matrix("M"); }
+    model.latency_s = stated.number(keys, "latency_s", Range::any);
+    model.timestamp_jitter_s = stated.number(keys, "timestamp_jitter_s", Range::not_negative);
+    if (const Json* sd = keys.find("sd_rel")) { model.sd_rel = keys.uncertainties(*sd, "sd_rel"); }
+    if (const Json* sd = keys.find("sd_abs")) { model.sd_abs = keys.uncertainties(*sd, "sd_abs"); }
+    model.ref_noise_rad_s = stated.number(keys, "ref_noise_dps", Range::not_negative) * rad_per_deg;
+    model.acc_noise_m_s2 = stated.number(keys, "acc_noise_g", Range::not_negative) * standard_gravity_m_s2;
+    model.temp_noise_C = stated.number(keys, "temp_noise_C", Range::not_negative);
     if (keys.find("orientation") != nullptr) { model.orientation = keys.matrix("orientation"); }
     if (const Json* misalignment = keys.find("misalignment_percent")) {
         model.misalignment = keys.numbers<3>(*misalignment, "misalignment_percent");
@@ -118,11 +147,14 @@ void read_sensor(Keys& keys, SensorModel& model) {
     }
 }
 
-SensorModel read_document(const Json& document, std::optional<std::string>& problem) {
-    SensorModel model;
+ModelFile read_document(const Json& document, std::optional<std::string>& problem) {
+    ModelFile file;
+    SensorModel& model = file.model;
+    StatedNumbers stated;
     Keys keys(document, "", problem);
     keys.find("schema");  // judged by the caller
-    read_sensor(keys, model);
+    file.unstated = read_sampling(keys, model);
+    read_sensor(keys, model, stated);
 
     Json carried = Json::object();
     const double factor = coefficient_factor(keys);
@@ -132,7 +164,7 @@ SensorModel read_document(const Json& document, std::optional<std::string>& prob
     for (std::size_t i = 0; i < 3; ++i) {
         const std::string axis = axis_names[i];
         Keys axis_keys = axes_keys.inside(axes_keys.need(axis), axis);
-        model.axes[i] = read_axis(axis_keys, factor);
+        model.axes[i] = read_axis(axis_keys, factor, stated);
         carry(axes_carried, axis, axis_keys.left_over());
     }
     axes_carried.update(axes_keys.left_over());
@@ -153,7 +185,11 @@ SensorModel read_document(const Json& document, std::optional<std::string>& prob
     }
     carried.update(keys.left_over());
     if (!carried.empty()) { model.carried_json = carried.dump(); }
-    return model;
+    if (!stated.absent().empty()) {
+        file.notes.push_back(fmt::format("the model does not state {}: taken as 0, exactly",
+                                         fmt::join(stated.absent(), ", ")));
+    }
+    return file;
 }
 
 // The value in a unit of so many SI units, with the fewest digits that come back as the same SI value.
@@ -226,7 +262,39 @@ void put_back(Json& to, const std::string& carried_json) {
     if (carried.is_object()) { put_back(to, carried); }
 }
 
+Result<SensorModel> standing_for_itself(Result<ModelFile> file, const std::string& name) {
+    if (!file.ok()) { return std::move(file).error(); }
+    if (file->unstated.rate) {
+        return Error{ErrorCode::malformed, "model '" + name + "': rate_hz is missing"};
+    }
+    return std::move(file->model);
+}
+
 }  // namespace
+
+void complete_from(const Recording& recording, ModelFile& file) {
+    SensorModel& model = file.model;
+    const Unstated unstated = std::exchange(file.unstated, {});
+    const std::optional<RecordedConverter> converter = recorded_converter(recording);
+    std::vector<std::string> taken;
+    if (unstated.rate) {
+        model.rate_hz = recording.rate_hz;
+        taken.push_back(fmt::format("rate_hz ({:.6g})", model.rate_hz));
+    }
+    if (converter && unstated.step && converter->step_rad_s > 0.0) {
+        model.lsb_rad_s = converter->step_rad_s;
+        taken.push_back(fmt::format("lsb_dps ({:.6g})", model.lsb_rad_s * deg_per_rad));
+    }
+    if (converter && unstated.full_scale) {
+        model.full_scale_rad_s = converter->full_scale_rad_s;
+        taken.push_back(fmt::format("full_scale_dps ({:.6g})", model.full_scale_rad_s * deg_per_rad));
+    }
+    if (converter && unstated.saturation) { model.saturation_rad_s = converter->saturation_rad_s; }
+    if (!taken.empty()) {
+        file.notes.push_back(
+            fmt::format("the model does not state {}: taken from the recording", fmt::join(taken, ", ")));
+    }
+}
 
 Result<ModelFile> parse_model_file(std::string_view text, const std::string& name, std::uint64_t seed) {
     GYROLOG_TRY(const JsonDocument document, parse_json_document(text, name));
@@ -234,7 +302,7 @@ Result<ModelFile> parse_model_file(std::string_view text, const std::string& nam
     std::optional<std::string> problem;
     ModelFile file;
     if (schema == schema_name) {
-        file.model = read_document(document.json, problem);
+        file = read_document(document.json, problem);
     } else if (schema == datasheet_schema) {
         const Datasheet sheet = read_datasheet(document.json, problem);
         if (!problem) { file = draw_from(sheet, seed); }
@@ -255,8 +323,7 @@ Result<ModelFile> parse_model_file(std::string_view text, const std::string& nam
 }
 
 Result<SensorModel> parse_model(std::string_view text, const std::string& name, std::uint64_t seed) {
-    GYROLOG_TRY(ModelFile file, parse_model_file(text, name, seed));
-    return std::move(file.model);
+    return standing_for_itself(parse_model_file(text, name, seed), name);
 }
 
 std::string format_model(const SensorModel& model) {
@@ -301,8 +368,7 @@ std::string format_model(const SensorModel& model) {
 }
 
 Result<SensorModel> read_model(const std::string& path, std::uint64_t seed) {
-    GYROLOG_TRY(ModelFile file, read_model_file(path, seed));
-    return std::move(file.model);
+    return standing_for_itself(read_model_file(path, seed), path);
 }
 
 Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed) {

@@ -10,23 +10,40 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
+
+// What a model does not state and a recording can tell. Until it is told the rate is 0, there is no step and
+// the range is `no_range_rad_s`.
+struct Unstated {
+    bool rate = false;
+    bool step = false;
+    bool full_scale = false;
+    bool saturation = false;
+};
 
 // A model file with what a person should know about it.
 struct ModelFile {
     SensorModel model;
     std::vector<std::string> notes;
     bool is_drawn = false;  // of a data sheet: another seed is another unit
+    Unstated unstated{};
 };
+
+// Takes what the model does not state from the recording, and adds a note of it.
+void complete_from(const Recording& recording, ModelFile& file);
 
 // A gyrolog-model/1; a data sheet (datasheet_json.hpp), from which `seed` draws a unit; or gyroparams
 // (gyroparams_json.hpp). `name` is what errors call the text: the file's path.
-// Errors: `malformed` for text that is no JSON, a missing needed key, a wrong type, a number that is not
-// finite or out of its range, each naming the key; `unsupported` for another schema.
+// Of a gyrolog-model/1 `schema` and `axes` are needed, and of each axis N, B, K or bias; what else is not
+// stated is zero and exactly known (M: the identity), or a recording's to tell. Notes say which. Errors:
+// `malformed` for text that is no JSON, a missing needed key, a wrong type, a number that is not finite or
+// out of its range, each naming the key; `unsupported` for another schema.
 Result<ModelFile> parse_model_file(std::string_view text, const std::string& name, std::uint64_t seed);
+// A model that stands for itself: without a rate it is `malformed`.
 Result<SensorModel> parse_model(std::string_view text, const std::string& name, std::uint64_t seed = 1);
 // Always as gyrolog-model/1.
 std::string format_model(const SensorModel& model);

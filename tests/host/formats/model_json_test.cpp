@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/noise/noise_model.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -84,19 +86,92 @@ TEST(ModelJson, UnknownKeysAreKeptWhereTheyStood) {
 }
 
 TEST(ModelJson, AMissingNeededKeyIsNamed) {
-    for (const char* key : {"rate_hz", "full_scale_dps", "lsb_dps", "saturation_dps", "axes", "M",
-                            "latency_s", "timestamp_jitter_s", "sd_rel", "sd_abs", "ref_noise_dps",
-                            "acc_noise_g", "temp_noise_C", "schema"}) {
+    for (const char* key : {"rate_hz", "axes", "schema"}) {
         Json json = example();
         json.erase(key);
         EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': " + std::string(key) + " is missing");
     }
     Json json = example();
-    json["axes"]["y"].erase("B");
-    EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': axes.y.B is missing");
-    json = example();
     json["axes"].erase("z");
     EXPECT_EQ(refusal_of(json.dump()), "model 'm.json': axes.z is missing");
+    json = example();
+    for (const char* key : {"N", "B", "K", "bias"}) { json["axes"]["y"].erase(key); }
+    EXPECT_EQ(refusal_of(json.dump()),
+              "model 'm.json': axes.y.N is missing, as are B, K and bias: one of them is needed");
+}
+
+// What a person writes by hand.
+constexpr const char* few_numbers =
+    R"({"schema": "gyrolog-model/1", "axes": {"x": {"N": 0.01}, "y": {"bias": 0.5}, "z": {"K": 1e-3}}})";
+
+TEST(ModelJson, AFewNumbersAreAModel) {
+    const auto file = parse_model_file(few_numbers, "m.json", 1);
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    EXPECT_DOUBLE_EQ(file->model.axes[0].noise.N_rad_per_sqrt_s, 0.01 * rad_per_deg);
+    EXPECT_EQ(file->model.axes[0].noise.B_rad_per_s, 0.0);
+    EXPECT_DOUBLE_EQ(file->model.axes[1].bias_rad_s, 0.5 * rad_per_deg);
+    EXPECT_EQ(file->model.M, identity_matrix);
+    EXPECT_EQ(file->model.saturation_rad_s, no_range_rad_s);
+    EXPECT_THAT(file->notes, testing::ElementsAre("the model does not state latency_s, timestamp_jitter_s, "
+                                                  "ref_noise_dps, acc_noise_g, temp_noise_C, B, K, bias, N: "
+                                                  "taken as 0, exactly"));
+    EXPECT_TRUE(parse_model_file(example().dump(), "m.json", 1)->notes.empty());
+}
+
+Recording of_rates_dps(std::vector<double> numbers, double dps_per_number) {
+    Recording recording;
+    recording.rate_hz = 62.5;
+    recording.columns.push_back(
+        {"gx", "rad/s", std::move(numbers), dps_per_number * rad_per_deg, 0.0, "dps"});
+    recording.segments.push_back({0, recording.rows(), 0});
+    return recording;
+}
+
+TEST(ModelJson, ARecordingTellsWhatTheModelDoesNotState) {
+    auto file = parse_model_file(few_numbers, "m.json", 1);
+    ASSERT_TRUE(file.ok());
+    const Recording on_grid = of_rates_dps({1.0, 1.5, -2.5, 0.5, 1.0, 1.5, 0.5, -2.5, 1.0, 0.5}, 0.02);
+    complete_from(on_grid, *file);
+    EXPECT_EQ(file->model.rate_hz, 62.5);
+    EXPECT_NEAR(file->model.lsb_rad_s, 0.01 * rad_per_deg, 1e-12);
+    EXPECT_NEAR(file->model.full_scale_rad_s, 327.68 * rad_per_deg, 1e-9);
+    EXPECT_NEAR(file->model.saturation_rad_s, 327.67 * rad_per_deg, 1e-9);
+    EXPECT_EQ(
+        file->notes.back(),
+        "the model does not state rate_hz (62.5), lsb_dps (0.01), full_scale_dps (327.68): taken from the "
+        "recording");
+    // Once is enough.
+    const std::size_t notes = file->notes.size();
+    complete_from(on_grid, *file);
+    EXPECT_EQ(file->notes.size(), notes);
+}
+
+// Nobody knows what such a count is in deg/s.
+TEST(ModelJson, CountsWithoutAScaleTellTheRateOnly) {
+    auto file = parse_model_file(few_numbers, "m.json", 1);
+    ASSERT_TRUE(file.ok());
+    Recording counts = of_rates_dps({1.0, 1.5, -2.5, 0.5, 1.0, 1.5, 0.5, -2.5}, 1.0);
+    counts.columns[0].unit = "lsb";
+    complete_from(counts, *file);
+    EXPECT_EQ(file->model.rate_hz, 62.5);
+    EXPECT_EQ(file->model.lsb_rad_s, 0.0);
+    EXPECT_EQ(file->model.full_scale_rad_s, no_range_rad_s);
+}
+
+TEST(ModelJson, WhatTheModelStatesARecordingDoesNotChange) {
+    auto file = parse_model_file(example().dump(), "m.json", 1);
+    ASSERT_TRUE(file.ok());
+    complete_from(of_rates_dps({1.0, 1.5, 0.5, -2.5, 1.5, 1.0}, 0.02), *file);
+    EXPECT_EQ(Json::parse(format_model(file->model)), example());
+    EXPECT_TRUE(file->notes.empty());
+}
+
+// Printed decimals that 16 bits do not reach are no converter's codes.
+TEST(ModelJson, TheRangeHoldsWhatWasRecorded) {
+    auto file = parse_model_file(few_numbers, "m.json", 1);
+    ASSERT_TRUE(file.ok());
+    complete_from(of_rates_dps({1.0, 2.0, 400000.0, -3.0, 1.0, 2.0, -3.0, 400000.0}, 1e-3), *file);
+    EXPECT_NEAR(file->model.full_scale_rad_s, 500.0 * rad_per_deg, 1e-9);
 }
 
 TEST(ModelJson, OptionalKeysMayBeMissing) {
