@@ -7,11 +7,15 @@
 #include "analysis/diagnose/measures/shown_values.hpp"
 #include "analysis/noise/noise_model.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr std::size_t allan_places = 8;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
-
-constexpr std::size_t allan_places = 8;
 
 double deviation_dps(double log_deviation) { return std::exp(log_deviation) * deg_per_rad; }
 
@@ -32,8 +36,8 @@ GapCurve allan_curve(const Observation& observation, std::size_t axis) {
     std::size_t stride = 1;
     for (std::size_t m = 1; 4 * m <= residual.size(); m *= 2) {
         // Eight places within one averaging time tell nearly as much as all.
-        if (m / allan_places > stride) {
-            stride = m / allan_places;
+        if (m / resolution::allan_places > stride) {
+            stride = m / resolution::allan_places;
             keep_every_second(integral);
         }
         const auto within = static_cast<Eigen::Index>(m / stride);

@@ -9,26 +9,32 @@
 #include "analysis/diagnose/measures/curve_place.hpp"
 #include "analysis/diagnose/measures/shown_values.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr double sigmas[] = {0.5, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0};
+// Counted one threshold after the other, with the samples near at hand: no branch depends on their
+// values.
+constexpr std::size_t piece_samples = 1024;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
 
-constexpr double sigmas[] = {0.5, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0};
-
 void append_amplitude_curves(const Observation& observation, std::size_t axis,
                              std::vector<GapCurve>& curves) {
-    GapCurve curve{&measures::amplitude, axis, axis, {std::begin(sigmas), std::end(sigmas)}, {}};
+    GapCurve curve{
+        &measures::amplitude, axis, axis, {std::begin(resolution::sigmas), std::end(resolution::sigmas)}, {}};
     std::vector<double> beyond(curve.x.size(), 0.0);
     double all_cubes = 0.0;
     double count = 0.0;
     const std::vector<float>& white = observation.axis(axis).whitened;
-    // Counted one threshold after the other, with the samples near at hand: no branch depends on their
-    // values.
-    constexpr std::size_t piece = 1024;
-    std::array<float, piece> values{};
-    for (std::size_t first = 0; first < white.size(); first += piece) {
+    std::array<float, resolution::piece_samples> values{};
+    for (std::size_t first = 0; first < white.size(); first += resolution::piece_samples) {
         std::size_t known = 0;
-        for (std::size_t slot = first; slot < std::min(first + piece, white.size()); ++slot) {
+        for (std::size_t slot = first; slot < std::min(first + resolution::piece_samples, white.size());
+             ++slot) {
             values[known] = white[slot];
             known += std::size_t{observation.present()[slot]};
         }

@@ -5,28 +5,29 @@
 
 #include "analysis/numerics/square.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr double samples_of_bin_least = 30.0;
 // Quantiles are those of as many samples as this, spread over all.
 constexpr std::size_t samples_for_quantiles = 20'000;
-constexpr std::size_t course_blocks = 16;
+constexpr std::size_t drive_blocks = 16;
 
-}  // namespace
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
 
 Edges equal_ranges(const std::vector<float>& at) {
     const auto [least, most] = std::ranges::minmax(at);
     Edges edges{};
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        edges[i] = least + (most - least) * static_cast<float>(i + 1) / static_cast<float>(value_bins);
+        edges[i] =
+            least + (most - least) * static_cast<float>(i + 1) / static_cast<float>(resolution::value_bins);
     }
     return edges;
 }
 
 Edges equal_counts(const Observation& observation, const std::vector<float>& at) {
-    const std::size_t stride = std::max<std::size_t>(1, at.size() / samples_for_quantiles);
+    const std::size_t stride = std::max<std::size_t>(1, at.size() / resolution::samples_for_quantiles);
     std::vector<float> some;
     for (std::size_t slot = 0; slot < at.size(); slot += stride) {
         if (observation.present()[slot]) { some.push_back(at[slot]); }
@@ -34,7 +35,9 @@ Edges equal_counts(const Observation& observation, const std::vector<float>& at)
     if (some.empty()) { some.push_back(0.0F); }
     std::ranges::sort(some);
     Edges edges{};
-    for (std::size_t i = 0; i < edges.size(); ++i) { edges[i] = some[(i + 1) * some.size() / value_bins]; }
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        edges[i] = some[(i + 1) * some.size() / resolution::value_bins];
+    }
     return edges;
 }
 
@@ -52,17 +55,17 @@ ValueBins by_value(const Observation& observation, std::size_t axis, const std::
         bins.squares[bin] += square(value);
         bins.count[bin] += 1.0;
     }
-    for (std::size_t bin = 0; bin < value_bins; ++bin) {
+    for (std::size_t bin = 0; bin < resolution::value_bins; ++bin) {
         const double nearest = static_cast<double>(edges[std::min(bin, edges.size() - 1)]);
         bins.at[bin] = bins.count[bin] > 0.0 ? bins.at[bin] / bins.count[bin] : nearest;
-        if (bins.count[bin] <= samples_of_bin_least) { bins.count[bin] = 0.0; }
+        if (bins.count[bin] <= resolution::samples_of_bin_least) { bins.count[bin] = 0.0; }
     }
     return bins;
 }
 
 GapCurve mean_curve(const Measure& measure, std::size_t axis, std::size_t other, const ValueBins& bins) {
     GapCurve curve{&measure, axis, other, {bins.at.begin(), bins.at.end()}, {}};
-    for (std::size_t bin = 0; bin < value_bins; ++bin) {
+    for (std::size_t bin = 0; bin < resolution::value_bins; ++bin) {
         const double count = bins.count[bin];
         curve.value.push_back(count > 0.0 ? bins.sum[bin] / std::sqrt(count) : 0.0);
     }
@@ -71,7 +74,7 @@ GapCurve mean_curve(const Measure& measure, std::size_t axis, std::size_t other,
 
 GapCurve variance_curve(const Measure& measure, std::size_t axis, const ValueBins& bins) {
     GapCurve curve{&measure, axis, axis, {bins.at.begin(), bins.at.end()}, {}};
-    for (std::size_t bin = 0; bin < value_bins; ++bin) {
+    for (std::size_t bin = 0; bin < resolution::value_bins; ++bin) {
         const double count = bins.count[bin];
         curve.value.push_back(count > 0.0 ? std::log(std::max(bins.squares[bin] / count, 1e-12)) : 0.0);
     }
@@ -82,9 +85,9 @@ GapCurve drive_curve(const Measure& measure, const Observation& observation, std
                      const std::vector<float>& drive) {
     GapCurve curve{&measure, axis, axis, {}, {}};
     const std::vector<float>& white = observation.axis(axis).whitened;
-    for (std::size_t block = 0; block < course_blocks; ++block) {
-        const std::size_t first = block * white.size() / course_blocks;
-        const std::size_t end = (block + 1) * white.size() / course_blocks;
+    for (std::size_t block = 0; block < resolution::drive_blocks; ++block) {
+        const std::size_t first = block * white.size() / resolution::drive_blocks;
+        const std::size_t end = (block + 1) * white.size() / resolution::drive_blocks;
         double product = 0.0;
         double squares = 0.0;
         for (std::size_t slot = first; slot < end; ++slot) {

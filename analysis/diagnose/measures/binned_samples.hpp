@@ -9,9 +9,13 @@
 
 namespace gyrolog {
 
+namespace resolution {
+
 inline constexpr std::size_t value_bins = 12;
 
-using Edges = std::array<float, value_bins - 1>;  // between the bins, rising
+}  // namespace resolution
+
+using Edges = std::array<float, resolution::value_bins - 1>;  // between the bins, rising
 
 // Ranges of equal width, and ranges that hold as many samples each.
 Edges equal_ranges(const std::vector<float>& at);
@@ -20,7 +24,7 @@ Edges equal_counts(const Observation& observation, const std::vector<float>& at)
 // Sums over the whitened samples of each range. `at`: the mean of what they are sorted by. A range with 30
 // samples or less counts as empty.
 struct ValueBins {
-    std::array<double, value_bins> at{}, sum{}, squares{}, count{};
+    std::array<double, resolution::value_bins> at{}, sum{}, squares{}, count{};
 };
 ValueBins by_value(const Observation& observation, std::size_t axis, const std::vector<float>& at,
                    const Edges& edges);

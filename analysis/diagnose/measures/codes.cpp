@@ -10,20 +10,27 @@
 #include "analysis/diagnose/measures/shown_values.hpp"
 #include "analysis/numerics/square.hpp"
 #include "analysis/numerics/tail_probability.hpp"
+#include "analysis/numerics/uniform.hpp"
 #include "analysis/simulate/effect_axes.hpp"
+
+namespace gyrolog::resolution {
+
+constexpr std::size_t codes_around = 6;  // on either side
+constexpr double code_count_least = 8.0;
+constexpr double log_mean_most = 40.0;
+constexpr double codes_most = 1 << 20;
+constexpr int scoring_rounds = 6;
+constexpr double count_at_start_least = 0.5;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
 namespace {
 
-constexpr std::size_t codes_around = 6;  // on either side
-constexpr double code_count_least = 8.0;
-constexpr double log_mean_most = 40.0;
-
 // How often each code of the converter was shown, from codes_around below the least to as far above the
 // largest.
 std::vector<double> count_codes(const Recording& recording, std::size_t axis, double lsb_rad_s) {
-    constexpr double codes_most = 1 << 20;
     const Column& column = *recording.find(gyro_columns.at(axis));
     const double codes_per_number = column.scale / lsb_rad_s;
     return std::visit(
@@ -34,9 +41,10 @@ std::vector<double> count_codes(const Recording& recording, std::size_t axis, do
             const double other_end = static_cast<double>(most) * codes_per_number;
             const double first = std::round(std::min(one_end, other_end));
             const double codes = std::round(std::max(one_end, other_end)) - first;
-            if (codes > codes_most) { return {}; }
-            std::vector<double> counts(static_cast<std::size_t>(codes) + 1 + 2 * codes_around, 0.0);
-            const double from = first - static_cast<double>(codes_around);
+            if (codes > resolution::codes_most) { return {}; }
+            std::vector<double> counts(static_cast<std::size_t>(codes) + 1 + 2 * resolution::codes_around,
+                                       0.0);
+            const double from = first - static_cast<double>(resolution::codes_around);
             for (const auto number : data) {
                 const double code = static_cast<double>(number) * codes_per_number - from;
                 counts[static_cast<std::size_t>(std::max(code + 0.5, 0.0))] += 1.0;
@@ -55,23 +63,22 @@ struct ExpectedCount {
 
 // By the scoring iterations of a Poisson regression. `counts` goes on by codes_around beyond the code.
 ExpectedCount expected_count(const std::vector<double>& counts, std::size_t code) {
-    constexpr int iterations = 6;
-    constexpr double least_start = 0.5;
-    const auto first = counts.begin() + static_cast<std::ptrdiff_t>(code - codes_around);
-    const double all = std::accumulate(first, first + 2 * codes_around + 1, 0.0);
-    if (all < code_count_least) { return {}; }
+    const auto first = counts.begin() + static_cast<std::ptrdiff_t>(code - resolution::codes_around);
+    const double all = std::accumulate(first, first + 2 * resolution::codes_around + 1, 0.0);
+    if (all < resolution::code_count_least) { return {}; }
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
     Eigen::LDLT<Eigen::Matrix3d> solver;
-    for (int iteration = 0; iteration < iterations; ++iteration) {
+    for (int iteration = 0; iteration < resolution::scoring_rounds; ++iteration) {
         Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
         Eigen::Vector3d right = Eigen::Vector3d::Zero();
-        for (std::size_t i = 0; i <= 2 * codes_around; ++i) {
-            const double away = static_cast<double>(i) - static_cast<double>(codes_around);
+        for (std::size_t i = 0; i <= 2 * resolution::codes_around; ++i) {
+            const double away = static_cast<double>(i) - static_cast<double>(resolution::codes_around);
             if (std::fabs(away) < 2.0) { continue; }
-            const double count = counts[code - codes_around + i];
+            const double count = counts[code - resolution::codes_around + i];
             const Eigen::Vector3d powers(1.0, away, away * away);
-            const double log_mean = iteration == 0 ? std::log(std::max(count, least_start)) : powers.dot(at);
-            const double mean = std::exp(std::min(log_mean, log_mean_most));
+            const double log_mean =
+                iteration == 0 ? std::log(std::max(count, resolution::count_at_start_least)) : powers.dot(at);
+            const double mean = std::exp(std::min(log_mean, resolution::log_mean_most));
             normal.noalias() += mean * powers * powers.transpose();
             right += (mean * log_mean + count - mean) * powers;
         }
@@ -94,9 +101,10 @@ double most_surprising_code(const std::vector<double>& counts) {
     double most_of_two = 0.0;
     double tries = 0.0;
     double before = 0.0;
-    for (std::size_t code = codes_around; code + codes_around < counts.size(); ++code) {
+    for (std::size_t code = resolution::codes_around; code + resolution::codes_around < counts.size();
+         ++code) {
         const ExpectedCount expected = expected_count(counts, code);
-        if (!(expected.count >= code_count_least)) {
+        if (!(expected.count >= resolution::code_count_least)) {
             before = 0.0;
             continue;
         }
@@ -128,9 +136,8 @@ double balance_of(const std::vector<double>& counts) {
         squares += counts[code] * at * at;
     }
     if (!(all > 0.0)) { return 0.0; }
-    constexpr double rounding_variance = 1.0 / 12.0;
     const double mean = sum / all;
-    const double variance = std::max(squares / all - mean * mean - rounding_variance, 0.0);
+    const double variance = std::max(squares / all - mean * mean - variance_of_uniform(1.0), 0.0);
     const double of_place = std::sqrt(2.0) * all * std::exp(-0.5 * square(std::numbers::pi) * variance);
     return std::fabs(balance) / std::hypot(std::sqrt(all), of_place);
 }

@@ -7,13 +7,13 @@
 #include "analysis/diagnose/measures/shown_values.hpp"
 #include "analysis/numerics/square.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr std::size_t course_blocks = 32;
 
-}  // namespace
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
 
 const Measure measures::course{.name = "noise over time",
                                .x_name = "time (s)",
@@ -32,9 +32,9 @@ void add_course_curves(const Observation& observation, std::size_t axis, std::ve
     const std::vector<float>& white = observation.axis(axis).whitened;
     GapCurve course{&measures::course, axis, axis, {}, {}};
     GapCurve drift{&measures::drift, axis, axis, {}, {}};
-    for (std::size_t block = 0; block < course_blocks; ++block) {
-        const std::size_t first = block * white.size() / course_blocks;
-        const std::size_t end = (block + 1) * white.size() / course_blocks;
+    for (std::size_t block = 0; block < resolution::course_blocks; ++block) {
+        const std::size_t first = block * white.size() / resolution::course_blocks;
+        const std::size_t end = (block + 1) * white.size() / resolution::course_blocks;
         double sum = 0.0;
         double squares = 0.0;
         double count = 0.0;

@@ -3,20 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
+
 namespace gyrolog {
-
-namespace {
-
-// Points further off than this many standard deviations are where the gap is.
-constexpr double outside_sigma = 3.0;
-
-}  // namespace
 
 std::optional<Span> span_outside(const GapCurve& curve, const std::vector<double>& z) {
     std::optional<Span> span;
     double worst = 0.0;
     for (const double value : z) { worst = std::max(worst, std::fabs(value)); }
-    const double limit = std::min(outside_sigma, 0.7 * worst);
+    // Where nothing is seen, what is nearly as far off as the worst point.
+    const double limit = std::min(decisions.seen_sigma, 0.7 * worst);
     for (std::size_t i = 0; i < z.size(); ++i) {
         if (std::fabs(z[i]) < limit) { continue; }
         if (!span) { span = Span{curve.x[i], curve.x[i]}; }

@@ -4,11 +4,15 @@
 
 namespace gyrolog {
 
-namespace {
+namespace definition {
 
 // In stated standard deviations the likelihood charges half the square. What a recording hardly tells stays
 // near 0 in every simulation, and is off by no more than the model says.
 constexpr double least_sd_of_stated = 1.0;
+
+}  // namespace definition
+
+namespace {
 
 // It is of no frequency and no time.
 void locate_nowhere(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& /*where*/) {}
@@ -21,14 +25,14 @@ const Measure measures::noise_coefficients{.name = "noise coefficients",
                                            .shown_x = as_it_is,
                                            .shown_y = as_it_is,
                                            .locate = locate_nowhere,
-                                           .least_sd = least_sd_of_stated};
+                                           .least_sd = definition::least_sd_of_stated};
 const Measure measures::motion_parameters{.name = "gains, latency and clock",
                                           .x_name = "parameter",
                                           .y_name = "off (stated sd)",
                                           .shown_x = as_it_is,
                                           .shown_y = as_it_is,
                                           .locate = locate_nowhere,
-                                          .least_sd = least_sd_of_stated};
+                                          .least_sd = definition::least_sd_of_stated};
 
 void add_model_parameter_curves(const Observation& observation, std::size_t axis,
                                 std::vector<GapCurve>& curves) {

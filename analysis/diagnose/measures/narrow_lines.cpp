@@ -10,14 +10,18 @@
 #include "analysis/numerics/square.hpp"
 #include "analysis/numerics/tail_probability.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // In coefficients, half a line's natural width each.
 constexpr std::array<std::size_t, 4> narrow_widths = {4, 16, 64, 256};
 // Below the bands that hold the broadest of them.
 constexpr std::array<std::size_t, 3> slow_widths = {2, 4, 16};
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 struct Window {
     double surprise_nats = 0.0;
@@ -72,16 +76,16 @@ GapCurve narrow_curve(const Observation& observation, std::size_t axis) {
     const auto coefficients = [&](std::size_t of) {
         return prediction.bins()[edges[of + 1] - 1].end - prediction.bins()[edges[of]].first;
     };
-    while (band + 1 < edges.size() && coefficients(band) < narrow_widths.back()) { ++band; }
+    while (band + 1 < edges.size() && coefficients(band) < resolution::narrow_widths.back()) { ++band; }
     const std::vector<double> slow = whitened_sums(observation, axis, 0, edges[band]);
-    if (slow.size() > slow_widths.back()) {
-        add(prediction.bins()[0].first, most_surprising(slow, slow_widths, 1.0));
+    if (slow.size() > resolution::slow_widths.back()) {
+        add(prediction.bins()[0].first, most_surprising(slow, resolution::slow_widths, 1.0));
     }
     for (; band + 1 < edges.size(); ++band) {
         const std::vector<double> sums = whitened_sums(observation, axis, edges[band], edges[band + 1]);
         // Of a broad excess, what stands out of it.
         const double level = std::max(1.0, sums.back() / static_cast<double>(sums.size() - 1));
-        add(prediction.bins()[edges[band]].first, most_surprising(sums, narrow_widths, level));
+        add(prediction.bins()[edges[band]].first, most_surprising(sums, resolution::narrow_widths, level));
     }
     return curve;
 }

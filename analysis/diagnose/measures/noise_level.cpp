@@ -4,24 +4,28 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/measures/curve_place.hpp"
 #include "analysis/diagnose/measures/shown_values.hpp"
 #include "analysis/numerics/repetition.hpp"
 #include "analysis/numerics/square.hpp"
 #include "analysis/numerics/tail_probability.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr std::size_t memory_blocks_least = 16;
 constexpr double rhythm_step_s = 0.5;
 constexpr double rhythm_samples_least = 16.0;
 constexpr std::size_t rhythm_steps_least = 128;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
+
 // Most have no more: less is no news.
 const double even_chance_nats = std::log(2.0);
-// What one block may have: spikes are no rhythm.
-constexpr double deviates_most = 4.0;
 
 // Of the samples that are judged, in the order of time.
 std::vector<float> squares_of(const Observation& observation, std::size_t axis) {
@@ -56,7 +60,7 @@ Moments moments_of(const std::vector<float>& values) {
 void fill_memory(const Observation& observation, std::vector<float> means, double variance, GapCurve& curve) {
     // As many points for every observation, however many of its samples are to be judged.
     const std::size_t slots = observation.prediction().length();
-    for (std::size_t length = 1; slots / length >= memory_blocks_least; length *= 2) {
+    for (std::size_t length = 1; slots / length >= resolution::memory_blocks_least; length *= 2) {
         const std::size_t pairs = means.size() / 2;
         double sum = 0.0;
         for (std::size_t i = 0; i < pairs; ++i) {
@@ -92,7 +96,9 @@ std::vector<float> levels(const Observation& observation, const std::vector<floa
         const auto count = static_cast<double>(known);
         if (!(count > 0.0) || !(all.variance > 0.0)) { continue; }
         const double deviates = (sum - count * all.mean) / std::sqrt(count * all.variance);
-        level[block] = static_cast<float>(std::clamp(deviates, -deviates_most, deviates_most));
+        // A block may have no more: spikes are no rhythm.
+        level[block] =
+            static_cast<float>(std::clamp(deviates, -decisions.certain_sigma, decisions.certain_sigma));
     }
     return level;
 }
@@ -137,9 +143,9 @@ const Measure measures::rhythm{.name = "rhythm of the noise",
 
 void add_noise_level_curves(const Observation& observation, std::vector<GapCurve>& curves) {
     const Prediction& prediction = observation.prediction();
-    const auto length =
-        static_cast<std::size_t>(std::max(rhythm_samples_least, rhythm_step_s * prediction.rate_hz()));
-    const bool has_rhythm = prediction.length() / length >= rhythm_steps_least;
+    const auto length = static_cast<std::size_t>(
+        std::max(resolution::rhythm_samples_least, resolution::rhythm_step_s * prediction.rate_hz()));
+    const bool has_rhythm = prediction.length() / length >= resolution::rhythm_steps_least;
     std::vector<std::vector<float>> series;
     std::vector<float> sum;
     for (const std::size_t axis : prediction.axes()) {

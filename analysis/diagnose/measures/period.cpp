@@ -4,20 +4,22 @@
 #include <cmath>
 #include <span>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/measures/curve_place.hpp"
 #include "analysis/diagnose/measures/shown_values.hpp"
 #include "analysis/numerics/square.hpp"
 #include "analysis/numerics/tail_probability.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr std::size_t period_least = 4;
 constexpr std::size_t period_most = 4096;
-constexpr double repetitions_least = 8.0;
-// A drift or a line is none of this; of what comes back often, no multiple is this strong by itself.
-constexpr double power_most = 8.0;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 GapCurve period_curve(const Observation& observation, std::size_t axis) {
     const Prediction& prediction = observation.prediction();
@@ -30,7 +32,8 @@ GapCurve period_curve(const Observation& observation, std::size_t axis) {
         for (std::size_t k = std::max<std::size_t>(prediction.bins()[i].first, 1);
              k < prediction.bins()[i].end; ++k) {
             const double power = square(static_cast<double>(seen.cosines[k])) / expected;
-            correlation[k] = static_cast<float>(std::min(power, power_most) - 1.0);
+            // A drift or a line is none of this; of what comes back often, no multiple is seen by itself.
+            correlation[k] = static_cast<float>(std::min(power, square(decisions.seen_sigma)) - 1.0);
         }
     }
     prediction.transform()->inverse(std::span<float>(correlation));
@@ -39,13 +42,15 @@ GapCurve period_curve(const Observation& observation, std::size_t axis) {
     }
     const std::size_t lags = correlation.size() / 2;
     double squares = 0.0;
-    for (std::size_t lag = period_least; lag < lags; ++lag) {
+    for (std::size_t lag = resolution::period_least; lag < lags; ++lag) {
         squares += square(static_cast<double>(correlation[lag]));
     }
-    const double sd = std::sqrt(squares / static_cast<double>(lags - period_least));
+    const double sd = std::sqrt(squares / static_cast<double>(lags - resolution::period_least));
     GapCurve curve{&measures::period, axis, axis, {}, {}};
-    for (std::size_t from = period_least; from < period_most; from *= 2) {
-        if (static_cast<double>(lags) / static_cast<double>(2 * from) < repetitions_least) { break; }
+    for (std::size_t from = resolution::period_least; from < resolution::period_most; from *= 2) {
+        if (static_cast<double>(lags) / static_cast<double>(2 * from) < decisions.repetitions_least) {
+            break;
+        }
         double most = 0.0;
         for (std::size_t period = from; period < 2 * from; ++period) {
             double sum = 0.0;

@@ -9,17 +9,22 @@
 #include "analysis/diagnose/measures/shown_values.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr std::size_t repeat_lags = 2;
 constexpr std::size_t compared_lags = 4;  // after those
 
-using RepeatCounts = std::array<double, repeat_lags + compared_lags>;  // by lag, from 1 on
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
+
+using RepeatCounts =
+    std::array<double, resolution::repeat_lags + resolution::compared_lags>;  // by lag, from 1 on
 
 RepeatCounts count_repeats(const Recording& recording, std::size_t axis) {
-    std::array<std::size_t, repeat_lags + compared_lags> repeats{};
+    std::array<std::size_t, resolution::repeat_lags + resolution::compared_lags> repeats{};
     std::visit(
         [&](const auto& data) {
             const ValueRange range(data);
@@ -44,13 +49,13 @@ RepeatCounts count_repeats(const Recording& recording, std::size_t axis) {
 GapCurve repeats_curve(const Observation& observation, std::size_t axis) {
     const RepeatCounts counts = count_repeats(observation.recording(), axis);
     double compared = 0.0;
-    for (std::size_t lag = repeat_lags; lag < counts.size(); ++lag) {
-        compared += counts[lag] / static_cast<double>(compared_lags);
+    for (std::size_t lag = resolution::repeat_lags; lag < counts.size(); ++lag) {
+        compared += counts[lag] / static_cast<double>(resolution::compared_lags);
     }
     GapCurve curve{&measures::repeats, axis, axis, {}, {}};
-    for (std::size_t lag = 0; lag < repeat_lags; ++lag) {
+    for (std::size_t lag = 0; lag < resolution::repeat_lags; ++lag) {
         curve.x.push_back(static_cast<double>(lag + 1) / observation.prediction().rate_hz());
-        const double variance = counts[lag] + compared / static_cast<double>(compared_lags) + 1.0;
+        const double variance = counts[lag] + compared / static_cast<double>(resolution::compared_lags) + 1.0;
         curve.value.push_back((counts[lag] - compared) / std::sqrt(variance));
     }
     return curve;

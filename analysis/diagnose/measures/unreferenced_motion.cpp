@@ -4,13 +4,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/diagnose/decision_options.hpp"
+
 namespace gyrolog {
 
 namespace {
-
-// Of the Allan variance at a second, which is the white noise's density: none is thirty times as strong as
-// its model.
-constexpr double square_of_motion = 1000.0;
 
 // The Allan variance at a second.
 double second_to_second_variance(const Observation& observation, std::size_t axis) {
@@ -36,7 +34,7 @@ bool seems_to_have_turned(const Observation& observation) {
     const Prediction& prediction = observation.prediction();
     return !prediction.moves() && std::ranges::any_of(prediction.axes(), [&](std::size_t axis) {
         const double white = prediction.parts(axis).back().sum();
-        return second_to_second_variance(observation, axis) > square_of_motion * white;
+        return second_to_second_variance(observation, axis) > decisions.square_of_motion * white;
     });
 }
 

@@ -1,0 +1,87 @@
+// The constants that decide what the diagnosis calls, names or admits, of all that lies below the judgement.
+// Those of the judgement itself stand with it: DiagnosisOptions, NullJudgementOptions, RemainderOptions,
+// SelectionOptions, ShapeOptions, ProbabilityOptions.
+//
+// How finely or how far something is searched or computed is no decision: that is a `resolution`, which made
+// finer changes no answer, and stands in a namespace of that name where it is used.
+#pragma once
+
+namespace gyrolog {
+
+// Each: unit, meaning; source.
+struct DecisionOptions {
+    // A probability: chance has a gap where there is none, at most so often; convention. What causes leave is
+    // called, and one effect more is named, half as often.
+    double false_alarms_most = 0.01;
+
+    // Standard deviations: what is seen where one place is looked at, once in 370 by chance; the normal
+    // distribution.
+    double seen_sigma = 3.0;
+    // Standard deviations: what is seen though many places are looked at, once in 16 000 by chance; the
+    // normal distribution.
+    double certain_sigma = 4.0;
+    // Standard deviations: single samples beyond are outliers, 1 in 5e8 by chance; the normal distribution.
+    double outlier_sigma = 6.0;
+    // The log-likelihood that goes with `seen_sigma` for one free number (Wilks 1938).
+    constexpr double seen_nats() const { return 0.5 * seen_sigma * seen_sigma; }
+    // A relative standard deviation with which a positive number is just seen.
+    constexpr double seen_sd_rel() const { return 1.0 / seen_sigma; }
+
+    // Surprisal in nats of a curve that is named as a place of the gap: one chance in 1000, of some ten kinds
+    // of curve one in a hundred.
+    double stands_out_nats = 7.0;
+
+    // A share: what has more of something is that, rather than not.
+    double majority = 0.5;
+    // A share: all, but for what spikes or a thermometer's coarse steps spoil.
+    double nearly_all = 0.9;
+    // Times: a telegraph shows at least so many dwell times, and what is called periodic so many periods: the
+    // mean of eight independent ones is known to a third, which is seen.
+    double repetitions_least = 8.0;
+
+    // A factor by which an estimate may leave the plausible range of the effect's definition.
+    double beyond_plausible = 2.0;
+    // Relative: a stated uncertainty of N, B or K as large as the coefficient, or larger, says no more than
+    // this, and it is what one that was stated as nothing has; 1 would allow a coefficient of the other sign.
+    double unknown_sd_rel = 0.9;
+    // Relative: of a coefficient whose stated uncertainty is this or more, hardly more than its size is
+    // known.
+    double hardly_known_sd_rel = 0.5;
+    // Factor: such a coefficient grows to so many times its size; N, however well known, falls to that part
+    // of it, for without white noise Gauss-Markov noise would be a low-pass.
+    double noise_factor_most = 4.0;
+
+    // Hz: a slower swing is drift.
+    double slowest_line_hz = 0.05;
+    // Ratio of the axes' gains to a noise that they share; below, it is one axis' own.
+    double gain_ratio_least = 0.3;
+    // Of a step of the converter: printed decimals lie this near to its grid.
+    double on_grid_tolerance = 0.05;
+    // Relative: two steps that differ by less are one.
+    double same_step_rel = 0.02;
+    // Relative: a smooth distribution of the samples' changes departs by this from its parabola.
+    double smoothness_rel = 0.03;
+
+    // Priors of what a model does not state. A gap in the stamps is worth 20 nats in an hour where none is
+    // expected; the chance of a burst that is longer than the longest stated; the jitter of stamps, relative
+    // where stated (the model's default), in s where not; a clock's error in the course of a recording,
+    // relative.
+    double unexpected_gaps_per_h = 1e-9;
+    double too_long_probability = 1e-3;
+    double jitter_sd_rel = 0.05;
+    double unstated_jitter_s = 1e-5;
+    double clock_strays_rel = 2e-4;
+    // Relative: beyond, a sensor was set to another rate, and its clock has no fault.
+    double clock_error_most = 0.1;
+    // Correlation of neighbouring stamps' errors; beyond, they are the host's.
+    double burst_correlation = 0.3;
+    // Relative: how well the white noise of means is known, hardly, so that none of it is a cause.
+    double means_white_sd_rel = 0.2;
+    // Of the Allan variance at a second, over the model's: a sensor that has it was turned. No noise is
+    // thirty times as strong as its model.
+    double square_of_motion = 1000.0;
+};
+
+inline constexpr DecisionOptions decisions{};
+
+}  // namespace gyrolog
