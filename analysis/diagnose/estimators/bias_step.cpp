@@ -5,13 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
 #include "analysis/diagnose/estimators/step_scan.hpp"
+#include "analysis/numerics/uniform.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // Of the least that a jump could show in all coefficients, no more than this is left out of the scan.
 constexpr double left_out = 0.03;
@@ -19,20 +19,26 @@ constexpr std::size_t used_min = 512;
 constexpr std::size_t used_max = 16384;
 // A jump's power is taken off up to this multiple of the coefficients that the scan uses.
 constexpr std::size_t removed_beyond = 16;
-constexpr double worth_refining_nats = 5.0;
 constexpr double worth_rescanning_nats = 10.0;
 // Closer to an end a jump is a few odd samples.
 constexpr std::size_t edge_samples = 16;
 // A moment known to fewer places of a scan than this is looked for by a finer one, in the end among the
 // samples.
 constexpr double places_min = 6.0;
-constexpr std::size_t finer = 8;
+constexpr std::size_t finer_by = 8;
 constexpr std::size_t finest_used = 131072;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
+
 class BiasStepEstimator final : public Estimator {
 public:
     BiasStepEstimator(const EffectDefinition& effect, std::shared_ptr<const Prediction> prediction)
         : effect_(effect), height_(param_of(effect, "step_dps")), prediction_(std::move(prediction)) {
-        used_ = used_min;
+        used_ = resolution::used_min;
         for (const std::size_t axis : prediction_->axes()) {
             used_ = std::max(used_, coefficients_needed(axis));
         }
@@ -46,10 +52,10 @@ public:
             seen.density[axis] = observation.axis(axis).density;
             seen.fits[axis] = fit(scan, seen, axis);
         }
-        if (!locate(scan, seen) || gain_at(seen, seen.place) < worth_refining_nats) { return std::nullopt; }
+        if (!locate(scan, seen) || gain_at(seen, seen.place) < decisions.seen_nats()) { return std::nullopt; }
         // What the jump raised the random walk by is given back; then it may show better elsewhere.
         refit_noise(scan, seen);
-        for (int round = 0; round < 2 && total_gain(seen) > worth_rescanning_nats; ++round) {
+        for (int round = 0; round < 2 && total_gain(seen) > resolution::worth_rescanning_nats; ++round) {
             for (const std::size_t axis : prediction_->axes()) { seen.fits[axis] = fit(scan, seen, axis); }
             locate(scan, seen);
             refit_noise(scan, seen);
@@ -75,9 +81,9 @@ private:
             const SpectralBin& bin = prediction_->bins()[i];
             beyond[i] = beyond[i + 1] + bin.count() / (bin.f_hz * bin.f_hz * parts[i].sum());
         }
-        std::size_t used = used_min;
-        for (std::size_t i = 0; i < parts.size() && used < used_max; ++i) {
-            if (beyond[i] < left_out * beyond.front()) { break; }
+        std::size_t used = resolution::used_min;
+        for (std::size_t i = 0; i < parts.size() && used < resolution::used_max; ++i) {
+            if (beyond[i] < resolution::left_out * beyond.front()) { break; }
             while (used < prediction_->bins()[i].end) { used *= 2; }
         }
         return used;
@@ -121,7 +127,7 @@ private:
 
     bool inside(const StepScan& scan, std::size_t place) const {
         const double at = scan.sample_at(place);
-        const double edge = std::max(static_cast<double>(edge_samples), 2.0 * scan.spacing());
+        const double edge = std::max(static_cast<double>(resolution::edge_samples), 2.0 * scan.spacing());
         return at > edge && at < static_cast<double>(prediction_->length()) - edge;
     }
 
@@ -151,7 +157,7 @@ private:
         const AxisObservation& observed = seen.observation->axis(axis);
         const double height = seen.fits[axis].height(seen.place);
         const double at = scan.sample_at(seen.place);
-        const std::size_t end = std::min(prediction_->length(), removed_beyond * used_);
+        const std::size_t end = std::min(prediction_->length(), resolution::removed_beyond * used_);
         std::vector<double> power = observed.power;
         for (std::size_t i = 0; i < power.size() && prediction_->bins()[i].first < end; ++i) {
             const SpectralBin& bin = prediction_->bins()[i];
@@ -192,7 +198,7 @@ private:
         Moment moment;
         moment.at = first + spacing * static_cast<double>(best - log_likelihood.begin());
         moment.width = weight * spacing;
-        moment.sd = spacing * std::sqrt(square / weight + 1.0 / 12.0);
+        moment.sd = spacing * std::sqrt(square / weight + variance_of_uniform(1.0));
         return moment;
     }
 
@@ -200,14 +206,14 @@ private:
         Moment now = moment_of_scan(scan, seen.fits, axes);
         std::size_t used = scan.used();
         double spacing = scan.spacing();
-        while (now.width < places_min * spacing) {
-            const std::size_t most = std::min(finest_used, prediction_->length() - 1);
-            if (used * finer > most) {
+        while (now.width < resolution::places_min * spacing) {
+            const std::size_t most = std::min(resolution::finest_used, prediction_->length() - 1);
+            if (used * resolution::finer_by > most) {
                 // Single samples belong to both halves' frequencies.
                 if (prediction_->half() != Half::both) { return now; }
                 return moment_among_samples(seen, axes, now.at, spacing);
             }
-            used *= finer;
+            used *= resolution::finer_by;
             StepScan finer_scan(prediction_->length(), used);
             std::array<StepScan::Fit, 3> fits;
             for (const std::size_t axis : axes) { fits[axis] = fit(finer_scan, seen, axis); }
@@ -317,7 +323,7 @@ private:
     const EffectDefinition& effect_;
     const EffectParam& height_;
     std::shared_ptr<const Prediction> prediction_;
-    std::size_t used_ = used_min;
+    std::size_t used_ = resolution::used_min;
 };
 
 }  // namespace

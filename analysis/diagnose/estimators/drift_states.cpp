@@ -6,13 +6,18 @@
 
 #include "analysis/noise/noise_model.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr double part_spacing = 16.0;
+constexpr int amount_rounds = 60;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
 
-constexpr std::size_t terms = drift_parts + 1;  // white noise is the last
-constexpr double spacing = 16.0;
-constexpr int rounds = 60;
+constexpr std::size_t terms = resolution::drift_parts + 1;  // white noise is the last
 
 struct DensityPlace {
     double weight = 0.0;
@@ -21,7 +26,7 @@ struct DensityPlace {
 };
 
 double correlation_s(std::size_t part, double step_s) {
-    return 2.0 * step_s * std::pow(spacing, static_cast<double>(part));
+    return 2.0 * step_s * std::pow(resolution::part_spacing, static_cast<double>(part));
 }
 
 // Densities of processes of variance 1; of a random walk that grows by 1 a second; of white noise of
@@ -29,11 +34,11 @@ double correlation_s(std::size_t part, double step_s) {
 std::array<double, terms> unit_densities(double f_hz, double step_s) {
     std::array<double, terms> unit{};
     const double omega = 2.0 * pi * f_hz;
-    for (std::size_t part = 0; part + 1 < drift_parts; ++part) {
+    for (std::size_t part = 0; part + 1 < resolution::drift_parts; ++part) {
         unit[part] = GaussMarkov{1.0, correlation_s(part, step_s)}.psd(f_hz);
     }
-    unit[drift_parts - 1] = 1.0 / (omega * omega);
-    unit[drift_parts] = 1.0;
+    unit[resolution::drift_parts - 1] = 1.0 / (omega * omega);
+    unit[resolution::drift_parts] = 1.0;
     return unit;
 }
 
@@ -45,7 +50,7 @@ std::array<double, terms> fitted_amounts(const std::vector<DensityPlace>& places
         for (const DensityPlace& place : places) { least = std::min(least, place.density / place.unit[j]); }
         amount[j] = least;
     }
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < resolution::amount_rounds; ++round) {
         std::array<double, terms> up{};
         std::array<double, terms> down{};
         for (const DensityPlace& place : places) {
@@ -75,15 +80,15 @@ DriftStates drift_states(std::span<const double> f_hz, std::span<const double> d
     DriftStates states;
     if (places.empty()) { return states; }
     const std::array<double, terms> amount = fitted_amounts(places);
-    const double walk = amount[drift_parts - 1];
+    const double walk = amount[resolution::drift_parts - 1];
     double variance = walk * duration_s;
-    for (std::size_t part = 0; part + 1 < drift_parts; ++part) {
+    for (std::size_t part = 0; part + 1 < resolution::drift_parts; ++part) {
         states.kept[part] = std::exp(-step_s / correlation_s(part, step_s));
         states.start[part] = amount[part];
         states.innovation[part] = amount[part] * (1.0 - states.kept[part] * states.kept[part]);
         variance += amount[part];
     }
-    states.white_variance = amount[drift_parts] / step_s;
+    states.white_variance = amount[resolution::drift_parts] / step_s;
     // The mean is not known.
     states.kept.back() = 1.0;
     states.innovation.back() = walk * step_s;

@@ -8,16 +8,21 @@
 
 namespace gyrolog {
 
+namespace resolution {
+
 inline constexpr std::size_t drift_parts = 4;
+
+}  // namespace resolution
 
 // The states are those of averages over `step_s`: white noise, a random walk (the last part), and
 // Gauss-Markov processes with correlation times a factor of sixteen apart, the first twice the step. Together
 // they follow flicker noise to a seventh (A. van der Ziel, Physica 16 (1950) 359).
 struct DriftStates {
-    double white_variance = 0.0;                   // of one average
-    std::array<double, drift_parts> kept{};        // from one average to the next
-    std::array<double, drift_parts> innovation{};  // variance
-    std::array<double, drift_parts> start{};       // variance before the first; the random walk's is wide
+    double white_variance = 0.0;                               // of one average
+    std::array<double, resolution::drift_parts> kept{};        // from one average to the next
+    std::array<double, resolution::drift_parts> innovation{};  // variance
+    std::array<double, resolution::drift_parts>
+        start{};  // variance before the first; the random walk's is wide
 };
 
 // The function fits the states to `density`, two-sided, at f_hz, weighted alike in every octave up to 1 / (2

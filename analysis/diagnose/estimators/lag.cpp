@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/likelihood/lag_course.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
@@ -12,8 +14,6 @@ namespace gyrolog {
 namespace {
 
 constexpr std::string_view place = "growing_lag";
-// Gains below are not worth a closer scan.
-constexpr double trace_nats = 3.0;
 
 const EffectParam& param(const EffectDefinition& effect, std::string_view name) {
     return *std::ranges::find(effect.params, name, &EffectParam::name);
@@ -24,13 +24,13 @@ bool may_be_mistimed(const Observation& observation) {
     double squares = 0.0;
     double count = 0.0;
     for (const std::size_t axis : observation.prediction().axes()) {
-        if (uncertain_charge_nats(observation, axis) > trace_nats) { return true; }
+        if (uncertain_charge_nats(observation, axis) > decisions.seen_nats()) { return true; }
         for (const float white : observation.axis(axis).whitened) {
             squares += static_cast<double>(white) * static_cast<double>(white);
         }
         count += static_cast<double>(observation.axis(axis).whitened.size());
     }
-    return squares / count - 1.0 > 3.0 * std::sqrt(2.0 / count);
+    return squares / count - 1.0 > decisions.seen_sigma * std::sqrt(2.0 / count);
 }
 
 class LagEstimator : public Estimator {
@@ -47,7 +47,7 @@ public:
         const Observation with = observation.under(model);
         finding->where.structure = place;
         finding->gain_nats = log_likelihood_nats(with) - log_likelihood_nats(observation);
-        if (finding->gain_nats < trace_nats) { return std::nullopt; }
+        if (finding->gain_nats < resolution::worth_refining_nats) { return std::nullopt; }
         // Until here, what the freedom of the parameters costs, below zero.
         finding->evidence_nats += finding->gain_nats;
         return finding;

@@ -5,35 +5,44 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
 #include "analysis/diagnose/estimators/steady_line.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
+#include "analysis/numerics/distributions.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 
-namespace gyrolog {
+namespace gyrolog::resolution {
 
-namespace {
-
-// A slower swing is drift, and the coefficients around it are too few to tell its floor.
-constexpr double f_min_hz = 0.05;
 constexpr std::size_t place_min = 40;
-
-// Of a line between two coefficients eight tenths lie in six. Their sum over the axes has 6, 12 or 18 degrees
-// of freedom; noise exceeds these values once in two thousand times.
-constexpr std::size_t window = 6;
-constexpr std::array<float, 4> window_limit = {0.0F, 24.0F, 34.0F, 43.0F};
-constexpr std::size_t block = 256;
-constexpr std::size_t group = 16;
+// Of a line between two coefficients eight tenths lie in six.
+constexpr std::size_t window_coefficients = 6;
+// Noise alone makes a window a candidate so often.
+constexpr double candidate_chance = 5e-4;
+constexpr std::size_t block_coefficients = 256;
+constexpr std::size_t group_coefficients = 16;
 constexpr std::size_t candidates_most = 32;
 constexpr std::size_t refined_most = 3;
 constexpr std::size_t coarse_reach = 12;
 constexpr std::size_t line_reach = 64;
 constexpr std::size_t removed_reach = 4096;
+constexpr std::size_t blocks_to_settle = 4;
+constexpr std::size_t response_blocks = 8;
 
-// Median of chi-square with 16 degrees of freedom over its mean (Wilson and Hilferty 1931).
-constexpr double median_of_group = 0.9589;
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace definition {
+
+// Amplitude, phase and frequency.
+constexpr double line_parameters = 3.0;
+
+}  // namespace definition
+
+namespace {
 
 struct Candidate {
     std::size_t k = 0;  // first of the window
@@ -47,9 +56,15 @@ struct AxisLine {
     double gain_nats() const { return fit.gain_nats / floor; }
 };
 
+// Of a window's sum over the axes, in what is expected of one coefficient.
+float window_limit(std::size_t axes) {
+    const auto degrees = static_cast<double>(axes * resolution::window_coefficients);
+    return static_cast<float>(chi_squared_upper_quantile(degrees, resolution::candidate_chance));
+}
+
 double wilson_hilferty_limit(double degrees, double deviates) {
     const double part = 2.0 / (9.0 * degrees);
-    const double root = 1.0 - part + deviates * std::sqrt(part);
+    const double root = 1.0 - part + decisions.certain_sigma * std::sqrt(part);
     return degrees * root * root * root;
 }
 
@@ -58,7 +73,8 @@ public:
     LineEstimator(const EffectDefinition& effect, std::shared_ptr<const Prediction> prediction)
         : effect_(effect), prediction_(std::move(prediction)) {
         const double places = 2.0 * static_cast<double>(length()) / prediction_->rate_hz();
-        first_ = std::max(place_min, static_cast<std::size_t>(std::ceil(f_min_hz * places)));
+        first_ = std::max(resolution::place_min,
+                          static_cast<std::size_t>(std::ceil(decisions.slowest_line_hz * places)));
     }
 
     std::optional<Finding> find(const Observation& observation) const override {
@@ -68,10 +84,11 @@ public:
         tried.reserve(candidates.size());
         for (const Candidate& candidate : candidates) {
             tried.push_back(best_place(observation, static_cast<double>(candidate.k), 0.5,
-                                       2 * static_cast<int>(window) - 1, coarse_reach));
+                                       2 * static_cast<int>(resolution::window_coefficients) - 1,
+                                       resolution::coarse_reach));
         }
         std::ranges::sort(tried, std::greater<>());
-        tried.resize(std::min(tried.size(), refined_most));
+        tried.resize(std::min(tried.size(), resolution::refined_most));
         std::optional<Finding> best;
         for (const auto& [rough, place] : tried) {
             std::optional<Finding> finding = fit_at(observation, refined_place(observation, place));
@@ -121,14 +138,18 @@ private:
             }
         }
         std::vector<float> means;
-        for (std::size_t at = 0; at + group <= squares.size(); at += group) {
+        for (std::size_t at = 0; at + resolution::group_coefficients <= squares.size();
+             at += resolution::group_coefficients) {
             float sum = 0.0F;
-            for (std::size_t i = 0; i < group; ++i) { sum += squares[at + i]; }
-            means.push_back(sum / static_cast<float>(group));
+            for (std::size_t i = 0; i < resolution::group_coefficients; ++i) { sum += squares[at + i]; }
+            means.push_back(sum / static_cast<float>(resolution::group_coefficients));
         }
         if (means.empty()) { return; }
         const auto middle = means.begin() + static_cast<std::ptrdiff_t>(means.size() / 2);
         std::ranges::nth_element(means, middle);
+        // Of chi-square over its degrees of freedom (Wilson and Hilferty 1931).
+        constexpr auto degrees = static_cast<double>(resolution::group_coefficients);
+        const double median_of_group = wilson_hilferty_limit(degrees, 0.0) / degrees;
         const float level = *middle / static_cast<float>(median_of_group);
         if (!(level > 1.0F)) { return; }
         for (float& square : squares) { square /= level; }
@@ -138,27 +159,30 @@ private:
     std::vector<Candidate> scan(const Observation& observation) const {
         std::vector<Candidate> found;
         std::array<std::vector<float>, 3> squares;
-        std::vector<float> sums(block);
-        for (std::size_t first = first_; first + window < length(); first += block - window + 1) {
-            const std::size_t end = std::min(length(), first + block);
-            if (end - first < group) { break; }
-            const std::size_t places = end - first - window + 1;
+        const float of_one = window_limit(1);
+        const float limit = window_limit(prediction_->axes().size());
+        for (std::size_t first = first_; first + resolution::window_coefficients < length();
+             first += resolution::block_coefficients - resolution::window_coefficients + 1) {
+            const std::size_t end = std::min(length(), first + resolution::block_coefficients);
+            if (end - first < resolution::group_coefficients) { break; }
+            const std::size_t places = end - first - resolution::window_coefficients + 1;
             std::vector<float> all(places, 0.0F);
             std::vector<float> most(places, 0.0F);
             for (const std::size_t axis : prediction_->axes()) {
                 fill_squares(observation.axis(axis), first, end, squares[axis]);
                 for (std::size_t i = 0; i < places; ++i) {
                     float sum = 0.0F;
-                    for (std::size_t j = 0; j < window; ++j) { sum += squares[axis][i + j]; }
+                    for (std::size_t j = 0; j < resolution::window_coefficients; ++j) {
+                        sum += squares[axis][i + j];
+                    }
                     all[i] += sum;
                     most[i] = std::max(most[i], sum);
                 }
             }
-            const float limit = window_limit[prediction_->axes().size()];
             for (std::size_t i = 0; i < places; ++i) {
-                const float excess = std::max(most[i] - window_limit[1], all[i] - limit);
+                const float excess = std::max(most[i] - of_one, all[i] - limit);
                 if (!(excess > 0.0F)) { continue; }
-                if (!found.empty() && first + i < found.back().k + window) {
+                if (!found.empty() && first + i < found.back().k + resolution::window_coefficients) {
                     if (excess > found.back().excess) { found.back() = {first + i, excess}; }
                     continue;
                 }
@@ -166,7 +190,7 @@ private:
             }
         }
         std::ranges::sort(found, std::greater<>(), &Candidate::excess);
-        found.resize(std::min(found.size(), candidates_most));
+        found.resize(std::min(found.size(), resolution::candidates_most));
         return found;
     }
 
@@ -205,7 +229,7 @@ private:
     double refined_place(const Observation& observation, double place) const {
         double step = 0.25;
         while (step > 1e-5) {
-            place = best_place(observation, place - 2.0 * step, step, 5, line_reach).second;
+            place = best_place(observation, place - 2.0 * step, step, 5, resolution::line_reach).second;
             step *= 0.25;
         }
         return place;
@@ -214,8 +238,6 @@ private:
     // Mean square of what the line leaves around it, against the expected density, where that is more than
     // chance makes of it.
     double floor_around(const AxisObservation& seen, const SteadyLine& line) const {
-        constexpr double deviates = 4.0;
-        constexpr double fitted = 3.0;
         const LineShape shape(length(), line.place);
         double floor = 1.0;
         for (const std::size_t most : {std::size_t{8}, std::size_t{32}, std::size_t{128}}) {
@@ -230,8 +252,10 @@ private:
                     static_cast<double>(seen.cosines[k]) - line.cosine * cosine - line.sine * sine;
                 sum += weight[k - first] * left * left;
             }
-            const double degrees = std::max(1.0, count - fitted);
-            if (sum > wilson_hilferty_limit(degrees, deviates)) { floor = std::max(floor, sum / degrees); }
+            const double degrees = std::max(1.0, count - definition::line_parameters);
+            if (sum > wilson_hilferty_limit(degrees, decisions.certain_sigma)) {
+                floor = std::max(floor, sum / degrees);
+            }
         }
         return floor;
     }
@@ -241,7 +265,7 @@ private:
     double refitted_gain(const AxisObservation& seen, std::size_t axis, const SteadyLine& line) const {
         std::vector<double> power = seen.power;
         const LineShape shape(length(), line.place);
-        const auto [first, end] = around(line.place, removed_reach);
+        const auto [first, end] = around(line.place, resolution::removed_reach);
         std::size_t bin = bin_of(first);
         for (std::size_t k = first; k < end; ++k) {
             while (bin + 1 < prediction_->bins().size() && prediction_->bins()[bin].end <= k) { ++bin; }
@@ -263,7 +287,7 @@ private:
         std::vector<AxesFit> fits;
         for (const std::size_t axis : prediction_->axes()) {
             const AxisObservation& seen = observation.axis(axis);
-            AxisLine line{axis, fit_axis(seen, place, line_reach), 1.0};
+            AxisLine line{axis, fit_axis(seen, place, resolution::line_reach), 1.0};
             if (!(line.fit.gain_nats > 0.0)) { continue; }
             line.floor = floor_around(seen, line.fit.line);
             line.fit.gain_nats = std::max(refitted_gain(seen, axis, line.fit.line), 0.0);
@@ -352,15 +376,13 @@ private:
     // Amplitude in deg/s and phase by which the models' answers differ at rest.
     std::pair<double, double> response(const SensorModel& without, const SensorModel& with, std::size_t axis,
                                        double f_hz) const {
-        constexpr std::size_t blocks_to_settle = 4;
-        constexpr std::size_t blocks = 8;
         SensorSimulator plain(without, prediction_->rate_hz(), 1);
         SensorSimulator changed(with, prediction_->rate_hz(), 1);
         double cc = 0.0, cs = 0.0, ss = 0.0, cy = 0.0, sy = 0.0;
-        for (std::size_t b = 0; b < blocks; ++b) {
+        for (std::size_t b = 0; b < resolution::response_blocks; ++b) {
             const SampleBlock& before = plain.next_block();
             const SampleBlock& after = changed.next_block();
-            if (b < blocks_to_settle) { continue; }
+            if (b < resolution::blocks_to_settle) { continue; }
             for (std::size_t i = 0; i < block_samples; ++i) {
                 const double angle =
                     2.0 * pi * f_hz * static_cast<double>(b * block_samples + i) / prediction_->rate_hz();

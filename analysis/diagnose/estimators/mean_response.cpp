@@ -5,6 +5,7 @@
 #include <map>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/effect_response.hpp"
@@ -12,17 +13,20 @@
 #include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
-namespace gyrolog {
+namespace gyrolog::resolution {
 
-namespace {
-
-// Beyond this evidence trial values are refined, which takes a simulation.
-constexpr double worth_refining_nats = 3.0;
 // In steps of the trial values.
 constexpr double simplex_width = 0.05;
 // Where the evidence falls by more than this over the simplex' width, its answer is not good enough.
 constexpr double fall_polished_nats = 0.25;
 constexpr std::size_t polishing_passes = 2;
+constexpr int simplex_simulations_most = 18;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 struct Trial {
     TrialPoint point;
@@ -86,7 +90,9 @@ private:
                                      const std::vector<std::vector<Quick>>& quick, std::size_t trial) const {
         const ParamValues sd = trial_sd(quick, trial);
         std::optional<Finding> finding = fitted(observation, trials_[trial], sd);
-        if (!finding || finding->evidence_nats <= worth_refining_nats || sd.empty()) { return finding; }
+        if (!finding || finding->evidence_nats <= resolution::worth_refining_nats || sd.empty()) {
+            return finding;
+        }
         const Trial better = refined(observation, trials_[trial]);
         std::optional<Finding> refitted_finding =
             fitted(observation, better, trial_sd_at(observation, better));
@@ -264,10 +270,10 @@ private:
     Trial refined(const Observation& observation, const Trial& start) const {
         const std::size_t count = free_parameters(start.point);
         if (count == 0) { return start; }
-        constexpr int simulations_most = 18;
         const SimplexMaximum maximum = simplex_maximum(
             [&](const std::vector<double>& steps) { return evidence_at(observation, start.point, steps); },
-            std::vector<double>(count, 0.0), 0.4, simplex_width, simulations_most);
+            std::vector<double>(count, 0.0), 0.4, resolution::simplex_width,
+            resolution::simplex_simulations_most);
         return polished(observation, simulated(moved(start.point, maximum.at)));
     }
 
@@ -276,9 +282,10 @@ private:
     Trial polished(const Observation& observation, Trial trial) const {
         const std::size_t count = free_parameters(trial.point);
         double here = evidence_at(observation, trial);
-        for (std::size_t pass = 0; pass < polishing_passes; ++pass) {
+        for (std::size_t pass = 0; pass < resolution::polishing_passes; ++pass) {
             for (std::size_t i = 0; i < count; ++i) {
-                std::optional<double> vertex = parabola_vertex(observation, trial, here, i, simplex_width);
+                std::optional<double> vertex =
+                    parabola_vertex(observation, trial, here, i, resolution::simplex_width);
                 if (!vertex) { continue; }
                 std::vector<double> steps(count, 0.0);
                 steps[i] = *vertex;
@@ -303,9 +310,11 @@ private:
             const double below = evidence_at(observation, trial.point, less);
             const double above = evidence_at(observation, trial.point, more);
             const double fall = 2.0 * here - below - above;
-            if (!(fall > 2.0 * fall_polished_nats) || !(fall < 1e300)) { return std::nullopt; }
+            if (!(fall > 2.0 * resolution::fall_polished_nats) || !(fall < 1e300)) { return std::nullopt; }
             const double vertex = 0.5 * width * (above - below) / fall;
-            if (std::fabs(vertex) < 0.5 * width || fall < 32.0 * fall_polished_nats) { return vertex; }
+            if (std::fabs(vertex) < 0.5 * width || fall < 32.0 * resolution::fall_polished_nats) {
+                return vertex;
+            }
             width *= 2.0;
         }
         return std::nullopt;

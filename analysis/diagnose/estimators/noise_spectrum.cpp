@@ -4,21 +4,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
 #include "analysis/diagnose/likelihood/whittle.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr int amplitudes_tried = 9;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
-
-constexpr int amplitudes_tried = 9;
-// Fits whose start is worth less than this are not refined.
-constexpr double worth_refining_nats = 1.0;
-// Parameters may leave their plausible range by this factor.
-constexpr double beyond_plausible = 3.0;
 
 class NoiseSpectrumEstimator final : public Estimator {
 public:
@@ -52,9 +54,9 @@ private:
             const EffectParam& param = param_of(effect_, name);
             std::vector<ParamValues> more;
             for (const ParamValues& start : starts) {
-                for (int i = 0; i < amplitudes_tried; ++i) {
+                for (int i = 0; i < resolution::amplitudes_tried; ++i) {
                     more.push_back(start);
-                    const double share = static_cast<double>(i) / (amplitudes_tried - 1);
+                    const double share = static_cast<double>(i) / (resolution::amplitudes_tried - 1);
                     more.back()[std::string(name)] =
                         param.plausible_from * std::pow(param.plausible_to / param.plausible_from, share);
                 }
@@ -119,7 +121,7 @@ private:
         }
         // A level that the nuisance holds back is too narrow a peak for the trial values.
         const bool only_start = signature_.trials.empty() && signature_.spectral.size() == 1;
-        if (best < worth_refining_nats && !only_start) { return std::nullopt; }
+        if (best < resolution::worth_refining_nats && !only_start) { return std::nullopt; }
         return refined(observation, axes, *from);
     }
 
@@ -136,8 +138,8 @@ private:
             for (std::size_t i = 0; i < logs.size(); ++i) {
                 const EffectParam& param = param_of(effect_, signature_.spectral[i]);
                 const double value = std::exp(logs[i]);
-                if (value < param.plausible_from / (10.0 * beyond_plausible) ||
-                    value > param.plausible_to * beyond_plausible) {
+                if (value < param.plausible_from / (10.0 * decisions.beyond_plausible) ||
+                    value > param.plausible_to * decisions.beyond_plausible) {
                     return minus_infinity;
                 }
             }
@@ -165,7 +167,6 @@ private:
     void add_uncertainty(const std::function<double(const std::vector<double>&)>& objective,
                          const SimplexMaximum& maximum, AxesFit& fit) const {
         const std::size_t count = maximum.at.size();
-        constexpr double sd_max = 3.0;
         for (std::size_t i = 0; i < count; ++i) {
             // A step that changes the gain by about half a nat, so that neither rounding nor a flat top
             // misleads.
@@ -181,7 +182,9 @@ private:
                 curvature = fall / (step * step);
                 if (fall > 0.5) { break; }
             }
-            const double sd_log = curvature > 0.0 ? std::min(1.0 / std::sqrt(curvature), sd_max) : sd_max;
+            const double sd_log = curvature > 0.0
+                                      ? std::min(1.0 / std::sqrt(curvature), resolution::sd_log_most)
+                                      : resolution::sd_log_most;
             const std::string name(signature_.spectral[i]);
             const double value = std::exp(maximum.at[i]);
             fit.sd[name] = value * sd_log;

@@ -6,27 +6,29 @@
 #include <limits>
 #include <numeric>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_distribution.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
 #include "analysis/diagnose/likelihood/whitened_blocks.hpp"
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/numerics/golden_section.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
+#include "analysis/simulate/effects/arrivals.hpp"
+
+namespace gyrolog::resolution {
+
+constexpr double size_step = 1.3;
+constexpr double looked_at_sigma = 2.0;  // nearer to zero a spike and noise are not told apart
+constexpr int em_rounds = 12;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
 namespace {
-
-constexpr double seconds_per_hour = 3600.0;
-constexpr double size_step = 1.3;
-constexpr double below_plausible = 0.7;
-constexpr double above_plausible = 1.3;
-constexpr double looked_at_sigma = 2.0;  // nearer to zero a spike and noise are not told apart
-constexpr double run_sigma = 4.5;
-// Single samples that are off are worth this at the least; less is not looked at closely.
-constexpr double worth_scanning_nats = 2.0;
-constexpr int em_rounds = 12;
 
 // Sizes in the unit of whitened samples.
 struct Limits {
@@ -56,7 +58,7 @@ template <typename Take>
 void for_each_in_run(const WhitenedBlocks& blocks, const Observation& observation, std::size_t axis,
                      Take take) {
     const std::vector<float>& whitened = observation.axis(axis).whitened;
-    const auto limit = static_cast<float>(run_sigma * blocks.level);
+    const auto limit = static_cast<float>(decisions.certain_sigma * blocks.level);
     const auto beyond = [&](std::size_t slot, bool up) {
         return observation.present()[slot] && (up ? whitened[slot] > limit : whitened[slot] < -limit);
     };
@@ -97,7 +99,7 @@ double trimmed_sd(const WhitenedHistogram& histogram) {
     double samples = 0.0;
     double squares = 0.0;
     for (std::size_t i = 0; i < histogram.at.size(); ++i) {
-        if (histogram.at[i] > outlier_sigma) { continue; }
+        if (histogram.at[i] > decisions.outlier_sigma) { continue; }
         samples += histogram.count[i];
         squares += histogram.count[i] * histogram.at[i] * histogram.at[i];
     }
@@ -113,7 +115,9 @@ Mixed mix(const AxisSamples& samples, const Limits& limits) {
         const double inside = samples.noise->probability_below((at - limits.from) / samples.scale) -
                               samples.noise->probability_below((at - limits.to) / samples.scale);
         log_ratio[i] = std::log(inside / (2.0 * (limits.to - limits.from))) - samples.log_noise_at[i];
-        if (at > run_sigma && log_ratio[i] > 0.0) { expected += samples.histogram.count[samples.far[i]]; }
+        if (at > decisions.certain_sigma && log_ratio[i] > 0.0) {
+            expected += samples.histogram.count[samples.far[i]];
+        }
     }
     const double n = samples.histogram.samples;
     Mixed mixed;
@@ -121,7 +125,7 @@ Mixed mix(const AxisSamples& samples, const Limits& limits) {
     const auto odds = [&](std::size_t i) {
         return std::log(mixed.share / (1.0 - mixed.share)) + log_ratio[i];
     };
-    for (int round = 0; round < em_rounds; ++round) {
+    for (int round = 0; round < resolution::em_rounds; ++round) {
         double off = 0.0;
         for (std::size_t i = 0; i < samples.far.size(); ++i) {
             off += samples.histogram.count[samples.far[i]] / (1.0 + std::exp(-odds(i)));
@@ -135,21 +139,6 @@ Mixed mix(const AxisSamples& samples, const Limits& limits) {
         mixed.gain_nats += samples.histogram.count[samples.far[i]] * gain;
     }
     return mixed;
-}
-
-template <typename Function>
-double top_by_thirds(double from, double to, Function function) {
-    constexpr int thirds = 14;
-    for (int i = 0; i < thirds; ++i) {
-        const double left = from + (to - from) / 3.0;
-        const double right = to - (to - from) / 3.0;
-        if (function(left) > function(right)) {
-            to = right;
-        } else {
-            from = left;
-        }
-    }
-    return 0.5 * (from + to);
 }
 
 class OutlierEstimator final : public Estimator {
@@ -227,7 +216,7 @@ private:
             const double at = samples.histogram.at[i];
             const double log_density = (*samples.log_noise)(at / samples.scale);
             core += count * log_density;
-            if (at < looked_at_sigma) { continue; }
+            if (at < resolution::looked_at_sigma) { continue; }
             samples.far.push_back(i);
             samples.log_noise_at.push_back(log_density - std::log(samples.scale));
             // Were every sample here a spike, and rare.
@@ -235,20 +224,20 @@ private:
                 count * std::max(0.0, -samples.log_noise_at.back() - std::log(samples.histogram.samples));
         }
         samples.core_gain_nats = core - plain.log_likelihood_nats;
-        return excess > worth_scanning_nats ? std::optional(std::move(samples)) : std::nullopt;
+        return excess > resolution::worth_refining_nats ? std::optional(std::move(samples)) : std::nullopt;
     }
 
     std::vector<Limits> limits_to_try(const std::vector<AxisSamples>& all) const {
         // Of one sample, in means of several.
         const auto in_rows = static_cast<double>(prediction_->world().recording().samples_per_row);
-        double largest_dps = above_plausible * effect_.params[2].plausible_to / in_rows;
+        double largest_dps = resolution::size_step * effect_.params[2].plausible_to / in_rows;
         for (const AxisSamples& samples : all) {
             for (const std::size_t i : samples.far) {
                 largest_dps = std::max(largest_dps, 1.1 * samples.histogram.at[i] / samples.per_dps);
             }
         }
-        std::vector<double> sizes = {below_plausible * effect_.params[1].plausible_from / in_rows};
-        while (sizes.back() < largest_dps) { sizes.push_back(sizes.back() * size_step); }
+        std::vector<double> sizes = {effect_.params[1].plausible_from / (resolution::size_step * in_rows)};
+        while (sizes.back() < largest_dps) { sizes.push_back(sizes.back() * resolution::size_step); }
         std::vector<Limits> limits;
         for (std::size_t from = 0; from < sizes.size(); ++from) {
             for (std::size_t to = from + 1; to < sizes.size(); ++to) {
@@ -282,15 +271,18 @@ private:
         };
         Limits limits = choice.limits_dps;
         for (int round = 0; round < 2; ++round) {
-            limits.from =
-                top_by_thirds(limits.from / size_step, std::min(limits.from * size_step, 0.98 * limits.to),
-                              [&](double from) {
-                                  return worth({from, limits.to});
-                              });
-            limits.to = top_by_thirds(std::max(limits.to / size_step, 1.02 * limits.from),
-                                      limits.to * size_step, [&](double to) {
-                                          return worth({limits.from, to});
-                                      });
+            limits.from = place_of_top(
+                [&](double from) {
+                    return worth({from, limits.to});
+                },
+                limits.from / resolution::size_step,
+                std::min(limits.from * resolution::size_step, 0.98 * limits.to));
+            limits.to = place_of_top(
+                [&](double to) {
+                    return worth({limits.from, to});
+                },
+                std::max(limits.to / resolution::size_step, 1.02 * limits.from),
+                limits.to * resolution::size_step);
         }
         const double there = worth(limits);
         if (there < choice.worth_nats) { return; }

@@ -3,26 +3,32 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
+#include "analysis/numerics/uniform.hpp"
 #include "analysis/recording/grid_step.hpp"
 #include "analysis/simulate/effect_axes.hpp"
+
+namespace gyrolog::resolution {
+
+constexpr std::size_t codes_max = 4096;   // a change that is looked at
+constexpr std::size_t coarser_max = 256;  // times the model's step
+constexpr std::size_t rows_scanned = 20000;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
 namespace {
 
-constexpr std::size_t codes_max = 4096;     // a change that is looked at
-constexpr std::size_t coarser_max = 256;    // times the model's step
-constexpr double on_grid_tolerance = 0.05;  // of a step, for printed decimals
-constexpr double on_grid_share = 0.9;       // spikes may be off it
-constexpr double same_step_rel = 0.02;
-constexpr std::size_t rows_scanned = 20000;
-// In white sigmas: a finer step adds less than a thousandth of the variance.
-constexpr double step_that_matters = 0.11;
+// In white sigmas: a finer step adds next to nothing to the variance.
+double step_that_matters() { return std::sqrt(resolution::negligible_share / variance_of_uniform(1.0)); }
 
 struct Changes {
-    std::vector<double> of_codes = std::vector<double>(codes_max, 0.0);  // by size in codes; 0 left out
+    std::vector<double> of_codes =
+        std::vector<double>(resolution::codes_max, 0.0);  // by size in codes; 0 left out
     double on_grid = 0.0;
     double off_grid = 0.0;
 };
@@ -36,8 +42,8 @@ Changes count_changes(const Column& column, const Recording& recording, double c
                     const double step =
                         std::fabs(static_cast<double>(data[row]) - static_cast<double>(data[row - 1])) / code;
                     const double codes = std::round(step);
-                    if (codes >= static_cast<double>(codes_max)) { continue; }
-                    if (std::fabs(step - codes) > on_grid_tolerance) {
+                    if (codes >= static_cast<double>(resolution::codes_max)) { continue; }
+                    if (std::fabs(step - codes) > decisions.on_grid_tolerance) {
                         changes.off_grid += 1.0;
                     } else if (codes > 0.0) {
                         changes.of_codes[static_cast<std::size_t>(codes)] += 1.0;
@@ -59,11 +65,13 @@ struct Step {
 Step coarser_multiple(const Changes& changes, double code_rad_s) {
     Step best;
     const double all = changes.on_grid;
-    for (std::size_t m = 2; m <= coarser_max; ++m) {
+    for (std::size_t m = 2; m <= resolution::coarser_max; ++m) {
         double hits = 0.0;
-        for (std::size_t codes = m; codes < codes_max; codes += m) { hits += changes.of_codes[codes]; }
+        for (std::size_t codes = m; codes < resolution::codes_max; codes += m) {
+            hits += changes.of_codes[codes];
+        }
         const double share = hits / all;
-        if (share < on_grid_share) { continue; }
+        if (share < decisions.nearly_all) { continue; }
         const double chance = 1.0 / static_cast<double>(m);
         double gain_nats = hits * std::log(share / chance);
         if (hits < all) { gain_nats += (all - hits) * std::log((1.0 - share) / (1.0 - chance)); }
@@ -112,13 +120,13 @@ private:
         if (expected_rad_s > 0.0) {
             const Changes changes = count_changes(column, recording, expected_rad_s / unit_rad_s);
             if (changes.on_grid == 0.0 && changes.off_grid == 0.0) { return {}; }
-            if (changes.on_grid > on_grid_share * (changes.on_grid + changes.off_grid)) {
+            if (changes.on_grid > decisions.nearly_all * (changes.on_grid + changes.off_grid)) {
                 return coarser_multiple(changes, expected_rad_s);
             }
         }
         return free_step(
             column, recording, expected_rad_s,
-            step_that_matters * std::sqrt(prediction_->parts(axis).back().white * recording.rate_hz));
+            step_that_matters() * std::sqrt(prediction_->parts(axis).back().white * recording.rate_hz));
     }
 
     // On no multiple of what is expected.
@@ -126,15 +134,19 @@ private:
                           double least_rad_s) {
         double step_rad_s = std::fabs(column.scale);
         if (const auto* values = std::get_if<std::vector<double>>(&column.data)) {
-            step_rad_s *= grid_step(std::span(*values).first(std::min(values->size(), rows_scanned)));
+            step_rad_s *=
+                grid_step(std::span(*values).first(std::min(values->size(), resolution::rows_scanned)));
         } else {
             const Step multiple = coarser_multiple(count_changes(column, recording, 1.0), step_rad_s);
             step_rad_s = std::max(step_rad_s, multiple.rad_s);
         }
-        if (step_rad_s <= std::max(least_rad_s, expected_rad_s * (1.0 + same_step_rel))) { return {}; }
+        if (step_rad_s <= std::max(least_rad_s, expected_rad_s * (1.0 + decisions.same_step_rel))) {
+            return {};
+        }
         const Changes changes = count_changes(column, recording, step_rad_s / std::fabs(column.scale));
-        if (changes.on_grid <= on_grid_share * (changes.on_grid + changes.off_grid)) { return {}; }
-        const double chance = expected_rad_s > 0.0 ? expected_rad_s / step_rad_s : 2.0 * on_grid_tolerance;
+        if (changes.on_grid <= decisions.nearly_all * (changes.on_grid + changes.off_grid)) { return {}; }
+        const double chance =
+            expected_rad_s > 0.0 ? expected_rad_s / step_rad_s : 2.0 * decisions.on_grid_tolerance;
         return {step_rad_s, changes.on_grid * -std::log(chance)};
     }
 
@@ -142,7 +154,7 @@ private:
     void add(std::size_t axis, const Step& step, Finding& finding) const {
         const double step_dps = step.rad_s / rad_per_deg;
         const auto same = std::ranges::find_if(finding.entries, [&](const EffectModel& entry) {
-            return std::fabs(entry.params.at("lsb_dps") / step_dps - 1.0) < 0.1 * same_step_rel;
+            return std::fabs(entry.params.at("lsb_dps") / step_dps - 1.0) < 0.1 * decisions.same_step_rel;
         });
         if (same != finding.entries.end()) {
             same->axes.emplace_back(axis_names[axis]);

@@ -7,22 +7,19 @@
 #include <functional>
 #include <vector>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/telegraph_filter.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // Correlation times tried: from half the shortest plausible dwell time on, by factors of 1.6.
 constexpr double correlation_ratio = 1.6;
 constexpr double correlation_from_s = 0.3;
 constexpr double correlation_to_s = 200.0;
-// Noise alone exceeds this about once in thirty axes.
-constexpr double spectral_gain_min_nats = 4.0;
-
 // Averages are as short as still shows the levels two standard deviations apart, a sixth to a twentieth of
 // the dwell time: then two changes within one are rare. Not more of them than take some milliseconds to
 // filter.
@@ -34,9 +31,11 @@ constexpr double averages_min = 64.0;
 // Two levels so much less likely than Gauss-Markov noise with the same spectrum are not refined.
 constexpr double hopeless_nats = 30.0;
 
-// How far parameters may leave their plausible ranges; and at least so many dwell times make a telegraph.
-constexpr double beyond_plausible = 1.5;
-constexpr double dwells_min = 8.0;
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 // Logarithms of the distance in rad/s and of the dwell times in s.
 using Point = std::vector<double>;
@@ -139,10 +138,11 @@ private:
         const Eigen::LDLT<Eigen::Matrix3d> solver(nuisance);
         double best_gain = 0.0;
         Point best;
-        const double longest_s = std::min(correlation_to_s, 0.4 * prediction_->duration_s() / dwells_min);
-        double tau_s = correlation_from_s / correlation_ratio;
-        while (tau_s * correlation_ratio < longest_s) {
-            tau_s *= correlation_ratio;
+        const double longest_s = std::min(resolution::correlation_to_s,
+                                          0.4 * prediction_->duration_s() / decisions.repetitions_least);
+        double tau_s = resolution::correlation_from_s / resolution::correlation_ratio;
+        while (tau_s * resolution::correlation_ratio < longest_s) {
+            tau_s *= resolution::correlation_ratio;
             double score = 0.0;
             double information = 0.0;
             Eigen::Vector3d shared = Eigen::Vector3d::Zero();
@@ -160,7 +160,7 @@ private:
             best_gain = gain_nats;
             best = {std::log(2.0) + 0.5 * std::log(score / information), std::log(2.0 * tau_s)};
         }
-        if (best_gain < spectral_gain_min_nats) { return std::nullopt; }
+        if (best_gain < decisions.seen_nats()) { return std::nullopt; }
         return spectral_start(observation, axis, best);
     }
 
@@ -175,15 +175,15 @@ private:
         start[0] = std::clamp(start[0], std::log(lowest("amplitude_dps") * rad_per_deg) + 0.1,
                               std::log(highest("amplitude_dps") * rad_per_deg) - 0.1);
         const SimplexMaximum maximum = simplex_maximum(objective, start, 0.5, 0.05);
-        if (maximum.value < spectral_gain_min_nats) { return std::nullopt; }
+        if (maximum.value < decisions.seen_nats()) { return std::nullopt; }
         return Point{maximum.at[0], maximum.at[1], maximum.at[1]};
     }
 
     double lowest(std::string_view name) const {
-        return param_of(effect_, name).plausible_from / beyond_plausible;
+        return param_of(effect_, name).plausible_from / decisions.beyond_plausible;
     }
     double highest(std::string_view name) const {
-        return param_of(effect_, name).plausible_to * beyond_plausible;
+        return param_of(effect_, name).plausible_to * decisions.beyond_plausible;
     }
     bool plausible(const Point& logs) const {
         const Telegraph at = telegraph_at(logs);
@@ -192,7 +192,7 @@ private:
         };
         return inside("amplitude_dps", at.distance * deg_per_rad) && inside("dwell_high_s", at.high_s) &&
                inside("dwell_low_s", at.low_s) && at.correlation_s() * prediction_->rate_hz() > 1.0 &&
-               std::max(at.high_s, at.low_s) * dwells_min < prediction_->duration_s();
+               std::max(at.high_s, at.low_s) * decisions.repetitions_least < prediction_->duration_s();
     }
 
     Averages averages_for(const Observation& observation, std::size_t axis, const Telegraph& telegraph,
@@ -200,11 +200,11 @@ private:
         const AxisObservation& seen = observation.axis(axis);
         const double duration_s = prediction_->duration_s();
         const double dwell_s = 2.0 * telegraph.correlation_s();
-        const double levels_show_s =
-            levels_apart * levels_apart * seen.density.back() / (telegraph.distance * telegraph.distance);
-        const double wanted_s =
-            std::clamp(std::clamp(levels_show_s, dwell_s / per_dwell_max, dwell_s / averages_per_dwell_min),
-                       duration_s / averages_max, duration_s / averages_min);
+        const double levels_show_s = resolution::levels_apart * resolution::levels_apart *
+                                     seen.density.back() / (telegraph.distance * telegraph.distance);
+        const double wanted_s = std::clamp(
+            std::clamp(levels_show_s, dwell_s / per_dwell_max, dwell_s / resolution::averages_per_dwell_min),
+            duration_s / resolution::averages_max, duration_s / resolution::averages_min);
         const auto length =
             std::max<std::size_t>(1, static_cast<std::size_t>(wanted_s * prediction_->rate_hz()));
         Averages out;
@@ -228,11 +228,10 @@ private:
 
     // Whether one set of parameters can hold for all.
     static bool alike(const std::vector<AxesFit>& fits) {
-        constexpr double sds_apart = 5.0;
         for (const auto& [name, value] : fits.front().params) {
             for (const AxesFit& fit : fits) {
                 const double sd = std::hypot(fit.sd.at(name), fits.front().sd.at(name));
-                if (std::fabs(fit.params.at(name) - value) > sds_apart * sd) { return false; }
+                if (std::fabs(fit.params.at(name) - value) > decisions.certain_sigma * sd) { return false; }
             }
         }
         return true;
@@ -276,7 +275,7 @@ private:
             }
             return sum;
         };
-        take_averages(from, averages_per_dwell_min);
+        take_averages(from, resolution::averages_per_dwell_min);
         Point start = from;
         double best = objective(start);
         for (const double share : {0.2, 0.8}) {
@@ -295,11 +294,11 @@ private:
             return sum;
         };
         SimplexMaximum maximum{start, best};
-        if (best > spectral(start) - hopeless_nats) {
+        if (best > spectral(start) - resolution::hopeless_nats) {
             maximum = simplex_maximum(objective, start, 0.2, 0.1, 100);
         }
         if (maximum.value > spectral(maximum.at)) {
-            take_averages(maximum.at, averages_per_dwell_max);
+            take_averages(maximum.at, resolution::averages_per_dwell_max);
             maximum = simplex_maximum(objective, maximum.at, 0.05, 0.05, 60);
         }
         AxesFit fit;
@@ -317,7 +316,6 @@ private:
     void add_uncertainty(const std::function<double(const Point&)>& objective, const SimplexMaximum& maximum,
                          AxesFit& fit) const {
         constexpr std::array<const char*, 3> names = {"amplitude_dps", "dwell_high_s", "dwell_low_s"};
-        constexpr double sd_max = 3.0;
         const Telegraph telegraph = telegraph_at(maximum.at);
         const double dwells = static_cast<double>(fit.axes.size()) * prediction_->duration_s() /
                               (telegraph.high_s + telegraph.low_s);
@@ -335,7 +333,8 @@ private:
                 curvature = fall / (step * step);
                 if (fall > 0.5) { break; }
             }
-            double sd_log = curvature > 0.0 ? std::min(1.0 / std::sqrt(curvature), sd_max) : sd_max;
+            double sd_log = curvature > 0.0 ? std::min(1.0 / std::sqrt(curvature), resolution::sd_log_most)
+                                            : resolution::sd_log_most;
             // Exponential dwell times that were all seen have a mean no better known than this.
             if (i > 0) { sd_log = std::max(sd_log, 1.0 / std::sqrt(dwells)); }
             const double value = fit.params.at(names[i]);

@@ -4,25 +4,25 @@
 #include <bit>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/repeat_patterns.hpp"
 #include "analysis/recording/grid_step.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr std::size_t block_rows = 2048;
 constexpr std::size_t blocks_max = 512;
-// What repeats as often as this carries no news: a dead axis, a thermometer in coarse steps.
-constexpr double frozen_share = 0.9;
-// Gains below are not worth a closer scan.
-constexpr double trace_nats = 1.0;
-// How far the smooth distribution of steps may be from the parabola through its logarithm.
-constexpr double smoothness_rel = 0.03;
 // A step distribution is known from so many.
 constexpr double steps_min = 100.0;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 struct Quantities {
     std::vector<const Column*> columns;
@@ -57,7 +57,8 @@ Quantities moving_quantities(const Quantities& all, const std::vector<PatternCou
     Quantities moving;
     for (std::size_t c = 0; c < all.columns.size(); ++c) {
         const double share = count_containing(counts, std::size_t{1} << c) / std::max(1.0, count_all(counts));
-        if (share > frozen_share) { continue; }
+        // Carries no news: a dead axis, a thermometer in coarse steps.
+        if (share > decisions.nearly_all) { continue; }
         moving.columns.push_back(all.columns[c]);
         moving.repeated_apart.push_back(share);
         if (c < all.axes.size()) { moving.axes.push_back(all.axes[c]); }
@@ -83,7 +84,8 @@ public:
     std::optional<Finding> find(const Observation& observation) const override {
         const Recording& recording = observation.recording();
         const Quantities all = all_quantities(recording, *prediction_);
-        const std::size_t blocks = std::clamp<std::size_t>(recording.rows() / block_rows, 1, blocks_max);
+        const std::size_t blocks =
+            std::clamp<std::size_t>(recording.rows() / resolution::block_rows, 1, resolution::blocks_max);
         std::vector<PatternCounts> apart = count_patterns(recording, all.columns, 2, blocks);
         const Quantities moving = moving_quantities(all, apart);
         if (moving.axes.empty()) { return std::nullopt; }
@@ -97,7 +99,7 @@ public:
         if (!best) { return std::nullopt; }
         Excess excess = *best;
         if (std::popcount(excess.set) > 1) { excess = together(near, apart, moving, excess.set); }
-        if (excess.gain_nats < trace_nats) { return std::nullopt; }
+        if (excess.gain_nats < resolution::worth_refining_nats) { return std::nullopt; }
         return finding_of(moving, excess, static_cast<double>(looked_at));
     }
 
@@ -109,7 +111,7 @@ private:
         std::optional<Excess> best;
         const auto take = [&](const Excess& excess) {
             ++looked_at;
-            if (excess.gain_nats < trace_nats) { return; }
+            if (excess.gain_nats < resolution::worth_refining_nats) { return; }
             if (!best || excess.gain_nats > best->gain_nats) { best = excess; }
         };
         for (std::size_t axes = 1; axes < axis_sets; ++axes) {
@@ -215,11 +217,11 @@ Excess RepeatEstimator::alone(const Recording& recording, const Quantities& movi
     const double of_one = 0.5 * steps.of_codes[1];
     const double of_two = 0.5 * steps.of_codes[2];
     double chance = std::max(moving.repeated_apart[c], 1.0 / steps.all);
-    double chance_sd_rel = smoothness_rel;
-    if (of_two > steps_min) {
+    double chance_sd_rel = decisions.smoothness_rel;
+    if (of_two > resolution::steps_min) {
         chance = std::pow(of_one / steps.all, 4.0 / 3.0) / std::pow(of_two / steps.all, 1.0 / 3.0);
-        chance_sd_rel =
-            std::hypot(smoothness_rel, 4.0 / 3.0 / std::sqrt(of_one), 1.0 / 3.0 / std::sqrt(of_two));
+        chance_sd_rel = std::hypot(decisions.smoothness_rel, 4.0 / 3.0 / std::sqrt(of_one),
+                                   1.0 / 3.0 / std::sqrt(of_two));
     }
     const double expected = expected_eps(moving, set);
     chance = expected + (1.0 - expected) * std::min(chance, 0.99);

@@ -5,10 +5,21 @@
 #include <cmath>
 #include <cstdint>
 
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/likelihood/noise_nuisance.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
+#include "analysis/numerics/golden_section.hpp"
+
+namespace gyrolog::resolution {
+
+constexpr int bins_per_octave = 4;
+constexpr double bins_most = 40.0 * bins_per_octave;
+constexpr double worth_checking_nats = 100.0;
+constexpr double log_sd_step = 0.05;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
@@ -27,11 +38,6 @@ struct AxisBins {
     double level_sd = 0.0;        // of c about 1, from N's uncertainty
 };
 
-constexpr int bins_per_octave = 4;
-constexpr double bins_most = 40.0 * bins_per_octave;
-constexpr double jitter_trace_nats = 2.0;
-constexpr double worth_checking_nats = 100.0;
-
 double level_log_likelihood_nats(const AxisBins& axis, double level, double sd_s) {
     double nats = 0.0;
     for (const Bin& bin : axis.bins) {
@@ -40,19 +46,6 @@ double level_log_likelihood_nats(const AxisBins& axis, double level, double sd_s
     }
     const double z = (level - 1.0) / axis.level_sd;
     return nats - 0.5 * z * z;
-}
-
-// The largest value of a function with one top between `low` and `high`, to a hundred thousandth of their
-// distance.
-template <typename Function>
-double place_of_top(Function value, double low, double high) {
-    constexpr double golden = 0.6180339887498949;
-    for (int i = 0; i < 24; ++i) {
-        const double a = high - golden * (high - low);
-        const double b = low + golden * (high - low);
-        (value(a) < value(b) ? low : high) = value(a) < value(b) ? a : b;
-    }
-    return 0.5 * (low + high);
 }
 
 double best_level_nats(const AxisBins& axis, double sd_s) {
@@ -67,9 +60,11 @@ public:
         for (const std::size_t axis : prediction_->axes()) {
             for (const float change : prediction_->response_change_rad_s2(axis)) {
                 // From a ten thousandth of a rad/s^2.
-                const double place = bins_per_octave * std::log2(1.0 + static_cast<double>(change) *
-                                                                           static_cast<double>(change) * 1e8);
-                bin_of_slot_[axis].push_back(static_cast<std::uint8_t>(std::min(place, bins_most - 1.0)));
+                const double place =
+                    resolution::bins_per_octave *
+                    std::log2(1.0 + static_cast<double>(change) * static_cast<double>(change) * 1e8);
+                bin_of_slot_[axis].push_back(
+                    static_cast<std::uint8_t>(std::min(place, resolution::bins_most - 1.0)));
             }
         }
     }
@@ -90,16 +85,16 @@ public:
                          std::log(0.2 * range.plausible_from), std::log(3.0 * range.plausible_to));
         const double sd_s = std::exp(log_sd);
         double gain_nats = nats(sd_s) - without;
-        if (gain_nats < jitter_trace_nats) { return std::nullopt; }
+        if (gain_nats < resolution::worth_refining_nats) { return std::nullopt; }
         // What a model misses of the motion's mean answer is larger where the rate changes, too.
-        if (gain_nats > worth_checking_nats) {
+        if (gain_nats > resolution::worth_checking_nats) {
             gain_nats = std::min(gain_nats, checked_nats(observation, sd_s));
         }
-        if (gain_nats < jitter_trace_nats) { return std::nullopt; }
-        constexpr double step = 0.05;
-        const double curvature =
-            2.0 * nats(sd_s) - nats(sd_s * std::exp(step)) - nats(sd_s * std::exp(-step));
-        const double rel_sd = curvature > 0.0 ? std::min(1.0, step / std::sqrt(curvature)) : 1.0;
+        if (gain_nats < resolution::worth_refining_nats) { return std::nullopt; }
+        const double curvature = 2.0 * nats(sd_s) - nats(sd_s * std::exp(resolution::log_sd_step)) -
+                                 nats(sd_s * std::exp(-resolution::log_sd_step));
+        const double rel_sd =
+            curvature > 0.0 ? std::min(1.0, resolution::log_sd_step / std::sqrt(curvature)) : 1.0;
         Finding finding = whole_sensor_finding(*effect_, *prediction_, {{"sd_s", sd_s}, {"in_stamps", 0.0}},
                                                {{"sd_s", rel_sd * sd_s}});
         finding.gain_nats = gain_nats;
@@ -158,7 +153,7 @@ private:
             2.0 * sd_N * prediction_->parts(axis).back().white / prediction_->parts(axis).back().sum();
         // Of the observation's fitted noise over the model's.
         const double scale = seen.density.back() / prediction_->parts(axis).back().sum();
-        std::vector<Bin> bins(static_cast<std::size_t>(bins_most));
+        std::vector<Bin> bins(static_cast<std::size_t>(resolution::bins_most));
         for (std::size_t slot = 0; slot < change.size(); ++slot) {
             if (!observation.present()[slot]) { continue; }
             const double d = static_cast<double>(change[slot]);

@@ -12,9 +12,6 @@ namespace gyrolog {
 
 namespace {
 
-// Of a code, for printed decimals.
-constexpr double same_code = 0.25;
-
 // ln (Q(r) / phi(r)).
 double log_mills_ratio(double r) {
     // Q underflows later than its expansion is right to a thousandth.
@@ -47,7 +44,8 @@ private:
         if (!(lsb_rad_s > 0.0)) { return std::nullopt; }
         std::vector<AxesFit> single;
         for (const std::size_t axis : prediction_->axes()) {
-            const Pile pile = highest(observation, axis, same_code * lsb_rad_s);
+            // Printed decimals: nearer to this code than to the next.
+            const Pile pile = highest(observation, axis, 0.5 * lsb_rad_s);
             if (pile.at_rad_s >= known_limit_rad_s(axis) - lsb_rad_s) { continue; }
             single.push_back(fit(observation, axis, pile));
         }

@@ -6,25 +6,27 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
+namespace gyrolog::resolution {
+
+// Coefficients with more than this times the expected power are a line's.
+constexpr double line_power = 25.0;
+constexpr double curvature_step = 0.01;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
-
-// Frequencies at which less than this of an axis' power is white are left out.
-constexpr double white_least = 0.5;
-// Coefficients with more than this times the expected power are a line's.
-constexpr double line_power = 25.0;
-constexpr double worth_scanning_nats = 2.0;
-// The axes' gains differ by less than this.
-constexpr double gain_ratio_least = 0.3;
 
 // Of the scaled coefficients of all axes.
 struct Statistics {
@@ -43,7 +45,9 @@ public:
 
     std::optional<Finding> find(const Observation& observation) const override {
         const std::optional<Statistics> statistics = statistics_of(observation);
-        if (!statistics || correlation_nats(*statistics) < worth_scanning_nats) { return std::nullopt; }
+        if (!statistics || correlation_nats(*statistics) < resolution::worth_refining_nats) {
+            return std::nullopt;
+        }
         std::optional<AxesFit> best;
         for (const std::vector<std::size_t>& axes : axis_subsets(prediction_->axes())) {
             if (axes.size() < 2) { continue; }
@@ -94,7 +98,7 @@ private:
 
     bool is_white(const Observation& observation, std::size_t bin) const {
         return std::ranges::all_of(prediction_->axes(), [&](std::size_t axis) {
-            return white_at(observation, axis, bin) > white_least;
+            return white_at(observation, axis, bin) > decisions.majority;
         });
     }
 
@@ -113,7 +117,7 @@ private:
                 x[static_cast<Eigen::Index>(axis)] =
                     scale[axis] * static_cast<double>(observation.axis(axis).cosines[k]);
             }
-            if (x.cwiseAbs2().maxCoeff() > line_power) { continue; }
+            if (x.cwiseAbs2().maxCoeff() > resolution::line_power) { continue; }
             sum.covariance.noalias() += x * x.transpose();
             count += 1.0;
         }
@@ -235,7 +239,7 @@ private:
                 smallest = std::min(smallest, std::fabs(at[i]));
                 largest = std::max(largest, std::fabs(at[i]));
             }
-            if (smallest < gain_ratio_least * largest) { return minus_infinity; }
+            if (smallest < decisions.gain_ratio_least * largest) { return minus_infinity; }
             return gain(observation, sum, shared(sum, axes, at));
         };
         if (!std::isfinite(start[0]) || !std::isfinite(objective(start))) { return std::nullopt; }
@@ -290,7 +294,6 @@ private:
     template <typename Objective>
     static std::vector<double> deviations(const SimplexMaximum& maximum, const Objective& objective) {
         const auto size = static_cast<Eigen::Index>(maximum.at.size());
-        constexpr double step = 0.01;
         const auto at = [&](Eigen::Index i, double by_i, Eigen::Index j, double by_j) {
             std::vector<double> place = maximum.at;
             place[static_cast<std::size_t>(i)] += by_i;
@@ -300,11 +303,15 @@ private:
         Eigen::MatrixXd information(size, size);
         for (Eigen::Index i = 0; i < size; ++i) {
             for (Eigen::Index j = 0; j <= i; ++j) {
-                const double second = i == j
-                                          ? at(i, step, i, 0.0) + at(i, -step, i, 0.0) - 2.0 * maximum.value
-                                          : 0.25 * (at(i, step, j, step) + at(i, -step, j, -step) -
-                                                    at(i, step, j, -step) - at(i, -step, j, step));
-                information(i, j) = information(j, i) = -second / (step * step);
+                const double second =
+                    i == j ? at(i, resolution::curvature_step, i, 0.0) +
+                                 at(i, -resolution::curvature_step, i, 0.0) - 2.0 * maximum.value
+                           : 0.25 * (at(i, resolution::curvature_step, j, resolution::curvature_step) +
+                                     at(i, -resolution::curvature_step, j, -resolution::curvature_step) -
+                                     at(i, resolution::curvature_step, j, -resolution::curvature_step) -
+                                     at(i, -resolution::curvature_step, j, resolution::curvature_step));
+                information(i, j) = information(j, i) =
+                    -second / (resolution::curvature_step * resolution::curvature_step);
             }
         }
         const Eigen::MatrixXd covariance = information.inverse();

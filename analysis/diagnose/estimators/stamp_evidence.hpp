@@ -13,8 +13,12 @@
 
 namespace gyrolog {
 
+namespace resolution {
+
 // What is as good as certain is worth no more than this.
 inline constexpr double certain_nats = 5000.0;
+
+}  // namespace resolution
 
 // Whether the observation's stamps are those of its own sensor, not copied from another recording.
 bool has_own_stamps(const Observation& observation);

@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/lag.hpp"
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
+#include "analysis/simulate/effects/arrivals.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-constexpr double seconds_per_hour = 3600.0;
-// Of a sensor that is not said to lose samples: one gap is worth 20 nats in an hour.
-constexpr double unexpected_per_hour = 1e-9;
-// Probability of a burst longer than the model's longest.
-constexpr double too_long_probability = 1e-3;
 
 struct Gaps {
     double count = 0.0;
@@ -45,7 +41,7 @@ struct Expected {
 Expected expected_of(const SensorModel& model, const EffectDefinition& effect) {
     Expected expected;
     expected.per_hour =
-        std::max(unexpected_per_hour,
+        std::max(decisions.unexpected_gaps_per_h,
                  sum_in_stamps(model, effect, [](const EffectValues& values) { return values["per_hour"]; }));
     for (const EffectModel& entry : model.effects) {
         if (entry.effect == effect.name) {
@@ -59,8 +55,9 @@ double length_gain_nats(const Gaps& gaps, double expected_longest) {
     if (expected_longest == 0.0) { return 0.0; }
     double gain_nats = 0.0;
     for (const double length : gaps.lengths) {
-        const double expected = length <= expected_longest ? (1.0 - too_long_probability) / expected_longest
-                                                           : too_long_probability / gaps.longest;
+        const double expected = length <= expected_longest
+                                    ? (1.0 - decisions.too_long_probability) / expected_longest
+                                    : decisions.too_long_probability / gaps.longest;
         gain_nats += std::log(1.0 / (gaps.longest * expected));
     }
     return std::max(0.0, gain_nats);
@@ -78,7 +75,8 @@ std::optional<Finding> find_gaps(const EffectDefinition& effect, const Predictio
     Finding finding = whole_sensor_finding(
         effect, prediction, {{"per_hour", per_hour}, {"longest", longest}, {"in_stamps", 1.0}},
         {{"per_hour", per_hour / std::sqrt(gaps.count)}, {"longest", longest / (gaps.count + 1.0)}});
-    finding.gain_nats = std::min(certain_nats, rate_gain_nats + length_gain_nats(gaps, expected.longest));
+    finding.gain_nats =
+        std::min(resolution::certain_nats, rate_gain_nats + length_gain_nats(gaps, expected.longest));
     const auto per_hour_range = std::ranges::find(effect.params, "per_hour", &EffectParam::name);
     finding.evidence_nats =
         finding.gain_nats -

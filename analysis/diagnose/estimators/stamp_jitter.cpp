@@ -3,21 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/sampling_jitter.hpp"
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/estimators/stamp_scatter.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
+#include "analysis/numerics/golden_section.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-// Where the model states none.
-constexpr double jitter_sd_rel = 0.05;
-// A model without jitter does not mean that there is none.
-constexpr double unstated_jitter_sd_s = 1e-5;
-// Errors that hang together like this are the host's, not the clock's.
-constexpr double burst_correlation = 0.3;
 
 struct Expected {
     double own_s = 0.0;     // the model's
@@ -36,15 +31,7 @@ double best_without_nats(const StampScatter& seen, const Expected& expected) {
         return scatter_log_likelihood_nats(seen, own_s * own_s + expected.other_s2) - 0.5 * z * z;
     };
     const double reach = std::sqrt(std::max(0.0, seen.sd_s * seen.sd_s - expected.other_s2)) - expected.own_s;
-    double low = 0.0;
-    double high = std::max(0.0, reach / expected.sd_s);
-    constexpr double golden = 0.6180339887498949;
-    for (int i = 0; i < 80; ++i) {
-        const double a = high - golden * (high - low);
-        const double b = low + golden * (high - low);
-        (nats(a) < nats(b) ? low : high) = nats(a) < nats(b) ? a : b;
-    }
-    return nats(0.5 * (low + high));
+    return nats(place_of_top(nats, 0.0, std::max(0.0, reach / expected.sd_s)));
 }
 
 std::optional<Finding> find_spread(const EffectDefinition& effect, const Prediction& prediction,
@@ -54,9 +41,9 @@ std::optional<Finding> find_spread(const EffectDefinition& effect, const Predict
     expected.own_s = model.timestamp_jitter_s;
     expected.sd_s =
         model.timestamp_jitter_s > 0.0
-            ? model.timestamp_jitter_s *
-                  std::max(1e-6, stated_uncertainty(model.sd_rel, "timestamp_jitter", jitter_sd_rel))
-            : unstated_jitter_sd_s;
+            ? model.timestamp_jitter_s * std::max(1e-6, stated_uncertainty(model.sd_rel, "timestamp_jitter",
+                                                                           decisions.jitter_sd_rel))
+            : decisions.unstated_jitter_s;
     // Errors of rounding may alternate from stamp to stamp: their second differences then have up to 16/6 of
     // the variance of independent ones.
     expected.other_s2 = 2.0 / 9.0 * seen.resolution_s * seen.resolution_s + 1e-20 +
@@ -73,7 +60,7 @@ std::optional<Finding> find_spread(const EffectDefinition& effect, const Predict
                                            {{"sd_s", added_sd_s}});
     finding.gain_nats = std::clamp(
         scatter_log_likelihood_nats(seen, seen.sd_s * seen.sd_s) - best_without_nats(seen, expected), 0.0,
-        certain_nats);
+        resolution::certain_nats);
     const auto range = std::ranges::find(effect.params, "sd_s", &EffectParam::name);
     finding.evidence_nats =
         finding.gain_nats - parameter_cost_nats(std::log(range->plausible_to / range->plausible_from),
@@ -95,7 +82,7 @@ MadeEstimator make_stamp_jitter_estimator(const EffectDefinition& effect,
         return make_stamp_estimator({}, "the samples have no time stamps of their own",
                                     make_sampling_jitter_estimator(effect, std::move(prediction)));
     }
-    if (recording.stamps == StampKind::arrival && seen->neighbour_correlation > burst_correlation) {
+    if (recording.stamps == StampKind::arrival && seen->neighbour_correlation > decisions.burst_correlation) {
         return make_stamp_estimator({}, "the time stamps are arrival times that come in bursts",
                                     make_sampling_jitter_estimator(effect, std::move(prediction)));
     }

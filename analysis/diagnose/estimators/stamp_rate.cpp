@@ -3,18 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/lag.hpp"
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // No clock is known better, whatever a model says.
 constexpr double clock_sd_rel_least = 1e-9;
-// Beyond it, the sensor was set to another rate.
-constexpr double clock_error_most = 0.1;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 // Entries act one after the other.
 double log_rate_error(const EffectValues& values) { return std::log1p(values["rel"]); }
@@ -28,11 +31,11 @@ double expected_rate_hz(const Prediction& prediction, const EffectDefinition& ef
 Finding find_rate(const EffectDefinition& effect, const Prediction& prediction, double rel) {
     const Recording& recording = prediction.world().recording();
     const double stamps_sd = recording.rate_sd_hz.value_or(0.0) / recording.rate_hz;
-    const double known_sd = std::max(clock_sd_rel_least, clock_rate_sd_rel(prediction.model()));
+    const double known_sd = std::max(resolution::clock_sd_rel_least, clock_rate_sd_rel(prediction.model()));
     const double sd = std::hypot(known_sd, stamps_sd);
     Finding finding =
         whole_sensor_finding(effect, prediction, {{"rel", rel}, {"in_stamps", 1.0}}, {{"rel", sd}});
-    finding.gain_nats = std::min(certain_nats, 0.5 * rel * rel / (sd * sd));
+    finding.gain_nats = std::min(resolution::certain_nats, 0.5 * rel * rel / (sd * sd));
     const auto range = std::ranges::find(effect.params, "rel", &EffectParam::name);
     finding.evidence_nats =
         finding.gain_nats - parameter_cost_nats(range->plausible_to - range->plausible_from, sd);
@@ -49,7 +52,7 @@ MadeEstimator make_stamp_rate_estimator(const EffectDefinition& effect,
                                     make_lag_slope_estimator(effect, std::move(prediction)));
     }
     const double rel = recording.rate_hz / expected_rate_hz(*prediction, effect) - 1.0;
-    if (std::fabs(rel) > clock_error_most) {
+    if (std::fabs(rel) > decisions.clock_error_most) {
         return make_stamp_estimator({}, "the recording was taken at another rate than the model's",
                                     make_lag_slope_estimator(effect, std::move(prediction)));
     }

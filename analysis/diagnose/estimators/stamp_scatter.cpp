@@ -4,19 +4,29 @@
 #include <cmath>
 
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/numerics/square.hpp"
+
+namespace gyrolog::resolution {
+
+constexpr std::size_t stamps_min = 16;
+constexpr std::array resolutions_s = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
-namespace {
+namespace definition {
 
-constexpr std::size_t stamps_min = 16;
 // Second differences of independent errors, and absolute values in place of squares: the variance of the
 // estimated sigma is larger by 1 + 2 (4/6)^2 + 2 (1/6)^2 and by pi - 2 over 1.
-constexpr double differences_in_one = 1.944 * (pi - 2.0);
+constexpr double differences_in_one = (1.0 + 2.0 * square(4.0 / 6.0) + 2.0 * square(1.0 / 6.0)) * (pi - 2.0);
+
+}  // namespace definition
+
+namespace {
 
 double resolution_of(const std::vector<double>& t_s) {
-    constexpr std::array resolutions_s = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
-    for (const double resolution_s : resolutions_s) {
+    for (const double resolution_s : resolution::resolutions_s) {
         // Of a double that holds seconds since 1970.
         const double tolerance_s = std::max(1e-3 * resolution_s, 4e-16 * std::fabs(t_s.back()));
         if (tolerance_s > 0.1 * resolution_s) { return 0.0; }
@@ -78,7 +88,7 @@ double neighbour_correlation(const Recording& recording) {
 
 std::optional<StampScatter> stamp_scatter(const Recording& recording) {
     const std::vector<double>& t_s = recording.t_s;
-    if (t_s.size() < stamps_min || t_s.size() != recording.rows()) { return std::nullopt; }
+    if (t_s.size() < resolution::stamps_min || t_s.size() != recording.rows()) { return std::nullopt; }
     double sum_s = 0.0;
     double count = 0.0;
     for (const Segment& segment : recording.segments) {
@@ -87,10 +97,10 @@ std::optional<StampScatter> stamp_scatter(const Recording& recording) {
             count += 1.0;
         }
     }
-    if (count < static_cast<double>(stamps_min)) { return std::nullopt; }
+    if (count < static_cast<double>(resolution::stamps_min)) { return std::nullopt; }
     StampScatter scatter;
     scatter.sd_s = std::sqrt(pi / 2.0) * sum_s / (count * std::sqrt(6.0));
-    scatter.independent = count / differences_in_one;
+    scatter.independent = count / definition::differences_in_one;
     scatter.resolution_s = resolution_of(t_s);
     scatter.neighbour_correlation = neighbour_correlation(recording);
     return scatter;

@@ -5,24 +5,27 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_distribution.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
 #include "analysis/diagnose/likelihood/whitened_blocks.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr std::size_t node_count = 33;
+// A kurtosis within so many of its standard deviations is no trace of tails.
+constexpr double kurtosis_sigma = 1.0;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
-
-constexpr std::size_t node_count = 33;
-// Tables made for one axis serve another whose shares differ by less.
-constexpr double share_tolerance = 1e-3;
-// A kurtosis within so many of its standard deviations is no trace of tails.
-constexpr double kurtosis_sigma = 1.0;
-constexpr double tail_sigma = 3.0;  // from where the difference is seen
 
 struct AxisTables {
     WhiteShare share;
@@ -44,7 +47,8 @@ public:
         : effect_(effect), prediction_(std::move(prediction)) {
         const EffectParam& nu = effect_.params.front();
         log_from_ = std::log(nu.plausible_from);
-        log_step_ = std::log(nu.plausible_to / nu.plausible_from) / static_cast<double>(node_count - 1);
+        log_step_ =
+            std::log(nu.plausible_to / nu.plausible_from) / static_cast<double>(resolution::node_count - 1);
         for (const std::size_t axis : prediction_->axes()) { make_tables(axis); }
     }
 
@@ -84,8 +88,9 @@ private:
         for (const std::size_t other : prediction_->axes()) {
             if (other == axis) { break; }
             const AxisTables& made = *tables_[other];
-            if (made.nu == nu && std::fabs(made.share.own_variance - share.own_variance) < share_tolerance &&
-                std::fabs(made.share.lattice - share.lattice) < share_tolerance) {
+            if (made.nu == nu &&
+                std::fabs(made.share.own_variance - share.own_variance) < resolution::negligible_share &&
+                std::fabs(made.share.lattice - share.lattice) < resolution::negligible_share) {
                 tables_[axis] = tables_[other];
                 return;
             }
@@ -94,7 +99,7 @@ private:
         tables->share = share;
         tables->nu = nu;
         tables->table.emplace_back(NormalMixture(nu, share.own_variance, share.lattice));
-        for (std::size_t node = 0; node < node_count; ++node) {
+        for (std::size_t node = 0; node < resolution::node_count; ++node) {
             tables->table.push_back(table_at(*tables, log_nu(static_cast<double>(node))));
         }
         tables_[axis] = std::move(tables);
@@ -113,13 +118,14 @@ private:
         profile.axis = axis;
         profile.histogram = whitened_histogram(blocks, observation, axis);
         const double chance = std::sqrt(24.0 / profile.histogram.samples);
-        if (std::isinf(tables.nu) && profile.histogram.excess_kurtosis() < kurtosis_sigma * chance) {
+        if (std::isinf(tables.nu) &&
+            profile.histogram.excess_kurtosis() < resolution::kurtosis_sigma * chance) {
             return std::nullopt;
         }
         profile.plain =
             fit_scale(profile.histogram, tables.table.front(), std::sqrt(profile.histogram.moment(2)));
         ScaledFit fit = profile.plain;
-        for (std::size_t node = node_count; node-- > 0;) {
+        for (std::size_t node = resolution::node_count; node-- > 0;) {
             fit = fit_scale(profile.histogram, tables.table[node + 1], fit.scale);
             profile.gain_nats.push_back(fit.log_likelihood_nats - profile.plain.log_likelihood_nats);
         }
@@ -136,9 +142,9 @@ private:
     // One number of degrees of freedom for some axes.
     std::optional<AxesFit> fit_of(const std::vector<Profile>& profiles,
                                   const std::vector<std::size_t>& subset) const {
-        std::vector<double> sum(node_count, 0.0);
+        std::vector<double> sum(resolution::node_count, 0.0);
         for (const std::size_t member : subset) {
-            for (std::size_t node = 0; node < node_count; ++node) {
+            for (std::size_t node = 0; node < resolution::node_count; ++node) {
                 sum[node] += profiles[member].gain_nats[node];
             }
         }
@@ -167,7 +173,7 @@ private:
             highest = there;
             middle = moved;
         }
-        sd = std::min(sd, log_step_ * static_cast<double>(node_count));
+        sd = std::min(sd, log_step_ * static_cast<double>(resolution::node_count));
         const double nu = std::exp(middle);
         AxesFit fit;
         for (const std::size_t member : subset) {
@@ -183,7 +189,7 @@ private:
 
     // Of a parabola through the best node and its neighbours: moves `top` there and returns its width.
     double parabola_top(const std::vector<double>& gain, std::size_t best, double& top) const {
-        if (best == 0 || best + 1 == node_count) { return log_step_; }
+        if (best == 0 || best + 1 == resolution::node_count) { return log_step_; }
         const double curvature = 2.0 * gain[best] - gain[best - 1] - gain[best + 1];
         if (!(curvature > 0.0)) { return log_step_; }
         top += log_step_ * 0.5 * (gain[best + 1] - gain[best - 1]) / curvature;
@@ -193,13 +199,14 @@ private:
     // Of the freedom to choose nu, with ln nu as likely anywhere in its range: what the average likelihood is
     // below the highest. Where the peak is too narrow for the nodes, Laplace's approximation.
     double cost_nats(const std::vector<double>& gain, double highest, double sd) const {
-        const double range = log_step_ * static_cast<double>(node_count - 1);
+        const double range = log_step_ * static_cast<double>(resolution::node_count - 1);
         if (sd < log_step_) { return parameter_cost_nats(range, sd); }
-        return std::max(0.5, highest + std::log(static_cast<double>(node_count)) - log_sum_exp(gain));
+        return std::max(0.5,
+                        highest + std::log(static_cast<double>(resolution::node_count)) - log_sum_exp(gain));
     }
 
     void locate(const std::vector<Profile>& profiles, Finding& finding) const {
-        double furthest = tail_sigma;
+        double furthest = decisions.seen_sigma;
         for (const Profile& profile : profiles) {
             if (std::ranges::count(finding.where.axes, profile.axis) == 0) { continue; }
             for (std::size_t i = 0; i < profile.histogram.at.size(); ++i) {
@@ -208,7 +215,7 @@ private:
                 }
             }
         }
-        finding.where.amplitude_sigma = {tail_sigma, furthest};
+        finding.where.amplitude_sigma = {decisions.seen_sigma, furthest};
     }
 
     const EffectDefinition& effect_;

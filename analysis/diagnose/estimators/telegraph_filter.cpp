@@ -44,9 +44,9 @@ struct Parts {
     Eigen::Matrix<double, parts, 1> start;
 };
 
-Parts<static_cast<int>(drift_parts)> parts_of(const DriftStates& noise) {
-    Parts<static_cast<int>(drift_parts)> out;
-    for (std::size_t i = 0; i < drift_parts; ++i) {
+Parts<static_cast<int>(resolution::drift_parts)> parts_of(const DriftStates& noise) {
+    Parts<static_cast<int>(resolution::drift_parts)> out;
+    for (std::size_t i = 0; i < resolution::drift_parts; ++i) {
         const auto at = static_cast<Eigen::Index>(i);
         out.kept[at] = noise.kept[i];
         out.innovation[at] = noise.innovation[i];
@@ -55,7 +55,7 @@ Parts<static_cast<int>(drift_parts)> parts_of(const DriftStates& noise) {
     return out;
 }
 
-constexpr int drift_size = static_cast<int>(drift_parts);
+constexpr int drift_size = static_cast<int>(resolution::drift_parts);
 using Level = Filter<drift_size>;
 
 // One way to have come to a level, with how likely it is beside the others.

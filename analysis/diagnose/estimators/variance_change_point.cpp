@@ -6,29 +6,29 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/variance_fit.hpp"
 #include "analysis/diagnose/likelihood/white_distribution.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
+#include "analysis/numerics/golden_section.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
 #include "analysis/numerics/simplex_search.hpp"
+
+namespace gyrolog::resolution {
+
+constexpr std::size_t ramp_ends = 32;     // times between which ramps are tried
+constexpr std::size_t ramp_blocks = 256;  // of which the variances are compared with a ramp
+constexpr double side_samples_min = 256.0;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
 namespace {
 
-constexpr std::size_t ramp_ends = 32;     // times between which ramps are tried
-constexpr std::size_t ramp_blocks = 256;  // of which the variances are compared with a ramp
-constexpr double side_samples_min = 256.0;
-// Worth less at their best, no courses are looked at closely.
-constexpr double change_worth_refining_nats = 2.0;
-// From here on the samples' distribution about the course is worth knowing.
-constexpr double worth_tails_nats = 3.0;
-// The level before the change counts where the change is certain and that level lies this near to the
-// model's.
-constexpr double change_certain_nats = 5.0;
-constexpr double near_nats = 4.5;
 const double log_factor_most = std::log(20.0);
 
 // In slots. A step has no length.
@@ -118,32 +118,6 @@ double log_factor_sd(const Scan& scan, double spread) {
     return 1.0 / std::sqrt(std::max(2.0 * spread, 1e-9)) / share_of(scan);
 }
 
-// Golden section.
-template <typename Function>
-double top_by_golden_section(double from, double to, Function function) {
-    const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-    double left = to - golden * (to - from);
-    double right = from + golden * (to - from);
-    double at_left = function(left);
-    double at_right = function(right);
-    while (to - from > 1e-5) {
-        if (at_left > at_right) {
-            to = right;
-            right = left;
-            at_right = at_left;
-            left = to - golden * (to - from);
-            at_left = function(left);
-        } else {
-            from = left;
-            left = right;
-            at_left = at_right;
-            right = from + golden * (to - from);
-            at_right = function(right);
-        }
-    }
-    return 0.5 * (from + to);
-}
-
 class VarianceChangePointEstimator final : public Estimator {
 public:
     VarianceChangePointEstimator(const EffectDefinition& effect, std::shared_ptr<const Prediction> prediction)
@@ -154,9 +128,10 @@ public:
         for (std::size_t block = 0; block < prediction_->length() / length; ++block) {
             steps_.push_back({static_cast<double>(block * length), 0.0});
         }
-        const double step = static_cast<double>(prediction_->length()) / static_cast<double>(ramp_ends);
-        for (std::size_t from = 0; from < ramp_ends; ++from) {
-            for (std::size_t to = from + 1; to <= ramp_ends; ++to) {
+        const double step =
+            static_cast<double>(prediction_->length()) / static_cast<double>(resolution::ramp_ends);
+        for (std::size_t from = 0; from < resolution::ramp_ends; ++from) {
+            for (std::size_t to = from + 1; to <= resolution::ramp_ends; ++to) {
                 ramps_.push_back({step * static_cast<double>(from), step * static_cast<double>(to - from)});
             }
         }
@@ -184,7 +159,7 @@ public:
         if (best.empty()) { return std::nullopt; }
         Fit step = rough_fit(best, sum_of(best, &Scan::steps), steps_);
         Fit ramp = rough_fit(best, sum_of(best, &Scan::ramps), ramps_);
-        if (std::max(gain_of(step), gain_of(ramp)) < change_worth_refining_nats) { return std::nullopt; }
+        if (std::max(gain_of(step), gain_of(ramp)) < resolution::worth_refining_nats) { return std::nullopt; }
         refine(observation, step);
         refine(observation, ramp);
         return finding_of(observation, step.evidence_nats > ramp.evidence_nats ? step : ramp);
@@ -199,13 +174,13 @@ private:
         const WhitenedBlocks plain = whitened_blocks(observation, axis);
         if (!plain.has_noise()) { return std::nullopt; }
         scan.blocks = with_tails(plain, observation, axis, nu);
-        scan.coarse = joined(scan.blocks, ramp_blocks);
+        scan.coarse = joined(scan.blocks, resolution::ramp_blocks);
         scan_everywhere(scan);
-        if (highest(scan) < worth_tails_nats) { return scan; }
+        if (highest(scan) < resolution::worth_refining_nats) { return scan; }
         const double beside = tails_beside(plain, observation, axis, nu);
         if (beside != nu) {
             scan.blocks = with_tails(plain, observation, axis, beside);
-            scan.coarse = joined(scan.blocks, ramp_blocks);
+            scan.coarse = joined(scan.blocks, resolution::ramp_blocks);
             scan_everywhere(scan);
         }
         return scan;
@@ -237,8 +212,8 @@ private:
             left_square += blocks.weight[i - 1] * blocks.variance[i - 1];
             const double right = all - left;
             const double right_square = all_square - left_square;
-            if (left < side_samples_min || right < side_samples_min || !(left_square > 0.0) ||
-                !(right_square > 0.0)) {
+            if (left < resolution::side_samples_min || right < resolution::side_samples_min ||
+                !(left_square > 0.0) || !(right_square > 0.0)) {
                 continue;
             }
             const double gain =
@@ -348,7 +323,7 @@ private:
             return course_gain_nats(blocks, levels(reached, scan.share, log_factor));
         };
         Factor factor;
-        factor.log_value = top_by_golden_section(-log_factor_most, log_factor_most, gain);
+        factor.log_value = place_of_top(gain, -log_factor_most, log_factor_most);
         factor.gain_nats = gain(factor.log_value);
         factor.log_sd = log_factor_sd(scan, spread(blocks, reached));
         return factor;
@@ -459,7 +434,7 @@ private:
             }
             return sum;
         };
-        const double cell = 1.0 / static_cast<double>(ramp_ends);
+        const double cell = 1.0 / static_cast<double>(resolution::ramp_ends);
         const SimplexMaximum maximum =
             simplex_maximum(gain, {fit.course.at / slots, (fit.course.at + fit.course.length) / slots},
                             -0.5 * cell, 0.01, 120);
@@ -506,7 +481,7 @@ private:
             level_cost_nats(observation, scan.axis, white_level(std::vector<double>(reached.size(), 1.0)));
         const double before = level_cost_nats(
             observation, scan.axis, white_level(levels(reached, scan.share, fit.factors[a].log_value)));
-        return before < near_nats ? std::max(0.0, mean - before) : 0.0;
+        return before < decisions.seen_nats() ? std::max(0.0, mean - before) : 0.0;
     }
 
     // One factor for all axes, where it is not much worse than their own.
@@ -546,7 +521,8 @@ private:
         finding.evidence_nats = fit.evidence_nats;
         for (std::size_t a = 0; a < fit.scans.size(); ++a) {
             double gain = fit.factors[a].gain_nats;
-            if (fit.evidence_nats > change_certain_nats) {
+            // The level before the change counts where the change is certain.
+            if (fit.evidence_nats > decisions.seen_nats()) {
                 const double of_level = level_gain_nats(observation, fit, a);
                 gain += of_level;
                 finding.evidence_nats += of_level;

@@ -4,24 +4,19 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/variance_fit.hpp"
 #include "analysis/diagnose/likelihood/white_distribution.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
+#include "analysis/simulate/effects/white_noise_gain.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-// A sensor's noise changes less than this many times its plausible change.
-constexpr double beyond_plausible = 2.0;
-// Too little is known where the plausible change is fewer standard deviations of its estimate.
-constexpr double visible_sigma = 3.0;
-constexpr double worth_tails_nats = 2.0;
-constexpr double near_nats = 4.5;
-constexpr double gain_min = 0.05;  // as the simulator has it
 
 // Relative change per degree about the mean temperature, and the gain as a parabola about it.
 struct Slope {
@@ -99,7 +94,7 @@ private:
     static std::vector<double> levels(const std::vector<double>& warmth_C, double share, double per_C) {
         std::vector<double> level(warmth_C.size());
         for (std::size_t i = 0; i < level.size(); ++i) {
-            const double gain = std::max(gain_min, 1.0 + per_C * warmth_C[i]);
+            const double gain = std::max(white_gain_least, 1.0 + per_C * warmth_C[i]);
             level[i] = 1.0 - share + share * gain * gain;
         }
         return level;
@@ -127,7 +122,7 @@ private:
         for (std::size_t i = 0; i < warmth_C.size(); ++i) {
             known += 2.0 * slope.blocks.weight[i] * std::pow(slope.share * (warmth_C[i] - mean), 2.0);
         }
-        const double most = beyond_plausible * most_per_C();
+        const double most = decisions.beyond_plausible * most_per_C();
         slope.sd_per_C = std::sqrt(slope.dispersion / std::max(known, 1e-9));
         const double step = std::min(slope.sd_per_C, 0.25 * most);
         double top = 0.0;
@@ -161,7 +156,7 @@ private:
         slope.share = white_share(*prediction_, axis).variance;
         slope.blocks = with_tails(plain, observation, axis, nu);
         climb(slope);
-        if (slope.gain_nats < worth_tails_nats) { return slope; }
+        if (slope.gain_nats < resolution::worth_refining_nats) { return slope; }
         const double beside = tails_beside(plain, observation, axis, nu);
         if (beside != nu) {
             slope.blocks = with_tails(plain, observation, axis, beside);
@@ -208,9 +203,9 @@ private:
             const double there = level_cost_nats(observation, slope.axis, level * at_reference);
             level_gain.push_back(level_cost_nats(observation, slope.axis, level) - there);
             of_level += level_gain.back();
-            near = near && there < near_nats;
+            near = near && there < decisions.seen_nats();
         }
-        const bool certain = fit.evidence_nats() > near_nats;
+        const bool certain = fit.evidence_nats() > decisions.seen_nats();
         // Where the level at the model's own reference is the model's, that counts too.
         const bool from_reference = near && of_level > 0.0;
         const double scale = from_reference ? at_reference : 1.0;
@@ -236,8 +231,9 @@ MadeEstimator make_variance_with_temperature_estimator(const EffectDefinition& e
                                                        std::shared_ptr<const Prediction> prediction) {
     if (prediction->temperature_C().empty()) { return {nullptr, "the recording has no temperature"}; }
     auto estimator = std::make_unique<VarianceWithTemperatureEstimator>(effect, std::move(prediction));
+    // The largest plausible change must be seen.
     if (!(estimator->sd_C() > 0.0) ||
-        visible_sigma * estimator->expected_sd_per_C() > estimator->most_per_C()) {
+        decisions.seen_sigma * estimator->expected_sd_per_C() > estimator->most_per_C()) {
         return {nullptr, "the temperature hardly changes"};
     }
     return {std::move(estimator), {}};

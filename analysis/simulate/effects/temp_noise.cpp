@@ -15,8 +15,7 @@ struct OfTemperature {
     double operator()(const SampleBlock& block, std::size_t i) const { return at(block.die_C[i]); }
 
     double at(double temperature_C) const {
-        // However far the temperature goes, some noise is left.
-        return std::max(0.05, 1.0 + per_C * (temperature_C - reference_C));
+        return std::max(white_gain_least, 1.0 + per_C * (temperature_C - reference_C));
     }
 };
 

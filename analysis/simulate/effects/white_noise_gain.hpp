@@ -7,6 +7,9 @@
 
 namespace gyrolog {
 
+// However far the temperature goes, some noise is left.
+inline constexpr double white_gain_least = 0.05;
+
 // Gain: `double operator()(const SampleBlock& block, std::size_t i) const`, of slot i.
 template <typename Gain>
 class WhiteNoiseGain final : public Stage {

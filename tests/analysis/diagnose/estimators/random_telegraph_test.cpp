@@ -98,7 +98,7 @@ TEST(DriftStates, FollowFlickerAndRandomWalk) {
     const DriftStates states = drift_states(f_hz, density, step_s, duration_s);
     for (double f = 2.0 / duration_s; f < 0.1 / step_s; f *= 1.5) {
         double sum = states.white_variance * step_s;
-        for (std::size_t part = 0; part < drift_parts; ++part) {
+        for (std::size_t part = 0; part < resolution::drift_parts; ++part) {
             const double kept = states.kept[part];
             const double sine = std::sin(pi * f * step_s);
             sum +=
