@@ -21,15 +21,19 @@
 #include "analysis/diagnose/selection/forward_selection.hpp"
 #include "analysis/simulate/chain.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // What a simulation and its observation hold at once.
 constexpr double bytes_per_sample_and_thread = 160.0;
 
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
+
 unsigned affordable_threads(std::size_t samples, double bytes_most) {
-    const double each = bytes_per_sample_and_thread * static_cast<double>(samples);
+    const double each = resolution::bytes_per_sample_and_thread * static_cast<double>(samples);
     const double affordable = std::max(1.0, bytes_most / each);
     const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
     return affordable < processors ? static_cast<unsigned>(affordable) : processors;

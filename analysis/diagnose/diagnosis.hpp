@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnose/calibration/resolutions.hpp"
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/report.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
@@ -20,18 +22,18 @@ struct DiagnosisOptions {
     std::uint64_t seed = 1;
     std::size_t simulations = 200;
     // A gap is called where chance would have it no more often; what causes leave, half as often.
-    double false_alarms_most = 0.01;
+    double false_alarms_most = decisions.false_alarms_most;
     // Of the corrected model, to judge what it leaves.
-    std::size_t simulations_after_most = 50;
+    std::size_t simulations_after_most = resolution::simulations_after_most;
     // Less is left of the gap's square where it is called known, and a cause closes more where it is called
     // known in part (diagnosis.md's tenth).
     double small_share = 0.1;
     // A cause that is less likely right, with its ties, is named as a guess only.
-    double named_from_probability = 0.5;
+    double named_from_probability = decisions.majority;
     // 0: all processors, fewer where their simulations would take more than `simulations_bytes_most` at a
     // time. The result is the same for any number.
     unsigned threads = 0;
-    double simulations_bytes_most = 4e9;
+    double simulations_bytes_most = resolution::simulations_bytes_most;
     std::shared_ptr<const Recording> holdout{};
     // With what is being done and its share from 0 to 1; false ends the work.
     std::function<bool(const char*, double)> on_progress{};

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/diagnose/calibration/gap_reference.hpp"
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "host/formats/effect_words.hpp"
@@ -100,7 +100,7 @@ constexpr std::size_t listed_whole_most = 6;
 
 bool is_listed(const Diagnosis& diagnosis, const GapDomain& domain) {
     return diagnosis.domains.size() <= listed_whole_most ||
-           std::max(domain.surprise_before_nats, domain.surprise_after_nats) >= stands_out_nats;
+           std::max(domain.surprise_before_nats, domain.surprise_after_nats) >= decisions.stands_out_nats;
 }
 
 std::string domains_text(const Diagnosis& diagnosis) {

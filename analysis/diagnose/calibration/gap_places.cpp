@@ -5,6 +5,8 @@
 #include <functional>
 #include <utility>
 
+#include "analysis/diagnose/decision_options.hpp"
+
 namespace gyrolog {
 
 namespace {
@@ -31,7 +33,7 @@ Place place_of(const JudgedCurve& worst, const std::vector<JudgedCurve>& all) {
     for (const JudgedCurve& one : all) {
         if (worst.curve->of_all_axes) { where.axes.push_back(one.curve->axis); }
         if (one.curve->measure != worst.curve->measure || one.curve->of_all_axes) { continue; }
-        if (one.surprise_nats >= stands_out_nats) { where.axes.push_back(one.curve->axis); }
+        if (one.surprise_nats >= decisions.stands_out_nats) { where.axes.push_back(one.curve->axis); }
     }
     if (where.axes.empty()) { where.axes.push_back(worst.curve->axis); }
     std::ranges::sort(where.axes);
@@ -51,7 +53,7 @@ std::vector<Left> places_that_stand_out(const std::vector<GapCurve>& curves, con
     const std::vector<JudgedCurve> all = judged(curves, reference);
     std::vector<const JudgedCurve*> worst_of_measure;
     for (const JudgedCurve& one : all) {
-        if (one.surprise_nats < stands_out_nats) { continue; }
+        if (one.surprise_nats < decisions.stands_out_nats) { continue; }
         const auto same = std::ranges::find(worst_of_measure, one.curve->measure,
                                             [](const JudgedCurve* other) { return other->curve->measure; });
         if (same == worst_of_measure.end()) {

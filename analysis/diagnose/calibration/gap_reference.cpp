@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/numerics/distributions.hpp"
 
 namespace gyrolog {
@@ -209,8 +210,8 @@ std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const Ga
     std::vector<double> surprises = all.own_nats;
     for (const auto& [measure, together_nats] : all.together_nats) {
         const std::vector<std::size_t>& same = all.of_axes.at(measure);
-        const bool one_stands_out =
-            std::ranges::any_of(same, [&](std::size_t c) { return all.own_nats[c] >= stands_out_nats; });
+        const bool one_stands_out = std::ranges::any_of(
+            same, [&](std::size_t c) { return all.own_nats[c] >= decisions.stands_out_nats; });
         if (one_stands_out) { continue; }
         for (const std::size_t c : same) { surprises[c] = std::max(surprises[c], together_nats); }
     }

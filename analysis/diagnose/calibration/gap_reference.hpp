@@ -42,9 +42,6 @@ struct CurveDistance {
 
 CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::size_t index);
 
-// With as many curves as there are, one or another reaches some 7 nats by chance.
-inline constexpr double stands_out_nats = 7.0;
-
 // By curve of one observation: its own surprise or, where no axis stands out by itself, that of all axes'
 // curves of the measure together if that is larger.
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference);

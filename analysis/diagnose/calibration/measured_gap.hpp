@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnose/calibration/resolutions.hpp"
 #include "analysis/diagnose/likelihood/prediction.hpp"
 #include "analysis/diagnose/report.hpp"
 #include "analysis/simulate/random_purpose.hpp"
@@ -40,10 +41,10 @@ struct GapTrial {
 };
 
 struct MeasuredGapOptions {
-    // Of the corrected model. A standard deviation is known to 11 %.
-    std::size_t simulations = 40;
-    // Of every other model, each with the draws of one of those: they tell a difference of means.
-    std::size_t paired_simulations = 6;
+    // Of the corrected model.
+    std::size_t simulations = resolution::simulations_for_floor;
+    // Of every other model, each with the draws of one of those.
+    std::size_t paired_simulations = resolution::paired_simulations;
     std::uint64_t seed = 1;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // with the share that is done; false ends the work

@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "analysis/diagnose/calibration/null_simulations.hpp"
+#include "analysis/diagnose/decision_options.hpp"
+
+namespace gyrolog::resolution {
+
+constexpr std::size_t null_bias_simulations = 16;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
-
-namespace {
-
-constexpr std::size_t simulations = 16;
-constexpr double sds = 4.0;
-
-}  // namespace
 
 double NullBias::of(const Finding& finding) const {
     const std::vector<std::size_t>& on = finding.where.axes;
@@ -25,7 +25,8 @@ double NullBias::of(const Finding& finding) const {
 std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hypotheses, std::uint64_t seed,
                                                             unsigned threads,
                                                             const std::function<bool()>& told) {
-    const NullSimulationOptions options{simulations, seed, RandomPurpose::null_bias_simulations, threads,
+    const NullSimulationOptions options{resolution::null_bias_simulations, seed,
+                                        RandomPurpose::null_bias_simulations, threads,
                                         [&](double) { return told(); }};
     const std::optional<NullSimulations> null =
         simulate_null(hypotheses.prediction, &hypotheses.catalogue, options);
@@ -35,11 +36,13 @@ std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hy
         double mean = 0.0;
         double square = 0.0;
         for (const std::vector<double>& of_effects : null->evidence_nats) {
-            mean += of_effects[entry] / static_cast<double>(simulations);
-            square += of_effects[entry] * of_effects[entry] / static_cast<double>(simulations);
+            mean += of_effects[entry] / static_cast<double>(resolution::null_bias_simulations);
+            square += of_effects[entry] * of_effects[entry] /
+                      static_cast<double>(resolution::null_bias_simulations);
         }
         const double sd = std::sqrt(std::max(square - mean * mean, 0.0));
-        bias_nats[std::string(hypotheses.catalogue[entry].effect->name)] = std::max(0.0, mean + sds * sd);
+        bias_nats[std::string(hypotheses.catalogue[entry].effect->name)] =
+            std::max(0.0, mean + decisions.certain_sigma * sd);
     }
     return bias_nats;
 }

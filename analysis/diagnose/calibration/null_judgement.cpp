@@ -14,7 +14,7 @@ namespace gyrolog {
 namespace {
 
 double best_evidence_nats(const Hypotheses& hypotheses, bool in_stamps) {
-    double best = no_evidence_nats;
+    double best = resolution::no_evidence_nats;
     for (const std::optional<Finding>& finding : hypotheses.findings) {
         if (finding && traits_of(finding->effect).is_in_stamps == in_stamps) {
             best = std::max(best, finding->evidence_nats);

@@ -8,6 +8,8 @@
 
 #include "analysis/diagnose/calibration/gap_reference.hpp"
 #include "analysis/diagnose/calibration/null_simulations.hpp"
+#include "analysis/diagnose/calibration/resolutions.hpp"
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/hypotheses.hpp"
 
 namespace gyrolog {
@@ -28,14 +30,13 @@ struct NullJudgementOptions {
     NullSimulationOptions simulations;
     // Probability that one effect more is found where there is none: half of the false alarms that a
     // diagnosis allows itself.
-    double chance_of_an_effect = 0.005;
+    double chance_of_an_effect = decisions.false_alarms_most / 2.0;
     // A Bayes factor below 20 is no strong evidence (Kass, Raftery 1995), whatever simulations have.
     double evidence_least_nats = 3.0;
     // Of all false alarms, those of the stamps: a weighted Bonferroni bound (Holm 1979). Simulations copy the
     // stamps, so that their chance is not known as well as the others'.
     double share_of_stamps = 0.05;
-    // A mean surprisal is known to a sixth of its standard deviation.
-    std::size_t simulations_for_floor = 40;
+    std::size_t simulations_for_floor = resolution::simulations_for_floor;
 };
 
 // `hypotheses` are those of the recording under the model. The function returns no value when ended early.
@@ -59,12 +60,11 @@ struct Remainder {
 
 struct RemainderOptions {
     NullSimulationOptions simulations;
-    // Where p is between these, it is asked of so many times more simulations: a tail of the first, some five
-    // of fifty, is known to half of its length. In motion each is measured anew, which takes longer.
-    double doubted_below_p = 0.005;
-    double doubted_above_p = 1e-6;
-    std::size_t times_more_at_rest = 4;
-    std::size_t times_more_in_motion = 2;
+    // Where p is between these, it is asked of so many times more simulations.
+    double doubted_below_p = decisions.false_alarms_most / 2.0;
+    double doubted_above_p = resolution::impossible_p;
+    std::size_t times_more_at_rest = resolution::times_more_at_rest;
+    std::size_t times_more_in_motion = resolution::times_more_in_motion;
 };
 
 // `prediction` is of the model with the causes. The function returns no value when ended early.

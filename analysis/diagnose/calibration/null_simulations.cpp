@@ -11,11 +11,11 @@ namespace {
 
 std::vector<double> evidence_of_all(const std::vector<CatalogueEntry>& catalogue,
                                     const Observation& observation) {
-    std::vector<double> evidence_nats(catalogue.size(), no_evidence_nats);
+    std::vector<double> evidence_nats(catalogue.size(), resolution::no_evidence_nats);
     for (std::size_t i = 0; i < catalogue.size(); ++i) {
         if (!catalogue[i].estimator) { continue; }
         const std::optional<Finding> finding = catalogue[i].estimator->find(observation);
-        if (finding) { evidence_nats[i] = std::max(finding->evidence_nats, no_evidence_nats); }
+        if (finding) { evidence_nats[i] = std::max(finding->evidence_nats, resolution::no_evidence_nats); }
     }
     return evidence_nats;
 }

@@ -14,14 +14,18 @@
 
 namespace gyrolog {
 
+namespace resolution {
+
+inline constexpr double no_evidence_nats = -50.0;
+
+}  // namespace resolution
+
 struct NullSimulations {
     std::vector<std::vector<GapCurve>> curves;  // by simulation
     // By simulation, by entry of the catalogue; empty unless asked for. An effect without a trace has
     // no_evidence_nats.
     std::vector<std::vector<double>> evidence_nats;
 };
-
-inline constexpr double no_evidence_nats = -50.0;
 
 // By simulation: the evidence of the effect that has the most.
 std::vector<double> best_evidence_nats(const NullSimulations& null);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/diagnose/likelihood/observed_line.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -11,9 +12,6 @@
 namespace gyrolog {
 
 namespace {
-
-// Of the amplitude: nearer to be absent than present.
-constexpr double faint_line_share = 0.5;
 
 std::string faint_line_sentence(const EffectModel& line, double share) {
     const EffectValues values(line);
@@ -35,7 +33,7 @@ OwnStart with_own_start(const std::shared_ptr<const Prediction>& prediction,
         if (!traits_of(entry.effect).is_line) { continue; }
         const ObservedLine seen = observe_line(*prediction, recording, entry, seed);
         entry.params["phase_rad"] = seen.phase_rad;
-        if (seen.share < faint_line_share) {
+        if (seen.share < decisions.majority) {
             start.faint_lines_hz.push_back(EffectValues(entry)["f_hz"]);
             start.warnings.push_back(faint_line_sentence(entry, seen.share));
         }

@@ -12,9 +12,7 @@
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // Sixteen know a standard deviation to 18 %. Of long recordings fewer, for their time; of a new world, where
 // the sensor moves, the sooner.
@@ -23,6 +21,12 @@ constexpr double samples_of_all_at_rest = 6e6;
 constexpr std::size_t simulations_least_at_rest = 6;
 constexpr double samples_of_all_in_motion = 1.5e6;
 constexpr std::size_t simulations_least_in_motion = 4;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 double difference(const std::string& param, double a, double b) {
     return param.ends_with("phase_rad") ? std::remainder(a - b, 2.0 * std::numbers::pi) : a - b;
@@ -47,10 +51,11 @@ std::optional<double> value_for(const Finding& again, const EffectModel& entry, 
 
 std::size_t simulations_of(const Prediction& prediction) {
     const bool moves = prediction.moves();
-    const double all = moves ? samples_of_all_in_motion : samples_of_all_at_rest;
+    const double all = moves ? resolution::samples_of_all_in_motion : resolution::samples_of_all_at_rest;
     const auto affordable = static_cast<std::size_t>(all / static_cast<double>(prediction.length()));
-    return std::clamp(affordable, moves ? simulations_least_in_motion : simulations_least_at_rest,
-                      simulations_most);
+    return std::clamp(affordable,
+                      moves ? resolution::simulations_least_in_motion : resolution::simulations_least_at_rest,
+                      resolution::simulations_most);
 }
 
 double root_mean_square(const std::vector<double>& values) {

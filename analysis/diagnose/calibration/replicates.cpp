@@ -8,6 +8,12 @@
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr std::size_t rows_measured_anew_most = 1'000'000;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 Recording replicate_recording(const Prediction& prediction, const SensorModel& model, std::uint64_t seed) {
@@ -37,10 +43,9 @@ Recording measured_anew(Recording recording, const SensorModel& model, std::uint
 }
 
 bool can_be_measured_anew(const Recording& recording) {
-    constexpr std::size_t rows_most = 1'000'000;
     const bool has_rate = recording.find("ref_x") != nullptr || recording.find("ref_y") != nullptr ||
                           recording.find("ref_z") != nullptr;
-    return has_rate && recording.rows() <= rows_most;
+    return has_rate && recording.rows() <= resolution::rows_measured_anew_most;
 }
 
 bool for_each_replicate(const ReplicateOptions& options,
