@@ -87,9 +87,10 @@ std::shared_ptr<const Recording> shared(Recording recording) {
 // As much as one pass takes; `warnings` are told with it.
 Result<DiagnosisInput> read_for_one_pass(const RecordingInput& input,
                                          const std::vector<std::string>& warnings = {}) {
-    GYROLOG_TRY(Read read, read_samples(input, diagnosable_samples_max));
+    GYROLOG_TRY(Read read, read_samples(input, resolution::diagnosable_samples_max));
     if (read.is_long) {
-        read.samples.warnings.push_back(most_warning(read.samples, input.path, diagnosable_samples_max));
+        read.samples.warnings.push_back(
+            most_warning(read.samples, input.path, resolution::diagnosable_samples_max));
     }
     read.samples.warnings.insert(read.samples.warnings.end(), warnings.begin(), warnings.end());
     return DiagnosisInput{shared(std::move(read.samples)), nullptr};
@@ -123,7 +124,7 @@ Result<Means> read_means(RecordingInput input, std::size_t samples_per_row, cons
 
 Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& input) {
     if (input.samples_per_row > 1) { return read_for_one_pass(input); }
-    GYROLOG_TRY(Read beginning, read_samples(input, beginning_max));
+    GYROLOG_TRY(Read beginning, read_samples(input, resolution::beginning_max));
     if (!beginning.is_long) { return DiagnosisInput{shared(std::move(beginning.samples)), nullptr}; }
     if (moves(beginning.samples)) { return read_for_one_pass(input); }
     const double samples = std::max(2.0, std::round(beginning.samples.rate_hz * row_of_means_s));
@@ -133,20 +134,25 @@ Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& input) {
             input, {fmt::format("'{}' is looked at sample by sample only: {}", input.path, means.why_not)});
     }
     const std::size_t rows = slots(*means.rows);
-    if (rows * means.rows->samples_per_row <= diagnosable_samples_max) { return read_for_one_pass(input); }
-    if (rows > means_max) { means.rows = shared(means_of(*means.rows, (rows + means_max - 1) / means_max)); }
+    if (rows * means.rows->samples_per_row <= resolution::diagnosable_samples_max) {
+        return read_for_one_pass(input);
+    }
+    if (rows > resolution::means_max) {
+        means.rows =
+            shared(means_of(*means.rows, (rows + resolution::means_max - 1) / resolution::means_max));
+    }
     return DiagnosisInput{shared(std::move(beginning.samples)), std::move(means.rows)};
 }
 
 Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& input, const DiagnosisInput& like) {
     if (like.means == nullptr) { return read_for_one_pass(input); }
-    GYROLOG_TRY(Read beginning, read_samples(input, beginning_max));
+    GYROLOG_TRY(Read beginning, read_samples(input, resolution::beginning_max));
     GYROLOG_TRY(Means means, read_means(input, like.means->samples_per_row, beginning.samples));
     if (means.rows == nullptr) {
         beginning.samples.warnings.push_back(beginning_warning(beginning.samples, input.path, means.why_not));
-    } else if (slots(*means.rows) > means_max) {
-        means.rows = shared(first_slots(*means.rows, means_max));
-        beginning.samples.warnings.push_back(most_warning(*means.rows, input.path, means_max));
+    } else if (slots(*means.rows) > resolution::means_max) {
+        means.rows = shared(first_slots(*means.rows, resolution::means_max));
+        beginning.samples.warnings.push_back(most_warning(*means.rows, input.path, resolution::means_max));
     }
     return DiagnosisInput{shared(std::move(beginning.samples)), std::move(means.rows)};
 }

@@ -5,19 +5,27 @@
 #include <span>
 #include <vector>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/likelihood/spectral_bins.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
+#include "analysis/numerics/square.hpp"
+
+namespace gyrolog::resolution {
+
+// Over which a true motion without jerk is a straight line.
+constexpr double half_window_s = 0.25;
+// The widest window, of up to this many times the narrowest, in which there is nothing but noise about a
+// line.
+constexpr std::size_t widest_window = 16;
+constexpr std::size_t rows_to_transform = 256;
+constexpr std::size_t block_samples_smoothed = 64;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
 namespace {
-
-// Over which a true motion without jerk is a straight line.
-constexpr double half_window_s = 0.25;
-// The scatter about a line through noise alone, from some fifty samples, is rarely this much larger than it
-// is.
-constexpr double margin = 1.6;
 
 struct Line {
     double value;           // in the middle
@@ -87,18 +95,13 @@ double smooth_line(const std::vector<double>& values, std::size_t first, std::si
 // A table at rest turns at no rate at all, not at what is left of the noise: a sensor that does not follow
 // that rest of the noise would seem to have a dead zone.
 bool at_rest(const Line& line, double noise_variance) {
-    constexpr double sigmas_square = 9.0;
-    return line.value * line.value <= sigmas_square * noise_variance * line.value_variance &&
-           line.slope * line.slope <= sigmas_square * noise_variance * line.slope_variance;
+    return line.value * line.value <= square(decisions.seen_sigma) * noise_variance * line.value_variance &&
+           line.slope * line.slope <= square(decisions.seen_sigma) * noise_variance * line.slope_variance;
 }
-
-// The widest window, of up to this many times the narrowest, in which there is nothing but noise about a
-// line.
-constexpr std::size_t widest = 16;
 
 double denoised_rate(const std::vector<double>& values, const std::vector<double>& smooth,
                      const Segment& segment, std::size_t i, double noise_variance, std::size_t reach) {
-    for (std::size_t factor = widest; factor > 0; factor /= 2) {
+    for (std::size_t factor = resolution::widest_window; factor > 0; factor /= 2) {
         const std::size_t wanted = factor * reach;
         const std::size_t first = i - std::min(wanted, i - segment.first);
         const std::size_t end = std::min(i + wanted + 1, segment.first + segment.count);
@@ -106,20 +109,20 @@ double denoised_rate(const std::vector<double>& values, const std::vector<double
         if (count < 5.0) { return smooth[i]; }
         const Line line = line_through(values, first, end, i);
         if (!std::isfinite(line.variance)) { continue; }
-        const bool only_noise = line.variance <= noise_variance * (1.0 + 4.0 * std::sqrt(2.0 / count));
+        const bool only_noise =
+            line.variance <= noise_variance * (1.0 + decisions.certain_sigma * std::sqrt(2.0 / count));
         if (only_noise) {
             return at_rest(line, noise_variance) ? 0.0 : smooth_line(values, first, end, i, wanted);
         }
         if (factor == 1) {
-            const double kept = std::max(0.0, 1.0 - margin * noise_variance / line.variance);
+            const double kept = std::max(0.0, 1.0 - (1.0 + decisions.seen_sigma * std::sqrt(2.0 / count)) *
+                                                        noise_variance / line.variance);
             const double value = smooth_line(values, first, end, i, wanted);
             return value + kept * (smooth[i] - value);
         }
     }
     return smooth[i];
 }
-
-constexpr std::size_t rows_to_transform = 256;
 
 // Rows at either end of a segment over which it is faded for its spectrum. Cut off sharply, a strong slow
 // swing leaks into all frequencies.
@@ -158,9 +161,8 @@ void cut_noise(std::vector<double>& cosines, std::size_t end) {
 // rings there for what leaked and was cut.
 void take_over(std::span<const double> values, const std::vector<double>& smooth, double noise_variance,
                std::span<double> result) {
-    constexpr std::size_t block = 64;
-    for (std::size_t from = 0; from < smooth.size(); from += block) {
-        const std::size_t end = std::min(from + block, smooth.size());
+    for (std::size_t from = 0; from < smooth.size(); from += resolution::block_samples_smoothed) {
+        const std::size_t end = std::min(from + resolution::block_samples_smoothed, smooth.size());
         double squares = 0.0;
         for (std::size_t i = from; i < end; ++i) { squares += std::pow(values[i] - smooth[i], 2.0); }
         const auto count = static_cast<double>(end - from);
@@ -174,7 +176,7 @@ std::vector<double> smoothed(const std::vector<double>& values, const std::vecto
                              double noise_variance) {
     std::vector<double> result = values;
     for (const Segment& segment : segments) {
-        if (segment.count < rows_to_transform || !(noise_variance > 0.0)) { continue; }
+        if (segment.count < resolution::rows_to_transform || !(noise_variance > 0.0)) { continue; }
         const std::size_t length = fast_length(segment.count);
         CosineTransform transform(length);
         // The last rows that a fast length leaves over come from a second pass, aligned to the end.
@@ -209,7 +211,8 @@ std::vector<double> filtered(const std::vector<double>& values, const std::vecto
 std::shared_ptr<const RecordedWorld> without_reference_noise(const RecordedWorld& world,
                                                              double noise_sd_rad_s) {
     auto recording = std::make_shared<Recording>(world.recording());
-    const auto reach = static_cast<std::size_t>(std::max(4.0, half_window_s * recording->rate_hz));
+    const auto reach =
+        static_cast<std::size_t>(std::max(4.0, resolution::half_window_s * recording->rate_hz));
     for (Column& column : recording->columns) {
         if (column.name != "ref_x" && column.name != "ref_y" && column.name != "ref_z") { continue; }
         column.data = filtered(column.values(), recording->segments, noise_sd_rad_s * noise_sd_rad_s, reach);

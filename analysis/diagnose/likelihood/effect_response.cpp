@@ -29,7 +29,8 @@ std::array<std::vector<float>, 3> simulated_response(const Prediction& predictio
     const auto changed = noise_free_response(prediction, world, with);
     const auto unchanged =
         slow ? noise_free_response(prediction, without) : std::array<std::vector<float>, 3>{};
-    const std::size_t kept = slow ? std::min(slow_coefficients, prediction.length()) : prediction.length();
+    const std::size_t kept =
+        slow ? std::min(resolution::slow_coefficients, prediction.length()) : prediction.length();
     const TransformPool::Lease transform = prediction.transform();
     std::vector<double> work(prediction.length());
     std::array<std::vector<float>, 3> cosines;

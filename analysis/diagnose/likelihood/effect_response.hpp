@@ -9,8 +9,12 @@
 
 namespace gyrolog {
 
+namespace resolution {
+
 // A slow response keeps this many of the lowest coefficients.
 inline constexpr std::size_t slow_coefficients = 8192;
+
+}  // namespace resolution
 
 // The function returns the change that one entry of a model makes, by axis of the prediction and coefficient,
 // for the effect acting on all axes. A slow response does not depend on the rest of the model and is

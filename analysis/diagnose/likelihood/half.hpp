@@ -8,9 +8,13 @@
 
 namespace gyrolog {
 
-enum class Half { both, first, second };
+namespace resolution {
 
 inline constexpr std::size_t half_parts = 64;  // of the time, in turns
+
+}  // namespace resolution
+
+enum class Half { both, first, second };
 
 // Coefficients go in pairs: of a ramp, and of whatever else is odd about the middle, only odd coefficients
 // are not zero.
@@ -19,7 +23,7 @@ constexpr bool has_coefficient(Half half, std::size_t k) {
 }
 
 constexpr bool has_slot(Half half, std::size_t slot, std::size_t length) {
-    return half == Half::both || ((slot * half_parts / length) % 2 == 0) == (half == Half::first);
+    return half == Half::both || ((slot * resolution::half_parts / length) % 2 == 0) == (half == Half::first);
 }
 
 }  // namespace gyrolog

@@ -7,18 +7,23 @@
 
 #include "analysis/simulate/effect_axes.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr double window_s = 1.0;
+constexpr double quickest_motion_s = 0.08;
+constexpr int lags_beside = 60;    // of the lags on either side of the course
+constexpr int lag_jump_most = 36;  // from a window to the next: three long bursts
+constexpr double slope_most = 0.012;
+// Between whole lags the misfit is taken for a parabola: right to so much of a period at the end of the
+// record.
+constexpr double between_lags = 0.003;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
 
-constexpr double window_s = 1.0;
-constexpr double quickest_motion_s = 0.08;
-constexpr int reach = 60;      // of the lags on either side of the course
-constexpr int jump_most = 36;  // from a window to the next: three long bursts
-constexpr double rel_most = 0.012;
-// Between whole lags the misfit is taken for a parabola: right to so much of a period at the end of the
-// record.
-constexpr double between_lags = 0.003;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Of following the course: any change will do, but not without a reason.
@@ -42,7 +47,7 @@ std::vector<float> smoothed(const std::vector<float>& values, std::size_t width)
 double drift_variance(const Prediction& prediction, std::size_t axis) {
     double sum = 0.0;
     for (std::size_t i = 0; i < prediction.bins().size(); ++i) {
-        if (prediction.bins()[i].f_hz > 0.5 / window_s) { break; }
+        if (prediction.bins()[i].f_hz > 0.5 / resolution::window_s) { break; }
         sum += prediction.bins()[i].count() * prediction.parts(axis)[i].sum();
     }
     return sum * prediction.rate_hz() / static_cast<double>(prediction.length());
@@ -52,9 +57,10 @@ double drift_variance(const Prediction& prediction, std::size_t axis) {
 
 LagCourse::LagCourse(const Prediction& prediction, const Recording& recording)
     : length_(prediction.length()),
-      window_slots_(std::max<std::size_t>(16, static_cast<std::size_t>(window_s * prediction.rate_hz()))),
-      smooth_slots_(
-          std::max<std::size_t>(1, static_cast<std::size_t>(quickest_motion_s * prediction.rate_hz()))),
+      window_slots_(
+          std::max<std::size_t>(16, static_cast<std::size_t>(resolution::window_s * prediction.rate_hz()))),
+      smooth_slots_(std::max<std::size_t>(
+          1, static_cast<std::size_t>(resolution::quickest_motion_s * prediction.rate_hz()))),
       stride_(std::max<std::size_t>(1, smooth_slots_ / 2)) {
     const std::int64_t origin = prediction.world().recording().segments.front().first_index;
     present_.assign(length_, false);
@@ -146,28 +152,29 @@ double LagCourse::misfit_nats(std::size_t begin, std::size_t end, int lag) const
 }
 
 void LagCourse::follow() {
-    constexpr int states = 2 * reach + 1;
+    constexpr int states = 2 * resolution::lags_beside + 1;
     centre_.clear();
     nats_.clear();
     std::vector<double> score(states, infinity);
-    score[reach] = 0.0;
+    score[resolution::lags_beside] = 0.0;
     int centre = 0;
     for (std::size_t begin = 0; begin + window_slots_ / 2 < length_; begin += window_slots_) {
         const std::size_t end = std::min(begin + window_slots_, length_);
         const auto best = std::ranges::min_element(score);
-        const int moved = static_cast<int>(best - score.begin()) - reach;
+        const int moved = static_cast<int>(best - score.begin()) - resolution::lags_beside;
         const double least = *best;
         std::vector<double> next(states, infinity);
         std::vector<double> nats(states, 0.0);
         for (int j = 0; j < states; ++j) {
-            const int from_first = std::max(0, j + moved - jump_most);
-            const int from_last = std::min(states - 1, j + moved + jump_most);
+            const int from_first = std::max(0, j + moved - resolution::lag_jump_most);
+            const int from_last = std::min(states - 1, j + moved + resolution::lag_jump_most);
             for (int i = from_first; i <= from_last; ++i) {
                 const auto place = static_cast<std::size_t>(i);
                 next[static_cast<std::size_t>(j)] = std::min(
                     next[static_cast<std::size_t>(j)], score[place] - least + change_nats(j + moved - i));
             }
-            nats[static_cast<std::size_t>(j)] = misfit_nats(begin, end, centre + moved + j - reach);
+            nats[static_cast<std::size_t>(j)] =
+                misfit_nats(begin, end, centre + moved + j - resolution::lags_beside);
             next[static_cast<std::size_t>(j)] += nats[static_cast<std::size_t>(j)];
         }
         centre += moved;
@@ -179,7 +186,8 @@ void LagCourse::follow() {
 
 double LagCourse::nats_at(std::size_t window, double lag) const {
     const std::vector<double>& nats = nats_[window];
-    const double place = std::clamp(lag - static_cast<double>(centre_[window] - reach), 0.0, 2.0 * reach);
+    const double place = std::clamp(lag - static_cast<double>(centre_[window] - resolution::lags_beside), 0.0,
+                                    2.0 * resolution::lags_beside);
     const auto middle = static_cast<std::size_t>(
         std::clamp(std::floor(place + 0.5), 1.0, static_cast<double>(nats.size()) - 2.0));
     const double off = place - static_cast<double>(middle);
@@ -200,8 +208,9 @@ double LagCourse::slope_nats(double rel) const {
     for (std::size_t window = 0; window < nats_.size(); ++window) {
         // At the ends a lag may lead to where the motion was not recorded.
         const std::int64_t at = static_cast<std::int64_t>(window * window_slots_) + centre_[window];
-        if (at < reach ||
-            at + static_cast<std::int64_t>(window_slots_) + reach > static_cast<std::int64_t>(length_)) {
+        if (at < resolution::lags_beside ||
+            at + static_cast<std::int64_t>(window_slots_) + resolution::lags_beside >
+                static_cast<std::int64_t>(length_)) {
             continue;
         }
         nats += nats_at(window, rel * middle_slot(window));
@@ -213,7 +222,7 @@ LagSlope LagCourse::slope() const {
     const double step = 0.25 / static_cast<double>(length_);
     double best = 0.0;
     double least = slope_nats(0.0);
-    const int steps = static_cast<int>(rel_most / step);
+    const int steps = static_cast<int>(resolution::slope_most / step);
     for (int i = -steps; i <= steps; ++i) {
         const double nats = slope_nats(i * step);
         if (nats < least) {
@@ -234,24 +243,24 @@ LagSlope LagCourse::slope() const {
         slope.rel += std::clamp(0.5 * (less - more) / curvature, -1.0, 1.0) * width;
         width = std::min(width, slope.sd);
     }
-    slope.sd = std::hypot(slope.sd, between_lags / static_cast<double>(length_));
+    slope.sd = std::hypot(slope.sd, resolution::between_lags / static_cast<double>(length_));
     return slope;
 }
 
 std::vector<LagStep> LagCourse::steps() const {
-    constexpr int states = 2 * reach + 1;
+    constexpr int states = 2 * resolution::lags_beside + 1;
     const double change_costs = step_nats();
     std::vector<double> score(states, infinity);
     std::vector<std::vector<int>> came_from;  // by window and state: the lag before
     int centre = 0;
-    score[reach] = 0.0;
+    score[resolution::lags_beside] = 0.0;
     for (std::size_t window = 0; window < nats_.size(); ++window) {
         std::vector<double> next(states, infinity);
         std::vector<int> from(states, 0);
         for (int j = 0; j < states; ++j) {
-            const int lag = centre_[window] - reach + j;
-            for (int change = 0; change <= jump_most; ++change) {
-                const int i = lag - change - centre + reach;
+            const int lag = centre_[window] - resolution::lags_beside + j;
+            for (int change = 0; change <= resolution::lag_jump_most; ++change) {
+                const int i = lag - change - centre + resolution::lags_beside;
                 if (i < 0 || i >= states) { continue; }
                 const double cost = score[static_cast<std::size_t>(i)] + (change == 0 ? 0.0 : change_costs);
                 if (cost < next[static_cast<std::size_t>(j)]) {
@@ -268,9 +277,10 @@ std::vector<LagStep> LagCourse::steps() const {
     // No course of rising lags stays within reach of the best one.
     if (!std::isfinite(*std::ranges::min_element(score))) { return {}; }
     std::vector<LagStep> steps;
-    int lag = centre - reach + static_cast<int>(std::ranges::min_element(score) - score.begin());
+    int lag =
+        centre - resolution::lags_beside + static_cast<int>(std::ranges::min_element(score) - score.begin());
     for (std::size_t window = came_from.size(); window-- > 0;) {
-        const int place = lag - centre_[window] + reach;
+        const int place = lag - centre_[window] + resolution::lags_beside;
         const int before = came_from[window][static_cast<std::size_t>(place)];
         if (before != lag) { steps.push_back({window * window_slots_, lag - before}); }
         lag = before;

@@ -9,18 +9,22 @@
 #include "analysis/numerics/matrix_products.hpp"
 #include "analysis/numerics/pseudo_inverse.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // Of a response's weight, next to nothing even where all but a millionth of it is taken for an uncertain one.
 constexpr double weightless = 1e-11;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 void cut_tail(const Prediction& prediction, std::size_t axis, std::vector<float>& cosines) {
     const SpectralBins& bins = prediction.bins();
     BinSums weight = bin_sums(bins, cosines, cosines);
     for (std::size_t i = 0; i < bins.size(); ++i) { weight[i] /= prediction.parts(axis)[i].sum(); }
-    const double negligible = weightless * std::accumulate(weight.begin(), weight.end(), 0.0);
+    const double negligible = resolution::weightless * std::accumulate(weight.begin(), weight.end(), 0.0);
     std::size_t kept = bins.size();
     double beyond = 0.0;
     while (kept > 1 && (beyond += weight[kept - 1]) <= negligible) { --kept; }

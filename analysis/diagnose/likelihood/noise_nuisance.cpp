@@ -6,19 +6,18 @@
 #include <map>
 #include <string>
 
+#include "analysis/diagnose/decision_options.hpp"
+
+namespace gyrolog::resolution {
+
+// Of what is stated, a coefficient keeps its sign,
+constexpr double least_factor = 1e-3;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
-
-// A relative uncertainty as large as the coefficient itself, or larger, says no more than that.
-constexpr double sd_rel_max = 0.9;
-// Of what is stated, a coefficient keeps its sign,
-constexpr double least_factor = 1e-3;
-// and N most of itself: without white noise, Gauss-Markov noise would be a low-pass.
-constexpr double least_factor_of_N = 0.25;
-// and one of which hardly more than its size is known does not grow beyond that.
-constexpr double hardly_known_rel = 0.5;
-constexpr double most_factor = 4.0;
 
 double uncertainty(const SensorModel& model, std::size_t axis, const char* name) {
     const std::map<std::string, double>& own = model.axes[axis].sd_rel;
@@ -26,7 +25,7 @@ double uncertainty(const SensorModel& model, std::size_t axis, const char* name)
     const auto in_own = own.find(name);
     const auto in_all = all.find(name);
     const double sd = in_own != own.end() ? in_own->second : in_all != all.end() ? in_all->second : 0.0;
-    return std::min(sd, sd_rel_max);
+    return std::min(sd, decisions.unknown_sd_rel);
 }
 
 struct Terms {
@@ -82,9 +81,11 @@ NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralPar
         for (std::size_t j = 0; j < 3; ++j) {
             if (!(sd_rel[j] > 0.0)) { continue; }
             double& each = at[static_cast<Eigen::Index>(j)];
-            const double least = j == 0 ? least_factor_of_N : least_factor;
+            const double least = j == 0 ? 1.0 / decisions.noise_factor_most : resolution::least_factor;
             each = std::max(each, (least - 1.0) / sd_rel[j]);
-            if (sd_rel[j] >= hardly_known_rel) { each = std::min(each, (most_factor - 1.0) / sd_rel[j]); }
+            if (sd_rel[j] >= decisions.hardly_known_sd_rel) {
+                each = std::min(each, (decisions.noise_factor_most - 1.0) / sd_rel[j]);
+            }
         }
         return at;
     };

@@ -6,28 +6,28 @@
 #include <string>
 #include <utility>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/noise/noise_model.hpp"
 
-namespace gyrolog {
-
-namespace {
-
-// Two coefficients of an axis may go down; by chance they earn this in one recording of some hundred.
-constexpr double called_for_nats = 5.0;
-// From nothing to some three times the stated value.
-constexpr double free_sd_rel = 0.9;
-
-constexpr std::array<char, 3> names = {'N', 'B', 'K'};
-
-double& coefficient_of(NoiseCoefficients& noise, std::size_t index) {
-    return *std::array{&noise.N_rad_per_sqrt_s, &noise.B_rad_per_s, &noise.K_rad_per_s_sqrt_s}.at(index);
-}
+namespace gyrolog::resolution {
 
 // What a fit gave to another coefficient is looked for in the octaves of the recording: one of them is mostly
 // of each kind, or was before a filter cut it. Below this many octaves from the top nothing is mostly white.
 constexpr std::size_t white_octaves = 5;
 // Fewer may all be small by chance.
 constexpr double coefficients_least = 16.0;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
+
+constexpr std::array<char, 3> names = {'N', 'B', 'K'};
+
+double& coefficient_of(NoiseCoefficients& noise, std::size_t index) {
+    return *std::array{&noise.N_rad_per_sqrt_s, &noise.B_rad_per_s, &noise.K_rad_per_s_sqrt_s}.at(index);
+}
 
 struct Octave {
     double omega_rad_s = 0.0;  // in the middle
@@ -43,7 +43,7 @@ std::vector<Octave> seen_octaves(const Observation& observation, std::size_t axi
     double sum = 0.0;
     double count = 0.0;
     const auto close = [&] {
-        if (count >= coefficients_least) {
+        if (count >= resolution::coefficients_least) {
             octaves.push_back({2.0 * pi * std::sqrt(0.5) * end_hz, sum / count});
         }
         end_hz *= 0.5;
@@ -60,7 +60,7 @@ std::vector<Octave> seen_octaves(const Observation& observation, std::size_t axi
 
 double white_density(const std::vector<Octave>& octaves) {
     double most = 0.0;
-    for (std::size_t i = 0; i < std::min(octaves.size(), white_octaves); ++i) {
+    for (std::size_t i = 0; i < std::min(octaves.size(), resolution::white_octaves); ++i) {
         most = std::max(most, octaves[i].density);
     }
     return most;
@@ -97,14 +97,14 @@ bool needs_refit(const Observation& observation, std::size_t axis) {
     if (state_what_is_seen(model.axes[axis].noise, observation, axis)) {
         NoiseCoefficients stated = prediction.model().axes[axis].noise;
         for (std::size_t index = 0; index < names.size(); ++index) {
-            if (!(coefficient_of(stated, index) > 0.0)) { sd_rel.at(index) = free_sd_rel; }
+            if (!(coefficient_of(stated, index) > 0.0)) { sd_rel.at(index) = decisions.unknown_sd_rel; }
         }
         parts = prediction.with(model)->parts(axis);
     }
     const auto fit = [&] { return fit_nuisance(prediction.bins(), parts, seen.power, sd_rel); };
     const double kept_nats = fit().log_likelihood_nats;
     const std::array<double, 3> kept = sd_rel;
-    sd_rel[1] = sd_rel[2] = free_sd_rel;
+    sd_rel[1] = sd_rel[2] = decisions.unknown_sd_rel;
     NoiseNuisance freed = fit();
     for (const std::size_t index : {std::size_t{1}, std::size_t{2}}) {
         // More noise than stated has names of its own among the effects.
@@ -112,7 +112,7 @@ bool needs_refit(const Observation& observation, std::size_t axis) {
         sd_rel[index] = kept[index];
         freed = fit();
     }
-    return freed.log_likelihood_nats - kept_nats > called_for_nats;
+    return freed.log_likelihood_nats - kept_nats > decisions.seen_nats();
 }
 
 }  // namespace
@@ -126,7 +126,9 @@ std::vector<std::size_t> axes_to_refit(const Observation& observation) {
 SensorModel with_free_noise(SensorModel model, const Observation& seen,
                             const std::vector<std::size_t>& axes) {
     for (const std::size_t axis : axes) {
-        for (const char name : names) { model.axes[axis].sd_rel[std::string(1, name)] = free_sd_rel; }
+        for (const char name : names) {
+            model.axes[axis].sd_rel[std::string(1, name)] = decisions.unknown_sd_rel;
+        }
         static_cast<void>(state_what_is_seen(model.axes[axis].noise, seen, axis));
     }
     return model;

@@ -10,12 +10,19 @@
 #include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/random_purpose.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // In motion, of the recording.
 constexpr double unknown_start_s = 0.1;
+// How many samples on either side say what the level in a hole is: so many that what they have in common with
+// the stand-ins is slower than the white noise reaches.
+constexpr std::size_t level_samples = 256;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 // Calls take(slot, row) for every row on the grid.
 template <typename Take>
@@ -68,16 +75,12 @@ std::vector<Segment> placed_rows(const Prediction& prediction, const Recording& 
     return placed;
 }
 
-// How many samples on either side say what the level in a hole is: so many that what they have in common with
-// the stand-ins is slower than the white noise reaches.
-constexpr std::size_t level_samples = 256;
-
 double mean_of_present(const std::vector<float>& values, const std::vector<bool>& present, std::size_t from,
                        bool backwards) {
     double sum = 0.0;
     double count = 0.0;
-    const std::size_t reach = 2 * level_samples;
-    for (std::size_t i = 0; i < reach && count < static_cast<double>(level_samples); ++i) {
+    const std::size_t reach = 2 * resolution::level_samples;
+    for (std::size_t i = 0; i < reach && count < static_cast<double>(resolution::level_samples); ++i) {
         if (backwards ? i > from : from + i >= values.size()) { break; }
         const std::size_t slot = backwards ? from - i : from + i;
         if (!present[slot]) { continue; }
@@ -103,7 +106,7 @@ void fill_holes(std::vector<float>& values, const std::vector<bool>& present, do
         if (std::isnan(before)) { before = std::isnan(after) ? 0.0 : after; }
         if (std::isnan(after)) { after = before; }
         // Next to a short hole both levels are those of one place.
-        const bool is_short = end - begin <= level_samples;
+        const bool is_short = end - begin <= resolution::level_samples;
         for (std::size_t slot = begin; slot < end; ++slot) {
             const double share =
                 is_short ? 0.5 : static_cast<double>(slot - begin + 1) / static_cast<double>(end - begin + 1);
@@ -217,7 +220,7 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
     const TransformPool::Lease transform = prediction_->transform();
     for (const std::size_t axis : prediction_->axes()) { observe(axis, *transform); }
     // What moved before the recording began is not known, and a sensor that lags shows it.
-    const double unknown_s = prediction_->moves() ? unknown_start_s : 0.0;
+    const double unknown_s = prediction_->moves() ? resolution::unknown_start_s : 0.0;
     for (std::size_t slot = 0; slot < length; ++slot) {
         const bool known = static_cast<double>(slot) >= unknown_s * prediction_->rate_hz();
         present_[slot] = present_[slot] && known && has_slot(prediction_->half(), slot, length);

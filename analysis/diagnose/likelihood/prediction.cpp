@@ -10,6 +10,14 @@
 #include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 
+namespace gyrolog::resolution {
+
+// Over which the motion's change is taken.
+constexpr double time_step_s = 1e-3;
+constexpr double gain_step = 0.01;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
@@ -58,9 +66,6 @@ double stated(const std::map<std::string, double>& uncertainties, const char* na
     return found == uncertainties.end() ? otherwise : found->second;
 }
 
-// Over which the motion's change is taken.
-constexpr double time_step_s = 1e-3;
-
 SensorModel plain(const SensorModel& model) {
     SensorModel sensor;
     sensor.rate_hz = model.rate_hz;
@@ -108,9 +113,9 @@ std::optional<std::string> diagnosis_refusal(const Recording& recording) {
         return "has no angular rate of an axis x, y or z in a known scale: columns gx_dps, gy_dps, gz_dps "
                "(raw counts need a model with their lsb, and arrays or angles cannot be diagnosed)";
     }
-    if (recording.rows() < diagnosable_samples_min) {
+    if (recording.rows() < resolution::diagnosable_samples_min) {
         return "has " + std::to_string(recording.rows()) + " samples; a diagnosis needs at least " +
-               std::to_string(diagnosable_samples_min);
+               std::to_string(resolution::diagnosable_samples_min);
     }
     if (slots_of(recording) > 2 * recording.rows()) {
         return "has more missing samples than samples: the longest unbroken part has to be cut out first";
@@ -171,8 +176,8 @@ void Prediction::read_motion() {
     true_rate_rad_s_ = noise_free_response(*this, denoised, faultless(model_));
     SensorModel sooner = model_;
     SensorModel later = model_;
-    sooner.latency_s -= 0.5 * time_step_s;
-    later.latency_s += 0.5 * time_step_s;
+    sooner.latency_s -= 0.5 * resolution::time_step_s;
+    later.latency_s += 0.5 * resolution::time_step_s;
     response_change_rad_s2_ = noise_free_response(*this, denoised, sooner);
     const std::array<std::vector<float>, 3> delayed = noise_free_response(*this, denoised, later);
 
@@ -191,7 +196,7 @@ void Prediction::read_motion() {
     for (const std::size_t axis : axes_) {
         std::vector<float>& change = response_change_rad_s2_[axis];
         for (std::size_t slot = 0; slot < length_; ++slot) {
-            change[slot] = (change[slot] - delayed[axis][slot]) / static_cast<float>(time_step_s);
+            change[slot] = (change[slot] - delayed[axis][slot]) / static_cast<float>(resolution::time_step_s);
         }
         std::vector<UncertainResponse> uncertain;
         const auto take = [&](const std::vector<float>& values, double sd) {
@@ -212,14 +217,14 @@ void Prediction::read_motion() {
 
 // What one unit of the gains from one axis' rate would add to each axis.
 std::array<std::vector<float>, 3> Prediction::response_per_gain(std::size_t from) const {
-    constexpr double step = 0.01;
     SensorModel more = model_;
-    for (Vector3& row : more.M) { row[from] += step; }
+    for (Vector3& row : more.M) { row[from] += resolution::gain_step; }
     std::array<std::vector<float>, 3> per_gain = noise_free_response(*this, denoised_world(), more);
     for (const std::size_t axis : axes_) {
         for (std::size_t slot = 0; slot < length_; ++slot) {
             float& value = per_gain[axis][slot];
-            value = (value - denoised_response_rad_s_[axis][slot]) / static_cast<float>(step);
+            value =
+                (value - denoised_response_rad_s_[axis][slot]) / static_cast<float>(resolution::gain_step);
         }
     }
     return per_gain;

@@ -20,9 +20,13 @@
 
 namespace gyrolog {
 
+namespace resolution {
+
 inline constexpr std::size_t diagnosable_samples_min = 2048;
 // 24 h at 100 Hz; several copies of each axis are held at once. Longer ones: multiscale/long_diagnosis.hpp.
 inline constexpr std::size_t diagnosable_samples_max = 9'000'000;
+
+}  // namespace resolution
 
 // The function says why a recording cannot be diagnosed: no axis x, y or z, counts without a scale, too
 // short, more holes than samples. It returns nothing where the recording can.

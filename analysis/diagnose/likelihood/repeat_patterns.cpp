@@ -4,13 +4,17 @@
 #include <cmath>
 #include <cstdint>
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr int rounds_max = 200;
 constexpr double settled_nats = 1e-4;
 constexpr double first_eps = 0.01;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 bool contains(std::size_t pattern, std::size_t set) { return (pattern & set) == set; }
 
@@ -100,7 +104,7 @@ RepeatFit fit(const std::vector<PatternCounts>& blocks, std::size_t quantities, 
         all += count_all(counts);
     }
     RepeatFit best{eps, 0.0};
-    for (int round = 0; round < rounds_max; ++round) {
+    for (int round = 0; round < resolution::rounds_max; ++round) {
         double nats = 0.0;
         double stale = 0.0;
         for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -108,7 +112,7 @@ RepeatFit fit(const std::vector<PatternCounts>& blocks, std::size_t quantities, 
             nats += states[b].log_likelihood_nats;
             stale += states[b].stale;
         }
-        const bool settled = round > 0 && nats - best.log_likelihood_nats < settled_nats;
+        const bool settled = round > 0 && nats - best.log_likelihood_nats < resolution::settled_nats;
         best.log_likelihood_nats = nats;
         if (settled) { break; }
         if (eps_is_free && all > 0.0) { best.eps = stale / all; }
@@ -154,7 +158,7 @@ RepeatFit fit_chance(const std::vector<PatternCounts>& blocks, std::size_t quant
 }
 
 RepeatFit fit_repeats(const std::vector<PatternCounts>& blocks, std::size_t quantities, std::size_t set) {
-    return fit(blocks, quantities, set, first_eps, true);
+    return fit(blocks, quantities, set, resolution::first_eps, true);
 }
 
 }  // namespace gyrolog

@@ -12,10 +12,12 @@
 #include <vector>
 
 #include "analysis/recording/recording.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog {
 
-inline constexpr std::size_t repeat_quantities_max = 4;
+// The axes and the thermometer.
+inline constexpr std::size_t repeat_quantities_max = gyro_columns.size() + 1;
 inline constexpr std::size_t repeat_patterns = 1U << repeat_quantities_max;
 
 using PatternCounts = std::array<double, repeat_patterns>;

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr std::size_t single_bins = 48;
 // Afterwards a bin is this part of its frequency wide: 3 %, over which no density of interest bends.
 constexpr std::size_t bins_per_frequency = 32;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 std::size_t coefficients_of(Half half, std::size_t first, std::size_t end) {
     std::size_t count = 0;
@@ -23,8 +27,9 @@ SpectralBins spectral_bins(std::size_t length, double rate_hz, Half half) {
     SpectralBins bins;
     const double step_hz = rate_hz / (2.0 * static_cast<double>(length));
     for (std::size_t first = 1; first < length;) {
-        const std::size_t width =
-            first < single_bins ? 1 : std::max<std::size_t>(1, first / bins_per_frequency);
+        const std::size_t width = first < resolution::single_bins
+                                      ? 1
+                                      : std::max<std::size_t>(1, first / resolution::bins_per_frequency);
         const std::size_t end = std::min(length, first + width);
         const double f_hz = step_hz * std::sqrt(static_cast<double>(first) * static_cast<double>(end - 1));
         const std::size_t count = coefficients_of(half, first, end);

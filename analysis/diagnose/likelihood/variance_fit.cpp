@@ -3,22 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
+
+namespace gyrolog::resolution {
+
+// Blocks on either side whose mean variance is the level around one.
+constexpr std::size_t blocks_around = 8;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
-
-// Chance exceeds this many standard deviations in one axis of ten thousand.
-constexpr double certain_sigma = 4.0;
-// Blocks on either side whose mean variance is the level around one.
-constexpr std::size_t reach = 8;
 
 std::vector<double> level_around(const WhitenedBlocks& blocks) {
     std::vector<double> level;
     for (std::size_t block = 0; block < blocks.size(); ++block) {
         double weight = 0.0;
         double sum = 0.0;
-        for (std::size_t i = block < reach ? 0 : block - reach;
-             i < std::min(block + reach + 1, blocks.size()); ++i) {
+        for (std::size_t i = block < resolution::blocks_around ? 0 : block - resolution::blocks_around;
+             i < std::min(block + resolution::blocks_around + 1, blocks.size()); ++i) {
             weight += blocks.weight[i];
             sum += blocks.weight[i] * blocks.variance[i];
         }
@@ -88,7 +92,7 @@ double overdispersion(const WhitenedBlocks& blocks, std::span<const double> leve
     }
     if (count < 2.0) { return 1.0; }
     const double dispersion = sum / (count - 1.0);
-    return dispersion > 1.0 + certain_sigma * std::sqrt(2.0 / count) ? dispersion : 1.0;
+    return dispersion > 1.0 + decisions.certain_sigma * std::sqrt(2.0 / count) ? dispersion : 1.0;
 }
 
 double tails_beside(const WhitenedBlocks& blocks, const Observation& observation, std::size_t axis,
@@ -101,7 +105,7 @@ double tails_beside(const WhitenedBlocks& blocks, const Observation& observation
     double squares = 0.0;
     double fourths = 0.0;
     for (std::size_t i = 0; i < histogram.at.size(); ++i) {
-        if (histogram.at[i] > outlier_sigma) { continue; }
+        if (histogram.at[i] > decisions.outlier_sigma) { continue; }
         const double square = histogram.at[i] * histogram.at[i];
         samples += histogram.count[i];
         squares += histogram.count[i] * square;
@@ -109,7 +113,7 @@ double tails_beside(const WhitenedBlocks& blocks, const Observation& observation
     }
     if (!(squares > 0.0)) { return model_nu; }
     const double excess = fourths * samples / (squares * squares) - 3.0;
-    if (excess < certain_sigma * std::sqrt(24.0 / samples)) { return model_nu; }
+    if (excess < decisions.certain_sigma * std::sqrt(24.0 / samples)) { return model_nu; }
     // Student's t has the excess kurtosis 6 / (nu - 4).
     return 4.0 + 6.0 / excess;
 }

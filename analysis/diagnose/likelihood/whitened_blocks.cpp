@@ -3,18 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gyrolog {
+#include "analysis/diagnose/decision_options.hpp"
 
-namespace {
+namespace gyrolog::resolution {
 
 constexpr std::size_t blocks_most = 4096;
 constexpr std::size_t block_least = 64;
-constexpr std::size_t samples_least = 16;  // in a block that is judged
-constexpr std::size_t reach = 4;           // blocks on either side that tell what is usual
+constexpr std::size_t samples_least = 16;       // in a block that is judged
+constexpr std::size_t usual_blocks_beside = 4;  // blocks on either side that tell what is usual
 constexpr double bins_per_sigma = 64.0;
 constexpr std::size_t bin_count = 512;  // up to 8 sigma
 // Below this part of what the model expects there is no noise.
 constexpr double dead_level = 1e-3;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 // Calls take(value) for every sample of a block.
 template <typename Take>
@@ -48,7 +54,7 @@ Moments moments_of(const Observation& observation, std::size_t axis, std::size_t
         squares += w * w;
         moments.furthest = std::max(moments.furthest, std::fabs(w));
     });
-    if (moments.count < static_cast<double>(samples_least)) { return {}; }
+    if (moments.count < static_cast<double>(resolution::samples_least)) { return {}; }
     moments.mean = sum / moments.count;
     moments.variance = std::max(0.0, (squares - sum * moments.mean) / (moments.count - 1.0));
     return moments;
@@ -64,8 +70,9 @@ double median_of(std::vector<double>& values) {
 // Median variance of the blocks around one.
 double usual_variance(const WhitenedBlocks& blocks, std::size_t block) {
     std::vector<double> near;
-    for (std::size_t i = block < reach ? 0 : block - reach; i < std::min(block + reach + 1, blocks.size());
-         ++i) {
+    for (std::size_t i = block < resolution::usual_blocks_beside ? 0
+                                                                 : block - resolution::usual_blocks_beside;
+         i < std::min(block + resolution::usual_blocks_beside + 1, blocks.size()); ++i) {
         if (blocks.weight[i] > 0.0) { near.push_back(blocks.variance[i]); }
     }
     return median_of(near);
@@ -79,10 +86,10 @@ std::size_t end_of(const WhitenedBlocks& blocks, const Observation& observation,
 }  // namespace
 
 std::size_t WhitenedBlocks::length_for(std::size_t slots) {
-    return std::max(block_least, slots / blocks_most);
+    return std::max(resolution::block_least, slots / resolution::blocks_most);
 }
 
-bool WhitenedBlocks::has_noise() const { return level > dead_level && std::isfinite(level); }
+bool WhitenedBlocks::has_noise() const { return level > resolution::dead_level && std::isfinite(level); }
 
 WhitenedBlocks whitened_blocks(const Observation& observation, std::size_t axis) {
     const std::size_t slots = observation.prediction().length();
@@ -104,7 +111,7 @@ WhitenedBlocks whitened_blocks(const Observation& observation, std::size_t axis)
     }
     std::vector<std::pair<std::size_t, Moments>> mended;
     for (std::size_t block = 0; block < count; ++block) {
-        const double limit = outlier_sigma * std::sqrt(usual_variance(blocks, block));
+        const double limit = decisions.outlier_sigma * std::sqrt(usual_variance(blocks, block));
         // A first pass that any outlier fails.
         if (furthest[block] + std::fabs(blocks.mean[block]) <= limit || !(limit > 0.0)) { continue; }
         // A single large one moves the mean by its own part of the block.
@@ -164,9 +171,9 @@ double WhitenedHistogram::excess_kurtosis() const {
 WhitenedHistogram whitened_histogram(const WhitenedBlocks& blocks, const Observation& observation,
                                      std::size_t axis, const std::vector<double>& scale) {
     WhitenedHistogram histogram;
-    histogram.count.assign(bin_count, 0.0);
-    for (std::size_t i = 0; i < bin_count; ++i) {
-        histogram.at.push_back((static_cast<double>(i) + 0.5) / bins_per_sigma);
+    histogram.count.assign(resolution::bin_count, 0.0);
+    for (std::size_t i = 0; i < resolution::bin_count; ++i) {
+        histogram.at.push_back((static_cast<double>(i) + 0.5) / resolution::bins_per_sigma);
     }
     for (std::size_t block = 0; block < blocks.size(); ++block) {
         const double n = blocks.weight[block] + 1.0;
@@ -176,9 +183,9 @@ WhitenedHistogram whitened_histogram(const WhitenedBlocks& blocks, const Observa
         for_each_sample(observation, axis, block * blocks.length, end_of(blocks, observation, block),
                         [&](double w) {
                             const double off = std::fabs(w - blocks.mean[block]) * factor;
-                            const double place = off * bins_per_sigma;
+                            const double place = off * resolution::bins_per_sigma;
                             histogram.samples += 1.0;
-                            if (place < static_cast<double>(bin_count)) {
+                            if (place < static_cast<double>(resolution::bin_count)) {
                                 histogram.count[static_cast<std::size_t>(place)] += 1.0;
                             } else {
                                 histogram.at.push_back(off);

@@ -26,9 +26,6 @@ struct WhitenedBlocks {
     bool has_noise() const;
 };
 
-// Samples further out than this many of the neighbouring blocks' standard deviations count as outliers.
-inline constexpr double outlier_sigma = 6.0;
-
 WhitenedBlocks whitened_blocks(const Observation& observation, std::size_t axis);
 
 // The function returns the same blocks with the maximum likelihood estimates of the variance for samples of

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/noise_refit.hpp"
@@ -16,25 +17,17 @@
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
-namespace gyrolog {
-namespace {
+namespace gyrolog::resolution {
 
-// Of its gain in samples, what a slow cause has in means of them.
-constexpr double slow_share = 0.5;
-// Less than this in the spectra says nothing of how fast something is.
-constexpr double spectral_gain_min_nats = 2.0;
-// How well the means' white noise is said to be known: hardly, so that none of it is a cause.
-constexpr double white_sd_rel = 0.2;
 // Of the highest frequency: what is above is nearly white.
 constexpr double white_from = 0.25;
-// Worse than this, relative, and there are too few single samples in the beginning to tell of the others.
-constexpr double poorly_told_rel = 1.0 / 3.0;
-// A fast line's image moves by as much as its frequency does: as far as the sample clock may stray from the
-// beginning to the end.
-constexpr double clock_strays_rel = 2e-4;
-
 // Two threads' of a beginning.
-constexpr double simulations_bytes_most = 0.4e9;
+constexpr double beginning_bytes_most = 0.4e9;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+namespace {
 
 bool is_line(const std::string& effect) { return traits_of(effect).is_line; }
 bool is_single_samples(const std::string& effect) {
@@ -85,7 +78,7 @@ bool share_an_axis(const Cause& a, const Cause& b) {
 double seen_white_density(const Observation& observation, std::size_t axis) {
     const Prediction& prediction = observation.prediction();
     const std::vector<double>& power = observation.axis(axis).power;
-    const double from_hz = white_from * prediction.bin_frequencies_hz().back();
+    const double from_hz = resolution::white_from * prediction.bin_frequencies_hz().back();
     std::vector<double> white;
     for (std::size_t i = 0; i < power.size(); ++i) {
         if (prediction.bin_frequencies_hz()[i] < from_hz) { continue; }
@@ -110,7 +103,7 @@ public:
           options_(std::move(options)),
           holdout_means_(std::move(holdout_means)) {
         options_.false_alarms_most *= 0.5;
-        options_.simulations_bytes_most = simulations_bytes_most;
+        options_.simulations_bytes_most = resolution::beginning_bytes_most;
     }
 
     std::optional<Diagnosis> run() {
@@ -164,12 +157,12 @@ private:
         if (!shows_in_means(*find_effect(effect)->signature) || is_far_off(effect)) { return true; }
         if (is_line(effect)) {
             const double f_hz = cause.finding.entries.front().params.at("f_hz");
-            return std::norm(line_in_means(f_hz, rate_hz_, samples_)) < slow_share;
+            return std::norm(line_in_means(f_hz, rate_hz_, samples_)) < decisions.majority;
         }
         const double in_samples = spectral_gain_nats(recording_.beginning, cause, 1);
-        if (in_samples < spectral_gain_min_nats) { return false; }
+        if (in_samples < decisions.seen_nats()) { return false; }
         const auto means = std::make_shared<const Recording>(means_of(*recording_.beginning, samples_));
-        return spectral_gain_nats(means, cause, samples_) < slow_share * in_samples;
+        return spectral_gain_nats(means, cause, samples_) < decisions.majority * in_samples;
     }
 
     // Of one of the beginning's causes beside the others.
@@ -197,7 +190,9 @@ private:
         for (const Cause* cause : fast_) {
             const Finding& finding = cause->finding;
             if (is_line(finding.effect)) { continue; }
-            if (is_single_samples(finding.effect) && worst_sd_rel(finding) > poorly_told_rel) { continue; }
+            if (is_single_samples(finding.effect) && worst_sd_rel(finding) > decisions.seen_sd_rel()) {
+                continue;
+            }
             model = with_cause(std::move(model), finding);
         }
         model = model_of_means(std::move(model), samples_, rate_hz_);
@@ -206,7 +201,7 @@ private:
         const Observation seen(prediction, recording_.means, options_.seed);
         for (const std::size_t axis : prediction->axes()) {
             model.axes[axis].noise.N_rad_per_sqrt_s = std::sqrt(seen_white_density(seen, axis));
-            model.axes[axis].sd_rel["N"] = white_sd_rel;
+            model.axes[axis].sd_rel["N"] = decisions.means_white_sd_rel;
         }
         return model;
     }
@@ -217,7 +212,7 @@ private:
         const Finding& found = in_means.finding;
         const auto is_image_of = [&](const EffectModel& line) {
             const double f_hz = line.params.at("f_hz");
-            const double width_hz = 2.0 / beginning_.duration_s + clock_strays_rel * f_hz;
+            const double width_hz = 2.0 / beginning_.duration_s + decisions.clock_strays_rel * f_hz;
             const double image_hz = folded_hz(f_hz, recording_.means->rate_hz);
             return std::abs(image_hz - found.entries.front().params.at("f_hz")) < width_hz;
         };

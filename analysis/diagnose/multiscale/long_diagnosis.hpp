@@ -11,15 +11,19 @@
 
 namespace gyrolog {
 
+namespace resolution {
+
+// With these lengths a diagnosis takes less than 1 GB: 20 min at 1 kHz, and 24 h in means of 0.1 s.
+inline constexpr std::size_t beginning_max = 1'200'000;
+inline constexpr std::size_t means_max = 900'000;
+
+}  // namespace resolution
+
 // Both are of one recording at rest; each alone has no diagnosis_refusal().
 struct LongRecording {
     std::shared_ptr<const Recording> beginning;
     std::shared_ptr<const Recording> means;
 };
-
-// With these lengths a diagnosis takes less than 1 GB: 20 min at 1 kHz, and 24 h in means of 0.1 s.
-inline constexpr std::size_t beginning_max = 1'200'000;
-inline constexpr std::size_t means_max = 900'000;
 
 // A cause belongs to the pass that sees more of it: what keeps less than half of its spectral gain when the
 // beginning is seen in means, or does not show in them at all, is fast and stays as the beginning has it. The

@@ -39,7 +39,8 @@ std::vector<float> faded(const Prediction& prediction, std::size_t from, const D
     }
     prediction.transform()->forward(values);
     values[0] = 0.0;
-    const auto end = values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), slow_coefficients));
+    const auto end =
+        values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), resolution::slow_coefficients));
     return {values.begin(), end};
 }
 

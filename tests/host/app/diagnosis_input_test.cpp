@@ -17,8 +17,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr std::size_t rows_of_long = diagnosable_samples_max + 3000;
-constexpr std::size_t rows_of_one_pass = beginning_max + 3000;
+constexpr std::size_t rows_of_long = resolution::diagnosable_samples_max + 3000;
+constexpr std::size_t rows_of_one_pass = resolution::beginning_max + 3000;
 
 class DiagnosisInputTest : public testing::Test {
 protected:
@@ -52,7 +52,7 @@ TEST_F(DiagnosisInputTest, IsTheWholeOfWhatOneLookTakes) {
 TEST_F(DiagnosisInputTest, IsTheBeginningAndMeansOfAllOfALongRecordingAtRest) {
     const RecordingInput long_one = written("long.csv", "gx_dps", "", rows_of_long);
     const DiagnosisInput input = read(long_one);
-    EXPECT_EQ(input.samples->rows(), beginning_max);
+    EXPECT_EQ(input.samples->rows(), resolution::beginning_max);
     ASSERT_NE(input.means, nullptr);
     EXPECT_EQ(input.means->samples_per_row, 100U);
     EXPECT_EQ(input.means->rows(), rows_of_long / 100);
@@ -73,7 +73,7 @@ TEST_F(DiagnosisInputTest, IsTheBeginningAndMeansOfAllOfALongRecordingAtRest) {
 
 TEST_F(DiagnosisInputTest, IsTheBeginningOfALongRecordingInMotionWithAWarning) {
     const DiagnosisInput input = read(written("moving.csv", "gx_dps,ref_x_dps", ",1", rows_of_long));
-    EXPECT_EQ(input.samples->rows(), diagnosable_samples_max);
+    EXPECT_EQ(input.samples->rows(), resolution::diagnosable_samples_max);
     EXPECT_EQ(input.means, nullptr);
     EXPECT_THAT(input.samples->warnings, ElementsAre(HasSubstr("is looked at from its beginning to 2.5 h")));
 }
@@ -86,8 +86,8 @@ TEST_F(DiagnosisInputTest, CountsLinesWithoutAGyroAsSamples) {
         for (std::size_t i = 0; i < rows_of_long; ++i) { file << (i % 8 == 3 ? "nan\n" : "1\n"); }
     }
     const DiagnosisInput holes = read(input);
-    EXPECT_LT(holes.samples->rows(), beginning_max);
-    EXPECT_NEAR(holes.samples->duration_s(), 1e-3 * beginning_max, 0.1);
+    EXPECT_LT(holes.samples->rows(), resolution::beginning_max);
+    EXPECT_NEAR(holes.samples->duration_s(), 1e-3 * resolution::beginning_max, 0.1);
     ASSERT_NE(holes.means, nullptr);
     EXPECT_EQ(holes.means->rows(), rows_of_long / 100);
 }
