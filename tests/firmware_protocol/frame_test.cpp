@@ -1,7 +1,10 @@
+#include <csignal>
 #include <cstring>
 
 #include <gtest/gtest.h>
 #include <gyrolog_protocol/crc.h>
+#include <sys/time.h>
+#include <unistd.h>
 
 #include "wire.hpp"
 
@@ -59,7 +62,36 @@ WireBytes bytes_with_zeros(std::mt19937& random, std::size_t size, unsigned zero
     return bytes;
 }
 
-TEST(Cobs, EveryLengthOfABodyComesBackAndFitsItsBound) {
+// A decoder that has lost its place can follow a code of 0 for ever: a test of it ends as a failure after
+// this much processor time of its own. All of them together take less than a tenth of a second.
+class Cobs : public testing::Test {
+protected:
+    static constexpr int limit_s = 2;
+
+    Cobs() {
+        previous_ = std::signal(SIGVTALRM, fail);
+        set_limit(limit_s);
+    }
+    ~Cobs() override {
+        set_limit(0);
+        std::signal(SIGVTALRM, previous_);
+    }
+
+private:
+    static void set_limit(int seconds) {
+        const itimerval limit{{0, 0}, {seconds, 0}};
+        setitimer(ITIMER_VIRTUAL, &limit, nullptr);
+    }
+    static void fail(int) {
+        constexpr char message[] = "COBS: coding or decoding does not end\n";
+        const ssize_t written = write(STDERR_FILENO, message, sizeof message - 1);
+        _exit(written < 0 ? 2 : 1);
+    }
+
+    void (*previous_)(int) = SIG_DFL;
+};
+
+TEST_F(Cobs, EveryLengthOfABodyComesBackAndFitsItsBound) {
     std::mt19937 random(3);
     for (std::size_t size = 0; size <= GLP_FRAME_BODY_MAX; ++size) {
         for (const unsigned zero_every : {0U, 1U, 4U, 250U}) {
@@ -83,7 +115,7 @@ TEST(Cobs, EveryLengthOfABodyComesBackAndFitsItsBound) {
 }
 
 // Longer than any frame, and into no byte more than it takes, also in place.
-TEST(Cobs, LongBytesComeBackIntoAsMuchAsTheyTake) {
+TEST_F(Cobs, LongBytesComeBackIntoAsMuchAsTheyTake) {
     std::mt19937 random(6);
     for (const std::size_t size : {1023U, 1024U, 1025U, 5000U}) {
         for (const unsigned zero_every : {0U, 1U, 4U, 250U, 1000U}) {
@@ -99,7 +131,7 @@ TEST(Cobs, LongBytesComeBackIntoAsMuchAsTheyTake) {
     }
 }
 
-TEST(Cobs, NeverWritesPastTheCapacityAndSaysNoSpace) {
+TEST_F(Cobs, NeverWritesPastTheCapacityAndSaysNoSpace) {
     std::mt19937 random(4);
     for (const unsigned zero_every : {0U, 2U, 300U}) {
         const WireBytes plain = bytes_with_zeros(random, 600, zero_every);
@@ -117,7 +149,7 @@ TEST(Cobs, NeverWritesPastTheCapacityAndSaysNoSpace) {
     }
 }
 
-TEST(Cobs, NoTwoFormsDecodeToTheSameBytes) {
+TEST_F(Cobs, NoTwoFormsDecodeToTheSameBytes) {
     // Every form of up to four bytes out of an alphabet that reaches all cases but the full group, which the
     // vectors cover: what decodes is exactly what encodes back to it. 1296 = 6^4 choices of four letters.
     const WireBytes alphabet = {0x00, 0x01, 0x02, 0x03, 0x04, 0xFF};
