@@ -116,15 +116,16 @@ std::array<double, 3> converter_steps_rad_s(const SensorModel& model) {
     return {converter_step_rad_s(model, 0), converter_step_rad_s(model, 1), converter_step_rad_s(model, 2)};
 }
 
-std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& nominal) {
+Chain make_chain(const StageContext& nominal) {
     const StageContext context{nominal.model, true_rate_hz(nominal.model, nominal.rate_hz), nominal.seed,
                                nominal.world};
-    std::vector<std::unique_ptr<Stage>> stages;
+    Chain chain;
     const auto take = [&](std::unique_ptr<Stage> stage) {
-        if (stage) { stages.push_back(std::move(stage)); }
+        if (stage) { chain.stages.push_back(std::move(stage)); }
     };
     for (const ChainLink& link : links) {
         if (link.own != nullptr) {
+            if (link.own == make_world) { chain.clock_stages = chain.stages.size(); }
             take(link.own(context));
             continue;
         }
@@ -136,7 +137,7 @@ std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& nominal) {
             ++place;
         }
     }
-    return stages;
+    return chain;
 }
 
 }  // namespace gyrolog

@@ -32,8 +32,13 @@ double true_rate_hz(const SensorModel& model, double nominal_hz);
 double converter_step_rad_s(const SensorModel& model, std::size_t axis);
 std::array<double, 3> converter_steps_rad_s(const SensorModel& model);
 
+struct Chain {
+    std::vector<std::unique_ptr<Stage>> stages;
+    std::size_t clock_stages = 0;  // the first ones, which ask nothing of the world
+};
+
 // The stages that the context's model needs; it has no simulation_refusal(). They run at the true rate:
 // sample k of all of them is that of the time k / rate.
-std::vector<std::unique_ptr<Stage>> make_chain(const StageContext& nominal);
+Chain make_chain(const StageContext& nominal);
 
 }  // namespace gyrolog

@@ -1,4 +1,4 @@
-// A simulated gyro: the signal chain (chain.hpp), block by block, then its converter.
+// A simulated gyro: the signal chain (chain.hpp), block by block or sample by sample, then its converter.
 //
 // The same model, rate, world and seed give the same samples, bit for bit, whatever the machine.
 #pragma once
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 #include "analysis/simulate/stage.hpp"
 
@@ -25,18 +26,31 @@ public:
     SensorSimulator(const SensorModel& model, double rate_hz, std::uint64_t seed,
                     std::shared_ptr<const World> world = nullptr);
 
-    // The next block_samples samples; valid until the next call.
+    // What is left of the block: block_samples samples, unless single ones were taken. Valid until the next
+    // call.
     const SampleBlock& next_block();
 
+    // Sample by sample, for a world that is known only up to now. Neither allocates.
+    //
+    // When the next sample's stamp, world moment and loss are known: slot `begin` of the block. The world is
+    // not asked. A second call in a row changes nothing.
+    const SampleBlock& announce_sample();
+    // That sample; the world must know its moment.
+    const SampleBlock& next_sample();
+
 private:
+    void open(std::size_t samples);
+    void run_clock();
+    void run_rest();
     void convert();
 
     std::array<double, 3> lsb_rad_s_;
     double saturation_rad_s_;
     std::shared_ptr<const World> world_;
-    std::vector<std::unique_ptr<Stage>> stages_;
+    Chain chain_;
     std::unique_ptr<SampleBlock> block_;
     std::uint64_t next_index_ = 0;
+    bool announced_ = false;
 };
 
 }  // namespace gyrolog

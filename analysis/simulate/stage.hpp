@@ -2,7 +2,8 @@
 //
 // Invariants that every stage keeps:
 //   - Sample k of a stream is a function of the model, the rate, the world, the seed and k. Blocks follow
-//     each other without a hole from index 0; how they are asked for, and on which thread, changes nothing.
+//     each other without a hole from index 0; how they are asked for, whole or in parts down to one sample,
+//     and on which thread, changes nothing.
 //   - Memory does not grow with the number of samples.
 //   - Only portable arithmetic (portable_math.hpp) decides a sample: the same bits on every machine.
 #pragma once
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "analysis/simulate/counter_random.hpp"
 #include "analysis/simulate/sensor_model.hpp"
@@ -26,6 +28,14 @@ using BlockVectors = std::array<BlockValues, 3>;
 // Slot i is sample first_index + i of the sensor's clock. Times count from the nominal first sample.
 struct SampleBlock {
     std::uint64_t first_index = 0;  // a multiple of block_samples
+    // The slots that are to be made now: the whole block, or a part that follows on the one before.
+    std::size_t begin = 0;
+    std::size_t end = block_samples;
+
+    std::uint64_t first() const { return first_index + begin; }
+    std::span<double> slots(BlockValues& values) const {
+        return std::span(values).subspan(begin, end - begin);
+    }
 
     // Set by the clock.
     BlockValues stamp_s{};                   // what the time stamp says
@@ -41,6 +51,7 @@ struct SampleBlock {
     // What the sensor makes of it.
     BlockVectors rate_rad_s{};
     BlockVectors white_rad_s{};   // its white noise, apart from the rest until the sensor's bandwidth
+    Vector3 white_sd_rad_s{};     // the standard deviation of that noise in slot `begin`
     BlockValues temperature_C{};  // as the sensor reports it
     std::array<std::array<std::int16_t, block_samples>, 3>
         counts{};  // filled last; zero when the model has no lsb

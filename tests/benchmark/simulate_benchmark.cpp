@@ -20,6 +20,7 @@
 #include "analysis/simulate/converter.hpp"
 #include "analysis/simulate/flicker_noise.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
+#include "analysis/simulate/stepped_sensor.hpp"
 
 namespace gyrolog {
 namespace {
@@ -97,6 +98,22 @@ BENCHMARK_CAPTURE(simulate, flicker_noise, only_flicker());
 BENCHMARK_CAPTURE(simulate, random_walk, only_walk());
 BENCHMARK_CAPTURE(simulate, all_three, noise_alone());
 BENCHMARK_CAPTURE(simulate, typical_sensor, typical_mpu9250());
+
+// In another simulator's loop, a step and a sample each millisecond.
+void step(benchmark::State& state, const SensorModel& model) {
+    SteppedSensor sensor(model, rate_hz, 1);
+    WorldInstant now;
+    SteppedSample sample;
+    std::uint64_t steps = 0;
+    for (auto _ : state) {
+        now.t_s = static_cast<double>(steps++) / rate_hz;
+        if (sensor.step(now) != SteppedSensor::Step::taken) { state.SkipWithError("no step"); }
+        while (sensor.take(sample) == SteppedSensor::Take::sample) { benchmark::DoNotOptimize(sample); }
+    }
+}
+
+BENCHMARK_CAPTURE(step, no_noise, silent());
+BENCHMARK_CAPTURE(step, typical_sensor, typical_mpu9250());
 
 // Flicker noise as an autoregressive filter, N. J. Kasdin, Proc. IEEE 83 (1995) 802-827, eq. 116: a_0 = 1,
 // a_k = a_(k-1) (k - 1 - alpha/2) / k, alpha = 1, cut off after `poles`. MATLAB's fractalcoef makes these

@@ -8,5 +8,6 @@ namespace gyrolog {
 
 extern std::atomic<std::size_t> bytes_now;
 extern std::atomic<std::size_t> bytes_most;
+extern std::atomic<std::size_t> allocations;  // since the program began
 
 }  // namespace gyrolog

@@ -11,9 +11,9 @@ public:
 
     void apply(SampleBlock& block) override {
         BlockValues draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-        stream_.normals(block.first_index, draws);
+        stream_.normals(block.first(), block.slots(draws));
         BlockValues& jittered_s = in_stamps_ ? block.stamp_s : block.world_s;
-        for (std::size_t i = 0; i < block_samples; ++i) { jittered_s[i] += sd_s_ * draws[i]; }
+        for (std::size_t i = block.begin; i < block.end; ++i) { jittered_s[i] += sd_s_ * draws[i]; }
     }
 
 private:

@@ -12,7 +12,7 @@ public:
     NominalStamps(double rel, double period_s) : late_per_sample_s_(rel * period_s) {}
 
     void apply(SampleBlock& block) override {
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             block.stamp_s[i] += late_per_sample_s_ * static_cast<double>(block.first_index + i);
         }
     }

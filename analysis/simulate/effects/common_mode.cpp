@@ -18,9 +18,11 @@ public:
 
     void apply(SampleBlock& block) override {
         BlockValues draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-        stream_.normals(block.first_index, draws);
+        stream_.normals(block.first(), block.slots(draws));
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            double& sd_rad_s = block.white_sd_rad_s[axis];
+            sd_rad_s = std::sqrt(sd_rad_s * sd_rad_s + sd_rad_s_[axis] * sd_rad_s_[axis]);
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 block.white_rad_s[axis][i] += sd_rad_s_[axis] * draws[i];
             }
         }

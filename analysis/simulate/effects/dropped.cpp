@@ -17,7 +17,7 @@ public:
           in_stamps_(use["in_stamps"] != 0.0) {}
 
     void apply(SampleBlock& block) override {
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             if (in_stamps_) {
                 block.lost[i] = block.lost[i] || is_lost(taken_);
             } else {

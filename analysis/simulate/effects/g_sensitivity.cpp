@@ -15,7 +15,7 @@ public:
 
     void apply(SampleBlock& block) override {
         const BlockVectors& force = block.specific_force_m_s2;
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             const double rate_rad_s =
                 s_per_m_[0] * force[0][i] + s_per_m_[1] * force[1][i] + s_per_m_[2] * force[2][i];
             for (std::size_t axis = 0; axis < 3; ++axis) {

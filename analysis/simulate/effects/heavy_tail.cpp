@@ -23,7 +23,7 @@ public:
     void apply(SampleBlock& block) override {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!streams_[axis]) { continue; }
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 block.white_rad_s[axis][i] =
                     scale_rad_s_[axis] * student(*streams_[axis], block.first_index + i);
             }

@@ -9,7 +9,7 @@ public:
     explicit Latency(double delay_s) : delay_s_(delay_s) {}
 
     void apply(SampleBlock& block) override {
-        for (double& world_s : block.world_s) { world_s -= delay_s_; }
+        for (double& world_s : block.slots(block.world_s)) { world_s -= delay_s_; }
     }
 
 private:

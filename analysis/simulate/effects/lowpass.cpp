@@ -194,12 +194,6 @@ private:
     double slope_ = 0.0;
 };
 
-double root_mean_square(const BlockValues& values) {
-    double sum = 0.0;
-    for (const double value : values) { sum += value * value; }
-    return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 class Lowpass final : public Stage {
 public:
     explicit Lowpass(const EffectUse& use) {
@@ -218,8 +212,8 @@ public:
             if (!axes_[axis]) { continue; }
             BlockValues& rate = block.rate_rad_s[axis];
             BlockValues& white = block.white_rad_s[axis];
-            if (block.first_index == 0) { start(*axes_[axis], rate, white); }
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            if (block.first() == 0) { start(*axes_[axis], rate[0], block.white_sd_rad_s[axis]); }
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 rate[i] = axes_[axis]->signal(rate[i]) + axes_[axis]->noise(white[i]);
                 white[i] = 0.0;
             }
@@ -233,11 +227,9 @@ private:
         RandomStream draws;
     };
 
-    // Other effects may have scaled the white noise: its level is taken from the first block.
-    static void start(Axis& axis, const BlockValues& rate, const BlockValues& white) {
-        axis.signal.start(rate[0]);
-        axis.noise.start({axis.draws.normal(0), axis.draws.normal(1), axis.draws.normal(2)},
-                         root_mean_square(white));
+    static void start(Axis& axis, double first_rad_s, double white_sd_rad_s) {
+        axis.signal.start(first_rad_s);
+        axis.noise.start({axis.draws.normal(0), axis.draws.normal(1), axis.draws.normal(2)}, white_sd_rad_s);
     }
 
     std::array<std::optional<Axis>, 3> axes_;

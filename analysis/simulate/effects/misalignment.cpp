@@ -15,7 +15,7 @@ public:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             for (std::size_t from = 0; from < 3 && acts_[axis]; ++from) {
                 if (from == axis) { continue; }
-                for (std::size_t i = 0; i < block_samples; ++i) {
+                for (std::size_t i = block.begin; i < block.end; ++i) {
                     block.rate_rad_s[axis][i] += gain_[from] * block.true_rate_rad_s[from][i];
                 }
             }

@@ -19,7 +19,7 @@ public:
     void apply(SampleBlock& block) override {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!acts_[axis]) { continue; }
-            for (double& rate_rad_s : block.rate_rad_s[axis]) { rate_rad_s = map_(rate_rad_s); }
+            for (double& rate_rad_s : block.slots(block.rate_rad_s[axis])) { rate_rad_s = map_(rate_rad_s); }
         }
     }
 

@@ -10,16 +10,17 @@ public:
     SelfHeating(double rise_C, const Settling& settling) : rise_C_(rise_C), settling_(settling) {}
 
     void apply(SampleBlock& block) override {
-        double left = settling_.left_at(block.first_index);
-        for (double& die_C : block.die_C) {
-            die_C += rise_C_ * (1.0 - left);
-            left *= settling_.left_after_one();
+        if (block.begin == 0) { left_ = settling_.left_at(block.first_index); }
+        for (double& die_C : block.slots(block.die_C)) {
+            die_C += rise_C_ * (1.0 - left_);
+            left_ *= settling_.left_after_one();
         }
     }
 
 private:
     double rise_C_;
     Settling settling_;
+    double left_ = 1.0;
 };
 
 std::unique_ptr<Stage> make_self_heating(const EffectUse& use) {

@@ -18,7 +18,7 @@ public:
     }
 
     void apply(SampleBlock& block) override {
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             const double update =
                 std::floor(static_cast<double>(block.first_index + i) * updates_per_sample_ + phase_);
             if (update != update_) { shown_ = reading(block, i); }

@@ -17,7 +17,7 @@ public:
     }
 
     void apply(SampleBlock& block) override {
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             const double bias_rad_s = bias_(block.die_C[i]);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 if (acts_on_[axis]) { block.rate_rad_s[axis][i] += bias_rad_s; }

@@ -15,7 +15,7 @@ public:
     }
 
     void apply(SampleBlock& block) override {
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             const double sine = portable_sine_of_turns(f_hz_ * block.world_s[i] + phase_turns_);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 block.rate_rad_s[axis][i] += amplitude_rad_s_[axis] * sine;

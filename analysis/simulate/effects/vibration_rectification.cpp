@@ -19,7 +19,7 @@ public:
     }
 
     void apply(SampleBlock& block) override {
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             double rate_rad_s = -gravity_rad_s_;
             for (std::size_t along = 0; along < 3; ++along) {
                 const double force_g = block.specific_force_m_s2[along][i] / standard_gravity_m_s2;

@@ -9,12 +9,13 @@ namespace {
 struct Warmup {
     double a_rad_s;
     Settling settling;
+    double left_rad_s = 0.0;
 
-    void add(std::uint64_t first_index, std::span<double> rate_rad_s) const {
-        double left = a_rad_s * settling.left_at(first_index);
+    void add(std::uint64_t first_index, std::span<double> rate_rad_s) {
+        if (first_index % block_samples == 0) { left_rad_s = a_rad_s * settling.left_at(first_index); }
         for (double& rate : rate_rad_s) {
-            rate += left;
-            left *= settling.left_after_one();
+            rate += left_rad_s;
+            left_rad_s *= settling.left_after_one();
         }
     }
 };

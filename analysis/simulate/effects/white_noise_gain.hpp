@@ -20,7 +20,11 @@ public:
     }
 
     void apply(SampleBlock& block) override {
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        const double first_gain = gain_(std::as_const(block), block.begin);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (acts_on_[axis]) { block.white_sd_rad_s[axis] *= first_gain; }
+        }
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             const double gain = gain_(std::as_const(block), i);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 if (acts_on_[axis]) { block.white_rad_s[axis][i] *= gain; }

@@ -17,9 +17,9 @@ public:
 
     void apply(SampleBlock& block) override {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (double& rate : block.rate_rad_s[axis]) { rate += bias_rad_s_[axis]; }
+            for (double& rate : block.slots(block.rate_rad_s[axis])) { rate += bias_rad_s_[axis]; }
             if (!follows_temperature_) { continue; }
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 block.rate_rad_s[axis][i] += slope_rad_s_per_C_[axis] * (block.die_C[i] - reference_C_);
             }
         }

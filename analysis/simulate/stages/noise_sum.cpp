@@ -8,7 +8,7 @@ class NoiseSum final : public Stage {
 public:
     void apply(SampleBlock& block) override {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 block.rate_rad_s[axis][i] += block.white_rad_s[axis][i];
             }
         }

@@ -29,7 +29,9 @@ public:
 
     void apply(SampleBlock& block) override {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (processes_[axis]) { processes_[axis]->add(block.first_index, block.rate_rad_s[axis]); }
+            if (processes_[axis]) {
+                processes_[axis]->add(block.first(), block.slots(block.rate_rad_s[axis]));
+            }
         }
     }
 

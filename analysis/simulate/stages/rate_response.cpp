@@ -25,7 +25,7 @@ public:
         if (!block.moving) { return; }
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const Vector3& gain = gain_[axis];
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 block.rate_rad_s[axis][i] += gain[0] * block.true_rate_rad_s[0][i] +
                                              gain[1] * block.true_rate_rad_s[1][i] +
                                              gain[2] * block.true_rate_rad_s[2][i];

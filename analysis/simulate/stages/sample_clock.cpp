@@ -13,16 +13,16 @@ public:
           jitter_sd_s_(context.model.timestamp_jitter_s) {}
 
     void apply(SampleBlock& block) override {
-        block.lost.fill(false);
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             const double instant_s = static_cast<double>(block.first_index + i) * period_s_;
+            block.lost[i] = false;
             block.stamp_s[i] = instant_s;
             block.world_s[i] = instant_s - latency_s_;
         }
         if (jitter_sd_s_ == 0.0) { return; }
         BlockValues draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-        jitter_.normals(block.first_index, draws);
-        for (std::size_t i = 0; i < block_samples; ++i) { block.stamp_s[i] += jitter_sd_s_ * draws[i]; }
+        jitter_.normals(block.first(), block.slots(draws));
+        for (std::size_t i = block.begin; i < block.end; ++i) { block.stamp_s[i] += jitter_sd_s_ * draws[i]; }
     }
 
 private:

@@ -14,7 +14,7 @@ public:
     void apply(SampleBlock& block) override {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (per_C_[axis] == 0.0) { continue; }
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 block.rate_rad_s[axis][i] *= 1.0 + per_C_[axis] * (block.die_C[i] - reference_C_);
             }
         }

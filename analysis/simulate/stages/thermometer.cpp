@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "analysis/simulate/stages/stages.hpp"
 
 namespace gyrolog {
@@ -11,11 +13,11 @@ public:
 
     void apply(SampleBlock& block) override {
         if (noise_sd_C_ == 0.0) {
-            block.temperature_C = block.die_C;
+            std::ranges::copy(block.slots(block.die_C), block.slots(block.temperature_C).begin());
             return;
         }
-        noise_.normals(block.first_index, block.temperature_C);
-        for (std::size_t i = 0; i < block_samples; ++i) {
+        noise_.normals(block.first(), block.slots(block.temperature_C));
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             block.temperature_C[i] = block.die_C[i] + noise_sd_C_ * block.temperature_C[i];
         }
     }

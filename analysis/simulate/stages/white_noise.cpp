@@ -17,11 +17,12 @@ public:
     }
 
     void apply(SampleBlock& block) override {
+        block.white_sd_rad_s = sd_rad_s_;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (sd_rad_s_[axis] == 0.0) { continue; }
             BlockValues draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-            streams_[axis]->normals(block.first_index, draws);
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            streams_[axis]->normals(block.first(), block.slots(draws));
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 block.white_rad_s[axis][i] += sd_rad_s_[axis] * draws[i];
             }
         }

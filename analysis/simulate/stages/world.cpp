@@ -29,9 +29,9 @@ public:
         for (int more = 0; more < 3; ++more) { draw_knot(); }
     }
 
-    void fill(std::uint64_t first_index, BlockValues& die_C) {
+    void fill(std::uint64_t first_index, std::span<double> die_C) {
         std::size_t i = 0;
-        while (i < block_samples) {
+        while (i < die_C.size()) {
             const double begin = static_cast<double>(knot_) * samples_per_knot_;
             const double end = static_cast<double>(knot_ + 1) * samples_per_knot_;
             const double first = static_cast<double>(first_index + i);
@@ -41,9 +41,9 @@ public:
                 continue;
             }
             const double samples_left = std::ceil(end - first);
-            const std::size_t stop = samples_left < static_cast<double>(block_samples - i)
+            const std::size_t stop = samples_left < static_cast<double>(die_C.size() - i)
                                          ? i + static_cast<std::size_t>(samples_left)
-                                         : block_samples;
+                                         : die_C.size();
             const auto [before_C, here_C, next_C, after_C] = knots_C_;
             const double slope = (next_C - before_C) / 2.0;
             const double next_slope = (after_C - here_C) / 2.0;
@@ -74,8 +74,8 @@ private:
     std::array<double, 4> knots_C_{};  // knot_ - 1 to knot_ + 2, less the reference
 };
 
-std::array<std::span<double>, 3> spans_of(BlockVectors& vectors) {
-    return {vectors[0], vectors[1], vectors[2]};
+std::array<std::span<double>, 3> slots_of(const SampleBlock& block, BlockVectors& vectors) {
+    return {block.slots(vectors[0]), block.slots(vectors[1]), block.slots(vectors[2])};
 }
 
 class WorldAtTheSensor final : public Stage {
@@ -94,13 +94,13 @@ public:
 
     void apply(SampleBlock& block) override {
         if (world_ != nullptr && world_->has_temperature()) {
-            world_->temperature(block.world_s, block.die_C);
+            world_->temperature(block.slots(block.world_s), block.slots(block.die_C));
         } else {
-            temperature_.fill(block.first_index, block.die_C);
+            temperature_.fill(block.first(), block.slots(block.die_C));
         }
         if (world_ != nullptr && world_->moves()) {
             move(block);
-        } else if (block.first_index == 0) {
+        } else if (block.first() == 0) {
             stand_still(block);
         }
     }
@@ -111,33 +111,38 @@ private:
             block.true_rate_rad_s[axis].fill(0.0);
             block.specific_force_m_s2[axis].fill(axis == 2 ? standard_gravity_m_s2 : 0.0);
         }
-        if (orientation_) { turn(block.specific_force_m_s2); }
+        if (orientation_) {
+            for (std::size_t i = 0; i < block_samples; ++i) { turn(block.specific_force_m_s2, i); }
+        }
     }
 
     // The reference's readings hold its noise; what was there is a reading less a draw of that noise.
     void move(SampleBlock& block) {
         block.moving = true;
-        world_->motion(block.world_s, spans_of(block.true_rate_rad_s), spans_of(block.specific_force_m_s2));
+        world_->motion(block.slots(block.world_s), slots_of(block, block.true_rate_rad_s),
+                       slots_of(block, block.specific_force_m_s2));
         for (std::size_t axis = 0; axis < 3 && reference_sd_rad_s_ != 0.0; ++axis) {
             BlockValues draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-            reference_noise_[axis]->normals(block.first_index, draws);
-            for (std::size_t i = 0; i < block_samples; ++i) {
+            reference_noise_[axis]->normals(block.first(), block.slots(draws));
+            for (std::size_t i = block.begin; i < block.end; ++i) {
                 block.true_rate_rad_s[axis][i] -= reference_sd_rad_s_ * draws[i];
             }
         }
         if (orientation_) {
-            turn(block.true_rate_rad_s);
-            turn(block.specific_force_m_s2);
+            turn(block, block.true_rate_rad_s);
+            turn(block, block.specific_force_m_s2);
         }
     }
 
-    void turn(BlockVectors& vectors) const {
-        for (std::size_t i = 0; i < block_samples; ++i) {
-            const Vector3 body = {vectors[0][i], vectors[1][i], vectors[2][i]};
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const Vector3& row = (*orientation_)[axis];
-                vectors[axis][i] = row[0] * body[0] + row[1] * body[1] + row[2] * body[2];
-            }
+    void turn(const SampleBlock& block, BlockVectors& vectors) const {
+        for (std::size_t i = block.begin; i < block.end; ++i) { turn(vectors, i); }
+    }
+
+    void turn(BlockVectors& vectors, std::size_t i) const {
+        const Vector3 body = {vectors[0][i], vectors[1][i], vectors[2][i]};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Vector3& row = (*orientation_)[axis];
+            vectors[axis][i] = row[0] * body[0] + row[1] * body[1] + row[2] * body[2];
         }
     }
 
