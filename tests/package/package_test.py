@@ -13,7 +13,17 @@ import tempfile
 
 FILES = {
     "usr/bin/gyrolog": "-rwxr-xr-x",
+    "usr/include/gyrolog_sensor.h": "-rw-r--r--",
+    "usr/lib/cmake/gyrolog-sensor/gyrolog-sensor-config-version.cmake": "-rw-r--r--",
+    "usr/lib/cmake/gyrolog-sensor/gyrolog-sensor-config.cmake": "-rw-r--r--",
+    "usr/lib/cmake/gyrolog-sensor/gyrolog-sensor-config-release.cmake": "-rw-r--r--",
+    "usr/lib/libgyrolog-sensor.so": "lrwxrwxrwx",
+    "usr/lib/libgyrolog-sensor.so.0": "lrwxrwxrwx",
+    "usr/lib/libgyrolog-sensor.so.VERSION": "-rw-r--r--",
+    "usr/lib/pkgconfig/gyrolog-sensor.pc": "-rw-r--r--",
+    "usr/lib/python3/dist-packages/gyrolog_sensor.py": "-rw-r--r--",
     "usr/lib/udev/rules.d/60-gyrolog.rules": "-rw-r--r--",
+    "usr/share/lintian/overrides/gyrolog": "-rw-r--r--",
     "usr/share/gyrolog/gyrolog.lua": "-rw-r--r--",
     "usr/share/man/man1/gyrolog.1.gz": "-rw-r--r--",
     "usr/share/doc/gyrolog/README.md": "-rw-r--r--",
@@ -56,7 +66,8 @@ def main():
 
         listed = (line.split() for line in output_of("dpkg-deb", "--contents", str(package)).splitlines())
         found = {entry[5].removeprefix("./"): (entry[0], entry[1]) for entry in listed if not entry[0].startswith("d")}
-        assert found == {path: (mode, "root/root") for path, mode in FILES.items()}, found
+        expected = {path.replace("VERSION", version): (mode, "root/root") for path, mode in FILES.items()}
+        assert found == expected, found
 
         tree = pathlib.Path(folder, "tree")
         output_of("dpkg-deb", "--extract", str(package), str(tree))

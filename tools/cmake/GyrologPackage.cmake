@@ -25,6 +25,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# libgyrolog-sensor.so.0: told to other packages, and to the loader's cache.
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 # Figures are lettered with this font; no library asks for it.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS fonts-dejavu-core)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
@@ -44,6 +47,8 @@ gyrolog_gzip(${made}/changelog.Debian)
 install(TARGETS gyrolog)
 # Beside bin for any prefix: udev looks into /usr/lib and /usr/local/lib, never into an architecture's folder.
 install(FILES tools/60-gyrolog.rules DESTINATION lib/udev/rules.d)
+configure_file(tools/debian/lintian-overrides ${made}/lintian/gyrolog COPYONLY)
+install(FILES ${made}/lintian/gyrolog DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides)
 install(FILES tools/gyrolog.lua DESTINATION ${CMAKE_INSTALL_DATADIR}/gyrolog)
 install(FILES ${made}/gyrolog.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 set(documents ${CMAKE_INSTALL_DATADIR}/doc/gyrolog)
