@@ -6,9 +6,12 @@
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
+#include "host/base/file_output.hpp"
 #include "host/formats/export_format.hpp"
 #include "host/formats/model_json.hpp"
+#include "host/formats/simulators/simulator_format.hpp"
 #include "host/formats/stops_text.hpp"
 
 namespace gyrolog {
@@ -19,7 +22,39 @@ struct ExportOptions {
     std::string output;
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
+    std::string simulator;  // empty: by the output's ending
+    std::string horizon = "1h";
+    std::uint64_t seed = 1;
 };
+
+std::string known_simulators() {
+    std::string names;
+    for (const SimulatorFormat* format : simulator_formats()) {
+        names += (names.empty() ? "" : ", ") + std::string(format->name);
+    }
+    return names;
+}
+
+Status export_for_simulator(Console& console, const ExportOptions& options) {
+    const SimulatorFormat* format = find_simulator_format(options.simulator);
+    if (format == nullptr) {
+        return invalid_argument("--for: there is no simulator '" + options.simulator + "'; there are " +
+                                known_simulators());
+    }
+    if (!options.source.ends_with(".json")) {
+        return invalid_argument("--for needs a model (.json): `gyrolog analyze " + options.source +
+                                " --model MODEL.json` makes one of a recording");
+    }
+    GYROLOG_TRY(const double horizon_s, parse_duration_s(options.horizon));
+    GYROLOG_TRY(const ModelFile file, read_model_file(options.source, options.seed));
+    for (const std::string& note : file.notes) { console.err << "gyrolog export: " << note << '\n'; }
+    if (horizon_s * file.model.rate_hz < 1.0) {
+        return invalid_argument("--horizon: shorter than one sample of the model");
+    }
+    const std::string name = std::filesystem::path(options.source).filename().string();
+    const std::string text = simulator_text(*format, file.model, name, horizon_s);
+    return write_file(options.output, as_bytes(text));
+}
 
 std::string known_endings() {
     std::string endings;
@@ -79,6 +114,12 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
     if (const Status fine = check_output_paths(read, written); !fine.ok()) {
         return report_error(console, "export", fine.error());
     }
+    if (!options.simulator.empty()) {
+        const Status done = export_for_simulator(console, options);
+        if (!done.ok()) { return report_error(console, "export", done.error()); }
+        console.err << "written: " << options.output << '\n';
+        return ExitCode::ok;
+    }
     const ExportFormat* format = export_format_of(options.output);
     if (format == nullptr) {
         return report_error(
@@ -106,6 +147,18 @@ Action setup_export(CLI::App& app) {
            "gyroparams), .tuning.json (Kalman filter)")
         ->type_name("FILE")
         ->required();
+    CLI::Option* simulator =
+        app.add_option(
+               "--for", options->simulator,
+               "Write the model as this simulator's own file, whatever the ending: " + known_simulators())
+            ->type_name("NAME");
+    app.add_option("--horizon", options->horizon,
+                   "With --for: averaging times up to this count where noise can only be approximated")
+        ->type_name("TIME")
+        ->check(duration())
+        ->needs(simulator)
+        ->capture_default_str();
+    app.add_option("--seed", options->seed, "With --for and a data sheet: another unit")->needs(simulator);
     app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
         ->check(number_from_to(1e-4, 1e7, "Hz"));

@@ -1,0 +1,283 @@
+#!/usr/bin/env python3
+"""Writes a model for each simulator, reads the file again, makes the noise by the formula of the simulator's source
+(cited in the file's head), and holds its Allan deviation against the model's: the largest error is the stated one.
+
+    simulator_export_test.py GYROLOG [MODELS HORIZON_S...]
+
+No random numbers: a simulator's noise is linear in its draws, so that its response to one draw of each kind gives
+the expected Allan variance exactly.
+"""
+
+import ast
+import json
+import math
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "blind"))
+import numbers_or_skip  # noqa: E402, F401  it may start another interpreter
+
+import numpy as np  # noqa: E402
+
+RATE_HZ = 50.0
+DT = 1.0 / RATE_HZ
+TOLERANCE_DB = 0.2
+DEG = math.pi / 180.0
+
+
+def models():
+    """Deg/s. Each axis differs, so that a mix-up of axes shows."""
+    def model(N, B, K, gauss_markov=(), **more):
+        axes = {name: {"N": N * scale, "B": B * scale, "K": K * scale, "bias": bias}
+                for name, scale, bias in (("x", 1.0, 0.31), ("y", 1.3, -0.12), ("z", 0.8, 0.08))}
+        effects = [{"effect": "gauss_markov", "axes": ["x", "y", "z"], "params": {"sigma_dps": s, "tau_s": t}}
+                   for s, t in gauss_markov]
+        rest = {"full_scale_dps": 500.0, "saturation_dps": 500.0, "lsb_dps": 0.0, "M": np.eye(3).tolist(),
+                "latency_s": 0.0, "timestamp_jitter_s": 0.0, "sd_rel": {}, "sd_abs": {}, "ref_noise_dps": 0.0,
+                "acc_noise_g": 0.0, "temp_noise_C": 0.0}
+        return {"schema": "gyrolog-model/1", "rate_hz": RATE_HZ, "axes": axes, "effects": effects, **rest, **more}
+    yield "typical", model(0.005, 0.002, 1e-4, lsb_dps=1 / 65.5)
+    yield "flicker", model(0.002, 0.01, 0.0)
+    yield "walk", model(0.005, 0.0, 1e-3)
+    yield "white", model(0.005, 0.0, 0.0)
+    yield "gauss_markov", model(0.005, 0.0, 0.0, [(0.004, 30.0)])
+    yield "two_gauss_markov", model(0.005, 0.0, 0.0, [(0.01, 1.0), (0.01, 100.0)])
+    yield "flicker_and_walk", model(0.001, 0.003, 5e-4)
+    yield "all", model(0.003, 0.004, 3e-4, [(0.005, 20.0)])
+    yield "little_white", model(1e-4, 0.003, 0.0)
+    yield "fast_gauss_markov", model(0.001, 0.001, 1e-5, [(0.02, 0.5)])
+
+
+def model_variance(model, axis, tau, rounds):
+    one = {key: value * DEG for key, value in model["axes"][axis].items()}
+    lsb = 0.0 if rounds else model["lsb_dps"] * DEG
+    variance = (one["N"]**2 + lsb**2 / 12.0 / RATE_HZ) / tau
+    variance += 2.0 * math.log(2.0) / math.pi * one["B"]**2 + one["K"]**2 * tau / 3.0
+    for effect in model["effects"]:
+        sigma, T = effect["params"]["sigma_dps"] * DEG, effect["params"]["tau_s"]
+        x = tau / T
+        shape = x / 3.0 if x < 1e-3 else 1.0 / x - (3.0 - 4.0 * np.exp(-x) + np.exp(-2.0 * x)) / (2.0 * x * x)
+        variance += 2.0 * sigma**2 * shape
+    return variance
+
+
+# The simulators' formulas: white(draw) of a sample, and bias(bias, draw) of the next.
+
+
+def maybeck(density, walk, T):
+    """gz-sensors, the plugins of Gazebo classic, Pegasus."""
+    sd = math.sqrt(-walk * walk * T / 2.0 * (math.exp(-2.0 * DT / T) - 1.0)) if walk > 0.0 else 0.0
+    phi = math.exp(-DT / T)
+    return (lambda draw: density / math.sqrt(DT) * draw), (lambda bias, draw: phi * bias + sd * draw)
+
+
+def read_sdf(text):
+    for axis in "xyz":
+        noise = ElementTree.fromstring(text).find(f".//angular_velocity/{axis}/noise")
+        values = {child.tag: float(child.text) for child in noise}
+        walk, T = values.get("dynamic_bias_stddev", 0.0), values.get("dynamic_bias_correlation_time", 1.0)
+        yield values["mean"], *maybeck(values["stddev"] * math.sqrt(DT), walk, T)
+
+
+def read_plugin(text):
+    root = ElementTree.fromstring(text)
+    values = [float(root.find("gyroscope" + name).text) for name in ("NoiseDensity", "RandomWalk",
+                                                                     "BiasCorrelationTime")]
+    return [(None, *maybeck(*values))] * 3
+
+
+def assigned(text, name, names=None):
+    """The value that Python text gives a name."""
+    scope = dict(names or {})
+    exec(text, scope)
+    return scope[name]
+
+
+def read_pegasus(text):
+    config = assigned(text, "imu_config")
+    gyro = config["gyroscope"]
+    # The gyro's correlation time is not read there.
+    T = config["accelerometer"]["bias_correlation_time"]
+    return [(None, *maybeck(gyro["noise_density"], gyro["random_walk"], T))] * 3
+
+
+def per_step(sd, walk):
+    return (lambda draw: sd * draw), (lambda bias, draw: bias + walk * draw)
+
+
+def python_call(text, function):
+    """The named arguments of the one call of a function."""
+    call, = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)
+             and ast.unparse(node.func).endswith(function))
+    return {one.arg: one.value for one in call.keywords}
+
+
+def read_isaaclab(text):
+    given = python_call(text, "GaussianNoiseCfg")
+    mean, std = (ast.literal_eval(given[name].args[0]) for name in ("mean", "std"))
+    return [(mean[i], *per_step(std[i], 0.0)) for i in range(3)]
+
+
+def read_genesis(text):
+    given = python_call(text, "sensors.IMU")
+    noise, walk, bias = (ast.literal_eval(given["gyro_" + name]) for name in ("noise", "random_walk", "bias"))
+    return [(bias[i], *per_step(noise[i], walk[i])) for i in range(3)]
+
+
+def read_carla(text):
+    class Blueprint(dict):
+        def set_attribute(self, name, value):
+            assert isinstance(value, str)
+            self[name] = float(value)
+    blueprint = Blueprint()
+    assigned(text, "set_imu")(blueprint)
+    assert math.isclose(blueprint["sensor_tick"], DT, rel_tol=1e-8)
+    return [(blueprint["noise_gyro_bias_" + axis], *per_step(blueprint["noise_gyro_stddev_" + axis], 0.0))
+            for axis in "xyz"]
+
+
+def read_jmavsim(text):
+    sd = float(re.search(r"setNoise_Gyo\((.*)f\);", text).group(1))
+    return [(None, *per_step(sd, 0.0))] * 3
+
+
+def read_airsim(text):
+    imu = json.loads(text)["DefaultSensors"]["Imu"]
+    density = imu["AngularRandomWalk"] / math.sqrt(3600.0) * DEG
+    walk = imu["GyroBiasStability"] / 3600.0 * DEG / math.sqrt(imu["GyroBiasStabilityTau"])
+    step = math.sqrt(max(DT, 1e-3))
+    return [(None, *per_step(density / step, walk * step))] * 3
+
+
+def read_gnss_ins_sim(text):
+    numbers = text[text.index("imu_err = "):text.index("imu = ")]
+    error = assigned(numbers, "imu_err", {"np": np})
+    for i in range(3):
+        sd, T = error["gyro_b_stability"][i] * DEG / 3600.0, error["gyro_b_corr"][i]
+        a, b = 1.0 - DT / T, sd * math.sqrt(1.0 - math.exp(-2.0 * DT / T))
+        arw = error["gyro_arw"][i] * DEG / 60.0
+        yield (error["gyro_b"][i] * DEG / 3600.0, lambda draw, arw=arw: arw / math.sqrt(DT) * draw,
+               lambda bias, draw, a=a, b=b: a * bias + b * draw)
+
+
+def read_navego(text):
+    def row(name):
+        return [float(number) for number in re.search(rf"^{name} = \[(.*?)\];", text, re.M).group(1).split()]
+    assert row("imu.gb_dyn") == [0.0] * 3
+    return [(bias, *per_step(sd, walk * DT))
+            for bias, sd, walk in zip(row("gyro_bias"), row("imu.g_std"), row("imu.arrw"))]
+
+
+def read_mjcf(text):
+    root = ElementTree.fromstring(text)
+    gyro = root.find("sensor/gyro")
+    assert math.isclose(float(root.find("option").get("timestep")), DT, rel_tol=1e-8)
+    snippet = re.search(r"<!--\n(  import numpy.*?)-->", text, re.S).group(1)
+    keep, drive, bias, sd = (ast.literal_eval(found) for found in re.findall(r"np\.array\((\[.*?\])\)", snippet))
+    assert math.isclose(float(gyro.get("noise")), max(sd), rel_tol=1e-8)
+    compile("\n".join(line[2:] for line in snippet.splitlines()), "snippet", "exec")
+    return [(bias[i], lambda draw, i=i: sd[i] * draw,
+             lambda b, draw, i=i: keep[i] * b + drive[i] * draw) for i in range(3)]
+
+
+READERS = {"sdf": read_sdf, "px4-classic": read_plugin, "rotors": read_plugin, "pegasus": read_pegasus,
+           "isaaclab": read_isaaclab, "mjcf": read_mjcf, "airsim": read_airsim, "genesis": read_genesis,
+           "carla": read_carla, "jmavsim": read_jmavsim, "gnss-ins-sim": read_gnss_ins_sim, "navego": read_navego}
+ROUNDING = {"sdf", "genesis"}
+
+
+def simulated_variance(white, bias, m):
+    """Allan variances at m samples each, from the responses to one draw."""
+    n = 2 * max(m)
+    response = np.empty(n)
+    state = 0.0
+    for k in range(n):
+        state = bias(state, 1.0 if k == 0 else 0.0)
+        response[k] = state
+    kept = response[1] / response[0] if response[0] != 0.0 else 0.0
+    variances = []
+    for one in m:
+        weights = np.concatenate([np.full(one, -1.0), np.full(one, 1.0)]) / one
+        h = response[:2 * one]
+        size = 1 << (4 * one).bit_length()
+        # Draw j acts on the samples from j on: a correlation.
+        spectrum = np.fft.rfft(weights, size) * np.conj(np.fft.rfft(h, size))
+        of_draws = np.fft.irfft(spectrum, size)[:2 * one]
+        variance = np.sum(of_draws**2)
+        if 0.0 < kept < 1.0:  # of all draws before; those of a walk cancel
+            variance += of_draws[0]**2 * kept**2 / (1.0 - kept**2)
+        variances.append(0.5 * (variance + white(1.0)**2 * 2.0 / one))
+    return np.array(variances)
+
+
+def stated_errors(text):
+    head = text if not text.startswith("{") else " ".join(json.loads(text)["_gyrolog"])
+
+    def dB(words):
+        return 0.0 if words.startswith("none") else float(words.split()[0])
+    each = re.search(r"x (none|[\d.]+ dB)[^,]*, y (none|[\d.]+ dB)[^,]*, z (none|[\d.]+ dB)", head)
+    if each:
+        return [dB(words) for words in each.groups()]
+    return [dB(re.search(r"Allan deviation:\s+(?:#|//|%)?\s*(none|[\d.]+ dB)", head).group(1))]
+
+
+def check(name, simulator, model, horizon_s, text):
+    m = sorted({max(1, round(RATE_HZ * horizon_s * 2.0**(-k / 2.0))) for k in range(60)})
+    tau = np.array(m) * DT
+    worst = []
+    for axis, (bias, white, drift) in zip("xyz", READERS[simulator](text)):
+        if bias is not None:
+            assert math.isclose(bias, model["axes"][axis]["bias"] * DEG, rel_tol=1e-6), (simulator, bias)
+        ratio = simulated_variance(white, drift, m) / model_variance(model, axis, tau, simulator in ROUNDING)
+        worst.append(np.max(np.abs(10.0 * np.log10(ratio))))
+    stated = stated_errors(text)
+    true = worst if len(stated) == 3 else [max(worst)]
+    for said, found in zip(stated, true):
+        assert abs(said - found) < TOLERANCE_DB, f"{simulator}, {name}, {horizon_s} s: {said} dB stated, {found:.2f} true"
+    return max(true)
+
+
+def check_webots(text, model):
+    lsb = float(re.search(r"resolution (\S+)", text).group(1))
+    assert math.isclose(lsb, model["lsb_dps"] * DEG, rel_tol=1e-8)
+    ends = [float(number) for number in re.search(r"lookupTable \[ (.*) \]", text).group(1).replace(",", "").split()]
+    full = model["full_scale_dps"] * DEG
+    assert np.allclose(ends, [-full, -full, 0.0, full, full, 0.0], rtol=1e-8)
+    assert "no noise" in text
+
+
+def main():
+    program = sys.argv[1]
+    count = int(sys.argv[2]) if len(sys.argv) > 2 else 3
+    horizons = [float(one) for one in sys.argv[3:]] or [100.0]
+    done = 0
+    with tempfile.TemporaryDirectory() as folder:
+        path, out = pathlib.Path(folder, "a--model.json"), pathlib.Path(folder, "out")
+        for name, model in list(models())[:count]:
+            path.write_text(json.dumps(model))
+            for horizon_s in horizons:
+                for simulator in [*READERS, "webots"]:
+                    if simulator == "webots" and model["lsb_dps"] == 0.0:
+                        continue
+                    subprocess.run([program, "export", path, "-o", out, "--for", simulator, "--horizon",
+                                    f"{horizon_s:g}s"], check=True, capture_output=True)
+                    text = out.read_text()
+                    if simulator == "webots":
+                        check_webots(text, model)
+                    else:
+                        worst = check(name, simulator, model, horizon_s, text)
+                        print(f"{name:18} {horizon_s:6g} s {simulator:13} {worst:6.2f} dB")
+                    done += 1
+        refused = subprocess.run([program, "export", path, "-o", out, "--for", "nothing"], capture_output=True,
+                                 text=True)
+        assert refused.returncode == 2 or refused.returncode == 1, refused
+        assert "gnss-ins-sim" in refused.stderr, refused.stderr
+    assert done >= len(READERS) + 1, done
+
+
+if __name__ == "__main__":
+    main()
