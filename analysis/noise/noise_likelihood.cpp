@@ -18,8 +18,10 @@ void add_scaled(Matrix& sum, double factor, const Matrix& matrix) {
     for (std::size_t i = 0; i < values.size(); ++i) { values[i] += factor * matrix.values()[i]; }
 }
 
+}  // namespace
+
 // C^-1 with the ramp's direction taken out.
-struct Inverse {
+struct NoiseLikelihood::Inverse {
     CholeskyFactor factor;
     Vector ramp;               // C^-1 x
     double ramp_weight = 0.0;  // x' C^-1 x; 0 without a ramp
@@ -53,8 +55,6 @@ struct Inverse {
     // Of the ramp in what was measured; needs a ramp.
     double slope_of(std::span<const double> measured) const { return dot(ramp, measured) / ramp_weight; }
 };
-
-}  // namespace
 
 NoiseLikelihood::NoiseLikelihood(const ContrastPyramid& pyramid, bool free_ramp) : pyramid_(pyramid) {
     const double rate_hz = pyramid.rate_hz;

@@ -71,6 +71,7 @@ private:
         double ramp_square;  // its square for a ramp of slope 1
         bool counts = true;
     };
+    struct Inverse;
     struct Point;
     Point point_at(std::span<const double> squares) const;
     double weight_of(const Contrast& contrast) const;
