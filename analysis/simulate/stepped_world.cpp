@@ -31,11 +31,13 @@ void SteppedWorld::motion(std::span<const double> world_s, const std::array<std:
     for (std::size_t i = 0; i < world_s.size(); ++i) {
         const auto [before, after, share] = between(world_s[i]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto on_line = [&](const Vector3& from, const Vector3& to) {
-                return from[axis] + share * (to[axis] - from[axis]);
+            // By a parameter: clang 14 lets a lambda capture no structured binding.
+            const auto on_line = [axis](double part, const Vector3& from, const Vector3& to) {
+                return from[axis] + part * (to[axis] - from[axis]);
             };
-            rate_rad_s[axis][i] = on_line(before->rate_rad_s, after->rate_rad_s);
-            specific_force_m_s2[axis][i] = on_line(before->specific_force_m_s2, after->specific_force_m_s2);
+            rate_rad_s[axis][i] = on_line(share, before->rate_rad_s, after->rate_rad_s);
+            specific_force_m_s2[axis][i] =
+                on_line(share, before->specific_force_m_s2, after->specific_force_m_s2);
         }
     }
 }
