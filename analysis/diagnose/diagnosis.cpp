@@ -132,17 +132,24 @@ private:
             "part at rest");
     }
 
-    bool select(const Hypotheses& first) {
+    SelectionOptions selection_options() const {
         SelectionOptions options;
         options.evidence_min_nats = null_.evidence_min_nats;
         options.seed = options_.seed;
         options.threads = options_.threads;
         options.on_progress = progress("looking for causes", 0.6, 0.1);
-        std::optional<CauseSelection> found = select_causes(first, recording_, options);
+        return options;
+    }
+
+    bool take(std::optional<CauseSelection> found) {
         if (!found) { return false; }
         found_ = *std::move(found);
         found_.corrected = with_mean_of(*found_.last.observation, std::move(found_.corrected));
         return true;
+    }
+
+    bool select(const Hypotheses& first) {
+        return take(select_causes(first, recording_, selection_options()));
     }
 
     // Without the causes that close nothing on data that the fit did not use, one after the other; and no
@@ -152,7 +159,8 @@ private:
             if (!judge_what_is_left() || !measure_causes(first)) { return false; }
             const auto least = std::ranges::min_element(measured_->returning_nats);
             if (*least > 0.0 && measured_->named.value <= measured_->before.value) { break; }
-            leave_out(static_cast<std::size_t>(least - measured_->returning_nats.begin()));
+            const auto cause = static_cast<std::size_t>(least - measured_->returning_nats.begin());
+            if (!leave_out(cause, first)) { return false; }
         }
         if (found_.causes.empty()) {
             remainder_.reset();
@@ -266,16 +274,11 @@ private:
         return trial;
     }
 
-    void leave_out(std::size_t cause) {
-        const Finding& finding = found_.causes[cause].finding;
-        append_new(answer_.warnings,
-                   {finding.effect + " is left out: on data that the fit did not use the gap is no smaller "
-                                     "with it"});
-        SensorModel model = without_causes(std::move(found_.corrected), findings());
-        found_.causes.erase(found_.causes.begin() + static_cast<std::ptrdiff_t>(cause));
-        for (const FoundCause& left : found_.causes) { model = with_cause(std::move(model), left.finding); }
-        const Observation seen(prediction_->with(model), recording_, options_.seed);
-        found_.corrected = with_mean_of(seen, std::move(model));
+    bool leave_out(std::size_t cause, const Hypotheses& first) {
+        append_new(answer_.warnings, {found_.causes[cause].finding.effect +
+                                      " is left out: on data that the fit did not use the "
+                                      "gap is no smaller with it"});
+        return take(without_cause(std::move(found_), cause, first, recording_, selection_options()));
     }
 
     void describe_places() {

@@ -64,7 +64,7 @@ float window_limit(std::size_t axes) {
 
 double wilson_hilferty_limit(double degrees, double deviates) {
     const double part = 2.0 / (9.0 * degrees);
-    const double root = 1.0 - part + decisions.certain_sigma * std::sqrt(part);
+    const double root = 1.0 - part + deviates * std::sqrt(part);
     return degrees * root * root * root;
 }
 

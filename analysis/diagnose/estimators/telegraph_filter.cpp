@@ -139,7 +139,7 @@ double gauss_markov_log_likelihood(std::span<const double> averages, double step
     constexpr int mean = drift_size + 1;
     constexpr int size = drift_size + 2;
     using Vector = Eigen::Matrix<double, size, 1>;
-    using Matrix = Eigen::Matrix<double, size, size>;
+    using Square = Eigen::Matrix<double, size, size>;
     const Parts<drift_size> drift = parts_of(noise);
     const double variance = telegraph.variance();
     const double steps = step_s / telegraph.correlation_s();
@@ -147,7 +147,7 @@ double gauss_markov_log_likelihood(std::span<const double> averages, double step
     const double mean_of_value = lost / steps;
     const double mean_variance = variance * 2.0 / steps * (1.0 - mean_of_value);
 
-    Matrix innovation = Matrix::Zero();
+    Square innovation = Square::Zero();
     innovation.diagonal().head<drift_size>() = drift.innovation;
     innovation(value, value) = variance * lost * (2.0 - lost);
     innovation(mean, mean) = mean_variance - variance * mean_of_value * mean_of_value;
@@ -160,7 +160,7 @@ double gauss_markov_log_likelihood(std::span<const double> averages, double step
     kept[value] = 1.0 - lost;
 
     Vector state = Vector::Zero();
-    Matrix covariance = Matrix::Zero();
+    Square covariance = Square::Zero();
     covariance.diagonal().head<drift_size>() = drift.start;
     covariance(value, value) = variance;
     covariance(mean, mean) = mean_variance;

@@ -66,6 +66,23 @@ public:
         return result_of(std::move(latest));
     }
 
+    // `found` less one of its causes, the others fitted again.
+    std::optional<CauseSelection> run_without(CauseSelection found, std::size_t cause) {
+        model_ = std::move(found.without_causes);
+        for (const NoiseRefit& refit : found.noise_refits) {
+            if (std::ranges::count(free_axes_, refit.axis) == 0) { free_axes_.push_back(refit.axis); }
+        }
+        null_bias_ = std::move(found.null_bias);
+        causes_ = std::move(found.causes);
+        causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(cause));
+        keeps_effects_ = true;
+        forget_null_bias();
+        static_cast<void>(settle_responses());
+        if (!refit()) { return std::nullopt; }
+        static_cast<void>(settle_responses());
+        return result_of(with_causes());
+    }
+
 private:
     CauseSelection result_of(std::optional<Hypotheses> latest) {
         CauseSelection result;
@@ -378,7 +395,7 @@ private:
             const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
             if (is_of_codes(causes_[i].finding)) {
                 if (same != findings.end()) { causes_[i].finding = *same; }
-            } else if (rival_nats > own_nats + margin_nats && rival_nats >= least_nats) {
+            } else if (!keeps_effects_ && rival_nats > own_nats + margin_nats && rival_nats >= least_nats) {
                 causes_[i].finding = *rival;
             } else if (own_nats >= least_nats) {
                 causes_[i].finding = *same;
@@ -423,6 +440,7 @@ private:
     std::vector<std::size_t> free_axes_;
     NullBias null_bias_;
     int main_causes_ = 0;
+    bool keeps_effects_ = false;  // no cause gives way to a rival
 };
 
 }  // namespace
@@ -431,6 +449,12 @@ std::optional<CauseSelection> select_causes(const Hypotheses& first,
                                             const std::shared_ptr<const Recording>& recording,
                                             const SelectionOptions& options) {
     return ForwardSelection(first, recording, options).run();
+}
+
+std::optional<CauseSelection> without_cause(CauseSelection found, std::size_t cause, const Hypotheses& first,
+                                            const std::shared_ptr<const Recording>& recording,
+                                            const SelectionOptions& options) {
+    return ForwardSelection(first, recording, options).run_without(std::move(found), cause);
 }
 
 }  // namespace gyrolog

@@ -47,4 +47,12 @@ std::optional<CauseSelection> select_causes(const Hypotheses& first,
                                             const std::shared_ptr<const Recording>& recording,
                                             const SelectionOptions& options);
 
+// The function takes one of the causes out and fits the others again: what they were with it in the model,
+// they are not without it (a low-pass beside more white noise is half of an answer). One without evidence
+// then goes, too. `first` and `options` are those of the selection. The function returns no value when ended
+// early.
+std::optional<CauseSelection> without_cause(CauseSelection found, std::size_t cause, const Hypotheses& first,
+                                            const std::shared_ptr<const Recording>& recording,
+                                            const SelectionOptions& options);
+
 }  // namespace gyrolog
