@@ -242,7 +242,7 @@ def check(name, simulator, model, horizon_s, text):
 
 
 def check_webots(text, model):
-    lsb = float(re.search(r"resolution (\S+)", text).group(1))
+    lsb = float(re.search(r"^  resolution (\S+)", text, re.M).group(1))
     assert math.isclose(lsb, model["lsb_dps"] * DEG, rel_tol=1e-8)
     ends = [float(number) for number in re.search(r"lookupTable \[ (.*) \]", text).group(1).replace(",", "").split()]
     full = model["full_scale_dps"] * DEG
