@@ -29,9 +29,10 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 # Figures are lettered with this font; no library asks for it.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS fonts-dejavu-core)
+# Python only to import the module; the program does without it, but a module needs its interpreter (Debian policy).
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core, python3:any")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
-  ${CMAKE_SOURCE_DIR}/tools/debian/postinst ${CMAKE_SOURCE_DIR}/tools/debian/postrm)
+  ${CMAKE_SOURCE_DIR}/tools/debian/postinst ${CMAKE_SOURCE_DIR}/tools/debian/postrm ${CMAKE_SOURCE_DIR}/tools/debian/triggers)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 # gyrolog_gzip(FILE): FILE.gz, the same bytes at any time.
