@@ -73,7 +73,7 @@ TEST(Diagnosis, NamesAsManyEffectsAsThereAre) {
 TEST(Diagnosis, IsPartOfAnAnswerWhereSomethingElseIsLeft) {
     const SensorModel model = calibrated_sensor();
     const auto stepping =
-        recorded(with_effect(model, "bias_step", {{"at_s", 131.0}, {"step_dps", 0.05}}, {"y"}), 36000, 94);
+        recorded(with_effect(model, "bias_step", {{"at_s", 131.0}, {"step_dps", 0.06}}, {"y"}), 36000, 94);
     // Noise of z that comes and goes.
     Recording swelling = *stepping;
     for (Column& column : swelling.columns) {
