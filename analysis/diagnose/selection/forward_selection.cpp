@@ -33,6 +33,8 @@ constexpr double worth_settling_nats = 1000.0;
 // No cause that is dropped as needless explained so much.
 constexpr double lost_nats = 100.0;
 
+enum class Rivals { may_replace, stay_out };
+
 class ForwardSelection {
 public:
     ForwardSelection(const Hypotheses& first, std::shared_ptr<const Recording> recording,
@@ -75,10 +77,9 @@ public:
         null_bias_ = std::move(found.null_bias);
         causes_ = std::move(found.causes);
         causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(cause));
-        keeps_effects_ = true;
         forget_null_bias();
         static_cast<void>(settle_responses());
-        if (!refit()) { return std::nullopt; }
+        if (!refit(Rivals::stay_out)) { return std::nullopt; }
         static_cast<void>(settle_responses());
         return result_of(with_causes());
     }
@@ -382,7 +383,7 @@ private:
     }
 
     // Every cause with the others in the model; one that another effect does better by now gives way to it.
-    bool refit() {
+    bool refit(Rivals rivals = Rivals::may_replace) {
         for (std::size_t i = 0; i < causes_.size();) {
             const Hypotheses without = examine(first_.prediction->with(model_with_all_but(i)), recording_,
                                                options_.seed, options_.threads);
@@ -395,7 +396,8 @@ private:
             const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
             if (is_of_codes(causes_[i].finding)) {
                 if (same != findings.end()) { causes_[i].finding = *same; }
-            } else if (!keeps_effects_ && rival_nats > own_nats + margin_nats && rival_nats >= least_nats) {
+            } else if (rivals == Rivals::may_replace && rival_nats > own_nats + margin_nats &&
+                       rival_nats >= least_nats) {
                 causes_[i].finding = *rival;
             } else if (own_nats >= least_nats) {
                 causes_[i].finding = *same;
@@ -440,7 +442,6 @@ private:
     std::vector<std::size_t> free_axes_;
     NullBias null_bias_;
     int main_causes_ = 0;
-    bool keeps_effects_ = false;  // no cause gives way to a rival
 };
 
 }  // namespace

@@ -127,6 +127,49 @@ TEST(ForwardSelection, TakesTwoCausesApart) {
     EXPECT_LT(left->evidence_nats, 6.0);
 }
 
+// A low-pass that was fitted beside more white noise is another one without it.
+TEST(ForwardSelection, FitsACauseAgainWhereAnotherIsLeftOut) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel filtered = model;
+    filtered.effects.push_back({"lowpass", {"x"}, {{"fc_hz", 28.0}, {"order", 1.0}}, ""});
+    const auto recording = recorded(filtered, 30000, 31);
+    const Hypotheses first = examined(recording, model);
+    const Finding alone = of(first, "lowpass");
+    Finding beside_noise = alone;
+    beside_noise.entries.at(0).params["fc_hz"] = 12.0;
+    Finding more_noise = alone;
+    more_noise.effect = "arw_scale";
+    more_noise.entries = {{"arw_scale", {"x"}, {{"factor", 2.0}}, ""}};
+    CauseSelection both;
+    both.causes = {{beside_noise, {}}, {more_noise, {}}};
+    both.without_causes = model;
+    const std::optional<CauseSelection> without = without_cause(std::move(both), 1, first, recording, {});
+    ASSERT_TRUE(without);
+    ASSERT_EQ(without->causes.size(), 1U);
+    const double fc_hz = without->causes[0].finding.entries.at(0).params.at("fc_hz");
+    EXPECT_NEAR(fc_hz, alone.entries.at(0).params.at("fc_hz"), 0.01);
+    EXPECT_NEAR(fc_hz, 28.0, 2.0);
+    ASSERT_EQ(without->corrected.effects.size(), 1U);
+    EXPECT_EQ(without->corrected.effects[0].params.at("fc_hz"), fc_hz);
+}
+
+// One that the recording does not call for by itself goes, too.
+TEST(ForwardSelection, DropsACauseWithoutEvidenceWhereAnotherIsLeftOut) {
+    const SensorModel model = calibrated_sensor();
+    const auto recording = recorded(model, 30000, 32);
+    const Hypotheses first = examined(recording, model);
+    Finding nothing;
+    nothing.effect = "lowpass";
+    nothing.entries = {{"lowpass", {"x"}, {{"fc_hz", 28.0}, {"order", 1.0}}, ""}};
+    CauseSelection both;
+    both.causes = {{nothing, {}}, {nothing, {}}};
+    both.without_causes = model;
+    const std::optional<CauseSelection> without = without_cause(std::move(both), 1, first, recording, {});
+    ASSERT_TRUE(without);
+    EXPECT_TRUE(without->causes.empty());
+    EXPECT_TRUE(without->corrected.effects.empty());
+}
+
 // A random walk takes up both; only together they are worth more.
 TEST(ForwardSelection, TakesTelegraphNoiseOnARampForNoRandomWalk) {
     const SensorModel model = calibrated_sensor();
