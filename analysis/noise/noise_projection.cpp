@@ -4,41 +4,18 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/numerics/golden_section.hpp"
+
 namespace gyrolog {
 namespace {
 
 constexpr double octave_parts = 16.0;
+// Of the ranges that are searched. The least error is a kink, not a parabola: what a share is off, it is off.
+constexpr double log_odds_tolerance_rel = 1e-7;
+constexpr double log_correlation_tolerance_rel = 1e-4;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double dB(double variance_ratio) { return 10.0 * std::log10(variance_ratio); }
-
-// Where `f` is least between two places, to `tolerance` of their distance; f has one valley.
-template <typename Function>
-double valley(double from, double to, double tolerance, const Function& f) {
-    const double golden = (std::sqrt(5.0) - 1.0) / 2.0;
-    double low = from;
-    double high = to;
-    double left = high - golden * (high - low);
-    double right = low + golden * (high - low);
-    double at_left = f(left);
-    double at_right = f(right);
-    while (high - low > tolerance * (to - from)) {
-        if (at_left <= at_right) {
-            high = right;
-            right = left;
-            at_right = at_left;
-            left = high - golden * (high - low);
-            at_left = f(left);
-        } else {
-            low = left;
-            left = right;
-            at_left = at_right;
-            right = low + golden * (high - low);
-            at_right = f(right);
-        }
-    }
-    return at_left <= at_right ? left : right;
-}
 
 class Target {
 public:
@@ -98,8 +75,8 @@ Mixture best_mixture(const std::vector<double>& first, const std::vector<double>
     };
     // Sets where largest / smallest <= a number are cones: along the mixing share there is one valley.
     constexpr double far = 40.0;
-    const double at =
-        valley(-far, far, 1e-7, [&](double log_odds) { return judged(mixed(log_odds)).worst_dB; });
+    const double at = place_of_top([&](double log_odds) { return -judged(mixed(log_odds)).worst_dB; }, -far,
+                                   far, log_odds_tolerance_rel);
     const Mixture both = judged(mixed(at));
     const Mixture alone = judged({first_scale, 0.0, 0.0});
     return alone.worst_dB <= both.worst_dB ? alone : both;
@@ -123,8 +100,8 @@ NoiseProjection with_gauss_markov(const Target& target) {
     for (int i = 1; i <= net; ++i) {
         if (mixture_at(from + step * i).worst_dB < mixture_at(best).worst_dB) { best = from + step * i; }
     }
-    best = valley(best - step, best + step, 1e-4,
-                  [&](double log_correlation) { return mixture_at(log_correlation).worst_dB; });
+    best = place_of_top([&](double log_correlation) { return -mixture_at(log_correlation).worst_dB; },
+                        best - step, best + step, log_correlation_tolerance_rel);
     const Mixture found = mixture_at(best);
     NoiseProjection projection;
     projection.N_rad_per_sqrt_s = std::sqrt(found.first);

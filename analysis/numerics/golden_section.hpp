@@ -5,12 +5,11 @@
 
 namespace gyrolog {
 
-// Where `value` is largest between `from` and `to`, to a hundred thousandth of their distance; `value` has
-// one top there. What a likelihood loses by that is 1e-10 of what it falls by over the whole distance, were
-// it a parabola.
+// Where `value` is largest between `from` and `to`, to `tolerance_rel` of their distance; `value` has one top
+// there. What a likelihood loses by the default is 1e-10 of what it falls by over the whole distance, were it
+// a parabola.
 template <typename Function>
-double place_of_top(Function value, double from, double to) {
-    constexpr double tolerance_rel = 1e-5;
+double place_of_top(Function value, double from, double to, double tolerance_rel = 1e-5) {
     constexpr double kept = std::numbers::phi - 1.0;
     const double tolerance = tolerance_rel * (to - from);
     double left = to - kept * (to - from);
