@@ -2,8 +2,8 @@
 // Those of the judgement itself stand with it: DiagnosisOptions, NullJudgementOptions, RemainderOptions,
 // SelectionOptions, ShapeOptions, ProbabilityOptions.
 //
-// How finely or how far something is searched or computed is no decision: that is a `resolution`, which made
-// finer changes no answer, and stands in a namespace of that name where it is used.
+// How finely or how far something is searched or computed is no decision: that is a `resolution`, which is
+// meant to change no answer when made finer, and stands in a namespace of that name where it is used.
 #pragma once
 
 namespace gyrolog {

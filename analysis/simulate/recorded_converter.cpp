@@ -45,6 +45,7 @@ std::optional<RecordedConverter> recorded_converter(const Recording& recording) 
     for (const char* axis : axis_names) {
         const Column* column = recording.find(std::string("g") + axis);
         if (column == nullptr || column->unit != "rad/s" || converter.step_rad_s > 0.0) { continue; }
+        // Also a step so coarse that its error is no white noise, which converter_step() does not give.
         const auto* reals = std::get_if<std::vector<double>>(&column->data);
         const double step = std::abs(column->scale) * (reals != nullptr ? grid_step(*reals) : 1.0);
         converter = recorded_converter(*column, step, converter.full_scale_rad_s);
