@@ -17,6 +17,7 @@ import numpy as np
 import answer_form
 import evidence
 import generate
+import halves
 import judge
 import reliability
 import run
@@ -789,6 +790,54 @@ class Halves(unittest.TestCase):
             said = (figures["foreign"]["clear"]["unexplained"]["hits"], figures["foreign_misnamed"]["hits"],
                     figures["foreign_half_misnamed"]["hits"])
             self.assertEqual(said, (right, wrong, half), (truth_of, verdict, effect))
+
+
+class RealHalves(unittest.TestCase):
+    """The distance by which halves.py holds simulations against a recording."""
+
+    RATE_HZ, ROWS, SIMULATIONS = 100.0, 4096, 24
+
+    def measured(self, seed, scale=1.0, change=None):
+        rates_dps = scale * np.random.default_rng(seed).standard_normal((self.ROWS, 3))
+        return halves.measures(rates_dps if change is None else change(rates_dps), self.RATE_HZ)
+
+    def gap(self, recording, **of_simulations):
+        return halves.gap_squares(recording, [self.measured((7, k), **of_simulations)
+                                              for k in range(self.SIMULATIONS)])
+
+    def test_of_the_true_model_nothing_is_left(self):
+        totals = [halves.total(self.gap(self.measured((8, k)))) for k in range(40)]
+        self.assertLess(abs(np.mean(totals)), LIMIT * np.std(totals, ddof=1) / math.sqrt(len(totals)))
+
+    def test_noise_of_twice_the_size_is_six_decibels_off(self):
+        squares = self.gap(self.measured((8, 0), scale=2.0))
+        for family in ("density", "allan"):
+            self.assertAlmostEqual(math.sqrt(squares[family]), 20.0 * math.log10(2.0), delta=1.0)
+        self.assertGreater(squares["density"], 10.0 * abs(squares["autocorrelation"]))
+
+    def test_each_family_sees_what_it_is_for(self):
+        def repeated(x):
+            return np.where(np.arange(len(x))[:, None] % 10 == 9, np.roll(x, 1, axis=0), x)
+
+        def shared(x):
+            return x + x[:, :1]
+
+        def swelling(x):
+            return x * (1.0 + 0.8 * np.sin(2.0 * np.pi * np.arange(len(x))[:, None] / len(x)))
+
+        def drifting(x):
+            return x + np.linspace(-1.0, 1.0, len(x))[:, None]
+
+        def smooth(x):
+            return 0.5 * (x + np.roll(x, 1, axis=0))
+
+        def spiky(x):
+            return np.where(np.arange(len(x))[:, None] % 50 == 0, 8.0 * x, x)
+        for family, change in (("repeats", repeated), ("between_axes", shared), ("level", swelling),
+                               ("course", drifting), ("autocorrelation", smooth), ("tails", spiky)):
+            squares = self.gap(self.measured((8, 1), change=change))
+            none = self.gap(self.measured((8, 1)))
+            self.assertGreater(squares[family], max(4.0, 10.0 * abs(none[family])), family)
 
 
 if __name__ == "__main__":
