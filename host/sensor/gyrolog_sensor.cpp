@@ -87,6 +87,10 @@ std::unique_ptr<gyrolog_sensor> opened(const char* path, std::uint64_t seed, dou
         why = std::string(path) + ": " + *refusal;
         return nullptr;
     }
+    if (file->unstated.rate && rate_hz == 0.0) {
+        why = std::string(path) + ": rate_hz is missing: state it there, or give a rate";
+        return nullptr;
+    }
     const double used_hz = rate_hz == 0.0 ? model.rate_hz : rate_hz;
     if (!std::isfinite(used_hz) || used_hz <= 0.0) {
         why = "the rate is not above zero: give it in Hz, or 0 for the model's";

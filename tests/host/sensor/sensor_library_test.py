@@ -103,6 +103,10 @@ def main():
             fails_with("finite", gyro.step, 7.0, rate_rad_s=(np.inf, 0.0, 0.0))
             fails_with("temperature", gyro.step, 7.0, temperature_C=20.0)
         fails_with("closed", gyro.step, 8.0)
+        without_rate = {key: value for key, value in model().items() if key != "rate_hz"}
+        path.write_text(json.dumps(without_rate))
+        fails_with("rate_hz is missing", gyrolog_sensor.Sensor, path)
+        assert gyrolog_sensor.Sensor(path, rate_hz=50.0).rate_hz == 50.0
         path.write_text("{}")
         fails_with("schema", gyrolog_sensor.Sensor, path)
         fails_with("absent.json", gyrolog_sensor.Sensor, "absent.json")
