@@ -284,11 +284,12 @@ TEST_F(Capture, ZerosBehindTheEndAreNoFrames) {
 TEST_F(Capture, AnEndBeforeTheTimeIsToldByTheExitStatusAndTheFileIsWhole) {
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
         for (const bool limited : {true, false}) {
-            std::vector<std::string> command{
-                "capture", "--device", "sim:rate=100,realtime=1", "-o", folder.path("a.pcapng"), "--force"};
+            const std::string path = folder.path("a.pcapng");
+            std::filesystem::remove(path);
+            std::vector<std::string> command{"capture", "--device", "sim:rate=100,realtime=1", "-o", path};
             if (limited) { command.insert(command.end(), {"--duration", "1h"}); }
             const ProgramResult result =
-                run_gyrolog_and_signal(command, std::chrono::milliseconds(700), number);
+                run_gyrolog_and_signal(command, std::chrono::milliseconds(700), number, path);
             EXPECT_EQ(result.exit_code, limited ? 128 + number : 0) << result.err;
             EXPECT_EQ(result.err.find("before all that was asked for") != std::string::npos, limited)
                 << result.err;

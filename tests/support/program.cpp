@@ -1,5 +1,6 @@
 #include "tests/support/program.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -35,6 +36,15 @@ std::array<int, 2> make_pipe() {
     return ends;
 }
 
+bool is_begun(const std::filesystem::path& path) {
+    if (std::filesystem::exists(path)) { return true; }
+    const std::filesystem::directory_iterator folder(path.parent_path());
+    return std::any_of(begin(folder), end(folder), [&](const std::filesystem::directory_entry& entry) {
+        const std::string name = entry.path().filename();
+        return name.starts_with(path.filename().string() + '.') && name.ends_with(".part");
+    });
+}
+
 // Reads both pipes to their ends, sending the signal on the way.
 void collect(pid_t child, int out, int err, std::optional<SignalPlan> plan, ProgramResult& result) {
     const auto start = Clock::now();
@@ -44,7 +54,7 @@ void collect(pid_t child, int out, int err, std::optional<SignalPlan> plan, Prog
     std::size_t open_ends = ends.size();
     while (open_ends > 0) {
         if (poll(ends.data(), ends.size(), 20) < 0 && errno != EINTR) { break; }
-        if (plan && !plan->once_there.empty() && std::filesystem::exists(plan->once_there)) {
+        if (plan && !plan->once_there.empty() && is_begun(plan->once_there)) {
             plan->once_there.clear();
             counted_from = Clock::now();
         }

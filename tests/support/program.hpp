@@ -25,7 +25,8 @@ std::string gyrolog_path();
 pid_t start_program(const std::vector<std::string>& command, int out, int err);
 
 ProgramResult run_gyrolog(const std::vector<std::string>& arguments);
-// The same, but `signal` is sent after a while: from the start, or from when the file `once_there` exists.
+// The same, but `signal` is sent after a while: from the start, or from when the file `once_there` exists or
+// is being written under the name that it has until it is whole.
 ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,
                                      std::chrono::milliseconds after, int signal,
                                      const std::string& once_there = "");

@@ -96,7 +96,8 @@ TEST(TransferQueue, GivesBackWhatAStallHasFilled) {
         });
         EXPECT_EQ(seen, pushed);
         EXPECT_TRUE(queue.pop(milliseconds(0)).empty());
-        EXPECT_LT(resident_bytes(), before + capacity / 8);
+        // AddressSanitizer keeps a shadow of an eighth.
+        EXPECT_LT(resident_bytes(), before + capacity / 4);
     }
 }
 
