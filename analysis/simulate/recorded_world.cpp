@@ -126,23 +126,24 @@ void RecordedWorld::drop_empty(std::array<Track, 3>& tracks, const std::string& 
 
 void RecordedWorld::stand_still_where_long_unknown() {
     const double moment_rows = std::max(2.0, moment_s * recording_->rate_hz);
-    std::size_t most = 0;
+    std::vector<bool> unknown(recording_->rows(), false);
     for (Track& track : rate_rad_s_) {
-        std::size_t still = 0;
         for (std::size_t row = 0; row < track.size();) {
             std::size_t known = row;
             while (known < track.size() && !std::isfinite(track[known])) { ++known; }
             const std::size_t rows = known - row;
             if (static_cast<double>(rows) > moment_rows) {
-                std::fill_n(track.begin() + static_cast<std::ptrdiff_t>(row), rows, 0.0);
-                still += rows;
+                const auto first = static_cast<std::ptrdiff_t>(row);
+                std::fill_n(track.begin() + first, rows, 0.0);
+                std::fill_n(unknown.begin() + first, rows, true);
             }
             row = known + 1;
         }
-        most = std::max(most, still);
     }
-    if (most == 0) { return; }
-    warnings_.push_back("the reference rate is not known in " + std::to_string(most) + " of " +
+    const auto still = std::ranges::count(unknown, true);
+    if (still == 0) { return; }
+    is_long_unknown_ = std::move(unknown);
+    warnings_.push_back("the reference rate is not known in " + std::to_string(still) + " of " +
                         std::to_string(recording_->rows()) +
                         " samples for longer than a moment: taken as not turning there");
 }

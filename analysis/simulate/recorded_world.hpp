@@ -21,7 +21,7 @@ namespace gyrolog {
 // (NaN) for no more than 0.1 s (at least two rows), and in a hole of the recording, a straight line joins
 // what is known on either side, and the nearest value is held before the first and after the last; where it
 // is unknown for longer, the sensor is taken not to turn: one noisy value held would be a rotation that never
-// was.
+// was. What judges a sensor by such a world leaves those samples out first (known_motion.hpp).
 //
 // Specific force: ax ay az, likewise, but joined and held however long; without them gravity on z. The
 // accelerometer's noise is in it.
@@ -38,6 +38,10 @@ public:
     // What was odd about the columns and what was done about it, for the user.
     const std::vector<std::string>& warnings() const { return warnings_; }
     bool has_reference() const { return has_reference_; }
+    // One value a row, joined and held as above; empty for an axis without reference.
+    const std::vector<double>& rate_rad_s(std::size_t axis) const { return rate_rad_s_[axis]; }
+    // One value a row: the rate of an axis is unknown there for longer than it is joined. Empty: nowhere.
+    const std::vector<bool>& is_long_unknown() const { return is_long_unknown_; }
     bool has_specific_force() const { return has_specific_force_; }
 
     // With a reference, or an accelerometer.
@@ -70,6 +74,7 @@ private:
     std::shared_ptr<const Recording> recording_;
     std::vector<std::int64_t> segment_slot_;  // of each segment's first row, counted from the first row's
     std::array<Track, 3> rate_rad_s_;
+    std::vector<bool> is_long_unknown_;
     std::array<Track, 3> specific_force_m_s2_;
     std::vector<Knot> temperature_C_;  // smooth
     bool has_reference_ = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "analysis/diagnose/decision_options.hpp"
@@ -10,6 +11,7 @@
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/numerics/square.hpp"
+#include "analysis/simulate/sensor_model.hpp"
 
 namespace gyrolog::resolution {
 
@@ -213,11 +215,14 @@ std::shared_ptr<const RecordedWorld> without_reference_noise(const RecordedWorld
     auto recording = std::make_shared<Recording>(world.recording());
     const auto reach =
         static_cast<std::size_t>(std::max(4.0, resolution::half_window_s * recording->rate_hz));
-    for (Column& column : recording->columns) {
-        if (column.name != "ref_x" && column.name != "ref_y" && column.name != "ref_z") { continue; }
-        column.data = filtered(column.values(), recording->segments, noise_sd_rad_s * noise_sd_rad_s, reach);
-        column.scale = 1.0;
-        column.offset = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto column =
+            std::ranges::find(recording->columns, std::string("ref_") + axis_names[axis], &Column::name);
+        const std::vector<double>& known = world.rate_rad_s(axis);
+        if (column == recording->columns.end() || known.empty()) { continue; }
+        column->data = filtered(known, recording->segments, noise_sd_rad_s * noise_sd_rad_s, reach);
+        column->scale = 1.0;
+        column->offset = 0.0;
     }
     return std::make_shared<const RecordedWorld>(std::move(recording));
 }

@@ -397,6 +397,28 @@ TEST(DenoisedReference, OfSteadySwingsHasLittleNoiseBeyondThem) {
     EXPECT_LT(std::sqrt(sum / (end - first)), 1.2 * std::sqrt(kept) * model.ref_noise_rad_s);
 }
 
+// One value that is not known made the motion of its whole segment unknown.
+TEST(DenoisedReference, IsKnownBesideASampleThatIsNot) {
+    const SensorModel model = moving_sensor();
+    const auto recording = recorded(model, 24000, 39, world_without_rests());
+    Recording with_a_gap = *recording;
+    const auto column = std::ranges::find(with_a_gap.columns, std::string("ref_x"), &Column::name);
+    std::vector<double> values = column->values();
+    values[7000] = std::nan("");
+    column->data = std::move(values);
+    column->scale = 1.0;
+    const auto whole = without_reference_noise(RecordedWorld(recording), model.ref_noise_rad_s);
+    const auto gapped = without_reference_noise(
+        RecordedWorld(std::make_shared<const Recording>(std::move(with_a_gap))), model.ref_noise_rad_s);
+    const Column& expected = *whole->recording().find("ref_x");
+    const Column& seen = *gapped->recording().find("ref_x");
+    // What a straight line over two samples leaves of swings that bend by 192 rad/s^3.
+    constexpr double bend_rad_s = 0.5 * 192.0 * 0.01 * 0.01;
+    for (std::size_t row = 0; row < expected.size(); ++row) {
+        ASSERT_NEAR(seen.value(row), expected.value(row), bend_rad_s) << row;
+    }
+}
+
 TEST(DenoisedReference, HasNoNoiseAtRestAndTheWholeMotionOtherwise) {
     const SensorModel model = moving_sensor();
     const auto recording = recorded(model, 24000, 34, world_with_rests());
