@@ -116,6 +116,37 @@ Recording means_of(const Recording& recording, std::size_t samples) {
     return means;
 }
 
+Recording rows_where(const Recording& recording, const std::vector<bool>& is_kept) {
+    const auto kept_of = [&](const auto& values) {
+        std::decay_t<decltype(values)> kept;
+        for (std::size_t row = 0; row < values.size(); ++row) {
+            if (is_kept[row]) { kept.push_back(values[row]); }
+        }
+        return kept;
+    };
+    Recording some = recording;
+    for (Column& column : some.columns) {
+        std::visit([&](auto& values) { values = kept_of(values); }, column.data);
+    }
+    some.t_s = kept_of(recording.t_s);
+    some.segments.clear();
+    std::size_t rows = 0;
+    for (const Segment& segment : recording.segments) {
+        bool follows = false;
+        for (std::size_t i = 0; i < segment.count; ++i) {
+            const bool kept = is_kept[segment.first + i];
+            if (kept && !follows) {
+                some.segments.push_back({rows, 0, segment.first_index + static_cast<std::int64_t>(i)});
+            }
+            follows = kept;
+            if (!kept) { continue; }
+            ++some.segments.back().count;
+            ++rows;
+        }
+    }
+    return some;
+}
+
 Recording first_rows(Recording recording, std::size_t rows) {
     if (rows >= recording.rows()) { return recording; }
     for (Column& column : recording.columns) {

@@ -92,6 +92,10 @@ struct Recording {
 // is missing the row is; causes of dropouts are as they were. No stamps are kept.
 Recording means_of(const Recording& recording, std::size_t samples);
 
+// The rows that are kept, on the grid as it was; `is_kept` has one value a row. The others are missing
+// without being dropouts: stamps and causes stay as they were.
+Recording rows_where(const Recording& recording, const std::vector<bool>& is_kept);
+
 // The recording as if it had ended after `rows`, at least one; whole if it has no more.
 Recording first_rows(Recording recording, std::size_t rows);
 

@@ -9,6 +9,7 @@
 
 #include "analysis/compare/comparison.hpp"
 #include "analysis/plot/comparison_figure.hpp"
+#include "analysis/simulate/known_motion.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
@@ -79,6 +80,14 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
         return Error{ErrorCode::failed, "model '" + request.other_path + "': " + *refusal};
     }
     GYROLOG_TRY(Recording recording, comparable_recording(request, request.recording_path));
+    const std::size_t of_reading = recording.warnings.size();
+    recording = with_known_motion(std::move(recording));
+    const std::vector<std::string> left_out(
+        recording.warnings.begin() + static_cast<std::ptrdiff_t>(of_reading), recording.warnings.end());
+    if (const auto refusal = comparison_refusal(recording)) {
+        return Error{ErrorCode::failed, fmt::format("'{}': {}; {}", request.recording_path, *refusal,
+                                                    fmt::join(left_out, "; "))};
+    }
     complete_from(recording, file);
     ModelComparisonOptions options = request.simulations;
     options.on_progress = [&](std::size_t done) {
@@ -93,6 +102,7 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
                            std::filesystem::path(request.other_path).filename().string(), options);
     if (console.progress) { console.drawing() << "\r\x1b[K" << std::flush; }
     comparison->notes = file.notes;
+    comparison->warnings.insert(comparison->warnings.begin(), left_out.begin(), left_out.end());
     return *std::move(comparison);
 }
 

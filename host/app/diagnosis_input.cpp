@@ -11,6 +11,7 @@
 
 #include "analysis/diagnose/likelihood/prediction.hpp"
 #include "analysis/diagnose/multiscale/long_diagnosis.hpp"
+#include "analysis/simulate/known_motion.hpp"
 #include "host/app/quantity.hpp"
 
 namespace gyrolog {
@@ -77,6 +78,11 @@ Result<Read> read_samples(RecordingInput input, std::size_t most) {
     read.is_long = slots(read.samples) > most;
     if (read.is_long) { read.samples = first_slots(std::move(read.samples), most); }
     if (auto refusal = refused(read.samples, input.path)) { return *std::move(refusal); }
+    read.samples = with_known_motion(std::move(read.samples));
+    if (auto refusal = refused(read.samples, input.path)) {
+        refusal->message += "; " + read.samples.warnings.back();
+        return *std::move(refusal);
+    }
     return read;
 }
 

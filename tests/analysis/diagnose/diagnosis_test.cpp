@@ -1,6 +1,7 @@
 #include "analysis/diagnose/diagnosis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -13,6 +14,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/simulate/known_motion.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -100,6 +102,58 @@ TEST(Diagnosis, IsPartOfAnAnswerWhereSomethingElseIsLeft) {
     ASSERT_NE(step, answer.causes.end());
     EXPECT_GT(step->score, 0.9);
     EXPECT_GT(step->share.value, 0.1);
+}
+
+// A rate table in steps about each axis in turn; its encoder is read while the rate is steady.
+TEST(Diagnosis, NamesTheGainsOfATurntableWhoseRampsAreNotKnown) {
+    constexpr double step_s = 10.0;
+    constexpr double ramp_s = 2.0;
+    const auto turntable = world_turning([&](double t_s) {
+        constexpr std::array<double, 8> rates_dps = {0.0, 50.0, -50.0, 100.0, -100.0, 200.0, -200.0, 0.0};
+        const auto axis_rate = [&](double step) {
+            Vector3 rate{};
+            const auto number = static_cast<std::size_t>(std::max(0.0, step));
+            rate.at(number / rates_dps.size() % 3) = rates_dps.at(number % rates_dps.size()) * rad_per_deg;
+            return rate;
+        };
+        const double step = std::floor(t_s / step_s);
+        const double turned = std::min(1.0, (t_s - step * step_s) / ramp_s);
+        Vector3 rate = axis_rate(step - 1.0);
+        const Vector3 next = axis_rate(step);
+        for (std::size_t axis = 0; axis < 3; ++axis) { rate[axis] += turned * (next[axis] - rate[axis]); }
+        return rate;
+    });
+    SensorModel model = calibrated_sensor();
+    model.ref_noise_rad_s = 0.02 * rad_per_deg;
+    model.sd_abs = {{"M", 2e-4}, {"latency_s", 1e-4}, {"rate_rel", 5e-5}};
+    const double eps = 0.012;
+    const double from_x = 0.006;
+    SensorModel sensor = with_effect(model, "scale_factor", {{"eps", eps}}, {"x"});
+    sensor = with_effect(sensor, "misalignment", {{"from_x", from_x}}, {"y"});
+    Recording recording = *recorded(sensor, 48'000, 95, turntable);
+    for (Column& column : recording.columns) {
+        if (!column.name.starts_with("ref_")) { continue; }
+        std::vector<double> values = column.values();
+        for (std::size_t row = 0; row < values.size(); ++row) {
+            if (std::fmod(static_cast<double>(row) / 100.0, step_s) < ramp_s) { values[row] = std::nan(""); }
+        }
+        column.data = std::move(values);
+        column.scale = 1.0;
+    }
+    DiagnosisOptions options;
+    options.simulations = 20;
+    const Diagnosis answer =
+        *diagnose(std::make_shared<const Recording>(with_known_motion(recording)), model, "model", options);
+    EXPECT_EQ(answer.verdict, Verdict::known);
+    ASSERT_EQ(effects_of(answer), (std::set<std::string>{"misalignment", "scale_factor"}));
+    EXPECT_GT(answer.shrink.value, 0.95);
+    for (const Cause& cause : answer.causes) {
+        const bool is_scale = cause.finding.effect == "scale_factor";
+        const char* name = is_scale ? "eps" : "from_x";
+        EXPECT_EQ(cause.finding.where.axes, std::vector<std::size_t>{is_scale ? 0U : 1U});
+        EXPECT_NEAR(cause.finding.entries.front().params.at(name), is_scale ? eps : from_x,
+                    4.0 * cause.finding.sd.front().at(name));
+    }
 }
 
 // A jump of the first recording is none of the second, in which a correction by it would be a gap.

@@ -71,6 +71,29 @@ TEST_F(DiagnosisInputTest, IsTheBeginningAndMeansOfAllOfALongRecordingAtRest) {
                 ElementsAre(HasSubstr("in means of 100 samples it has 50 samples")));
 }
 
+// On a table that turns and turns back, of which only the turning is known.
+TEST_F(DiagnosisInputTest, IsWhatTheReferenceKnows) {
+    const auto written_with = [&](std::size_t known_of_1000) {
+        RecordingInput input{folder_.path("table.csv"), 1000.0, std::nullopt};
+        std::ofstream file(input.path);
+        file << "gx_dps,ref_x_dps\n";
+        for (std::size_t i = 0; i < 10'000; ++i) {
+            file << i % 2 << ',' << (i % 1000 < known_of_1000 ? "1" : "") << '\n';
+        }
+        return input;
+    };
+    const DiagnosisInput known = read(written_with(800));
+    // Without 0.1 s at either end of each, but where the recording itself begins.
+    EXPECT_EQ(known.samples->rows(), 10U * 600U + 100U);
+    EXPECT_EQ(known.samples->segments.size(), 10U);
+    EXPECT_THAT(known.samples->warnings, ElementsAre(HasSubstr("is not known in 2000 of 10000 samples")));
+
+    const Result<DiagnosisInput> hardly = read_for_diagnosis(written_with(400));
+    ASSERT_FALSE(hardly.ok());
+    EXPECT_THAT(hardly.error().message, HasSubstr("has more missing samples than samples"));
+    EXPECT_THAT(hardly.error().message, HasSubstr("is not known in 6000 of 10000 samples"));
+}
+
 TEST_F(DiagnosisInputTest, IsTheBeginningOfALongRecordingInMotionWithAWarning) {
     const DiagnosisInput input = read(written("moving.csv", "gx_dps,ref_x_dps", ",1", rows_of_long));
     EXPECT_EQ(input.samples->rows(), resolution::diagnosable_samples_max);

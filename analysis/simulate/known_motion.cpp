@@ -1,0 +1,52 @@
+#include "analysis/simulate/known_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/simulate/recorded_world.hpp"
+
+namespace gyrolog {
+namespace {
+
+// As long as the world's reference is joined; a lag or a filter of this kind of sensor is shorter.
+constexpr double margin_s = 0.1;
+
+// True `margin` rows before, at and after every true one.
+std::vector<bool> widened(const std::vector<bool>& marked, std::size_t margin) {
+    std::vector<bool> wide(marked.size(), false);
+    std::size_t marked_until = 0;
+    for (std::size_t row = 0; row < marked.size(); ++row) {
+        if (!marked[row]) { continue; }
+        const std::size_t first = std::max(marked_until, row - std::min(row, margin));
+        marked_until = std::min(row + margin + 1, marked.size());
+        std::fill(wide.begin() + static_cast<std::ptrdiff_t>(first),
+                  wide.begin() + static_cast<std::ptrdiff_t>(marked_until), true);
+    }
+    return wide;
+}
+
+}  // namespace
+
+Recording with_known_motion(Recording recording) {
+    const bool has_reference = std::ranges::any_of(
+        recording.columns, [](const Column& column) { return column.name.starts_with("ref_"); });
+    if (!has_reference) { return recording; }
+    const auto shared = std::make_shared<const Recording>(std::move(recording));
+    const std::vector<bool> unknown = RecordedWorld(shared).is_long_unknown();
+    if (unknown.empty()) { return *shared; }
+    const auto margin = static_cast<std::size_t>(std::ceil(margin_s * shared->rate_hz));
+    std::vector<bool> is_kept = widened(unknown, margin);
+    is_kept.flip();
+    Recording known = rows_where(*shared, is_kept);
+    known.warnings.push_back(
+        "the reference rate is not known in " + std::to_string(std::ranges::count(unknown, true)) + " of " +
+        std::to_string(shared->rows()) +
+        " samples for longer than a moment: they, and 0.1 s on either side, are left out");
+    return known;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,14 @@
+// A sensor is judged by what it says of a motion that is known.
+#pragma once
+
+#include "analysis/recording/recording.hpp"
+
+namespace gyrolog {
+
+// The rows that are farther than 0.1 s from every row whose reference rate is unknown for longer than
+// RecordedWorld joins it: a sensor that lags shows what moved before, and a rate next to an unknown one is an
+// extrapolation of the reference's. A warning says how many are left out. The recording as it is where the
+// reference is known, or where there is none.
+Recording with_known_motion(Recording recording);
+
+}  // namespace gyrolog
