@@ -17,10 +17,10 @@
 #include "analysis/denoise/array_denoiser.hpp"
 #include "analysis/denoise/bandwidth_curve.hpp"
 #include "analysis/denoise/motion_error.hpp"
-#include "analysis/denoise/still_part.hpp"
 #include "analysis/denoise/unit_bands.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/recording/recording.hpp"
+#include "analysis/recording/still_part.hpp"
 #include "analysis/spectrum/power_spectrum.hpp"
 #include "analysis/spectrum/spectral_lines.hpp"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analysis/denoise/denoise.hpp"
-#include "analysis/denoise/still_part.hpp"
 #include "analysis/recording/recording.hpp"
+#include "analysis/recording/still_part.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {

@@ -1,4 +1,4 @@
-#include "analysis/denoise/still_part.hpp"
+#include "analysis/recording/still_part.hpp"
 
 #include <algorithm>
 #include <cmath>
