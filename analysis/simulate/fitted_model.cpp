@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/recording/neighbour_scatter.hpp"
 #include "analysis/simulate/recorded_converter.hpp"
 
 namespace gyrolog {
@@ -39,23 +40,6 @@ void add_effects(const NoiseFit& fit, const std::string& axis, std::vector<Effec
 // own line is not known better than that to another clock.
 constexpr double crystal_rel = 5e-5;
 
-// One sigma of white noise, from the differences of neighbours: what is slow drops out of them.
-double thermometer_noise_C(const Recording& recording) {
-    const Column* column = recording.find("temp");
-    if (column == nullptr || column->unit != "degC") { return 0.0; }
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const Segment& segment : recording.segments) {
-        for (std::size_t i = segment.first + 1; i < segment.first + segment.count; ++i) {
-            const double step_C = column->value(i) - column->value(i - 1);
-            if (!std::isfinite(step_C)) { continue; }
-            sum += step_C * step_C;
-            ++count;
-        }
-    }
-    return count == 0 ? 0.0 : std::sqrt(0.5 * sum / static_cast<double>(count));
-}
-
 }  // namespace
 
 SensorModel fitted_model(const AnalysisReport& report, const Recording& recording) {
@@ -85,7 +69,9 @@ SensorModel fitted_model(const AnalysisReport& report, const Recording& recordin
     if (recording.stamps == StampKind::sampling) {
         model.timestamp_jitter_s = recording.stamp_jitter_s.value_or(0.0);
     }
-    model.temp_noise_C = thermometer_noise_C(recording);
+    if (const Column* column = recording.find("temp"); column != nullptr && column->unit == "degC") {
+        model.temp_noise_C = neighbour_scatter(*column, recording.segments);
+    }
     return model;
 }
 

@@ -17,6 +17,7 @@ constexpr int average_most = 100'000;
 struct DiagnoseOptions {
     RecordingDiagnosisRequest request;
     std::string curve_path;
+    bool is_plain = false;
 };
 
 ExitCode diagnose_either(Console& console, const DiagnoseOptions& options) {
@@ -32,8 +33,10 @@ ExitCode diagnose_either(Console& console, const DiagnoseOptions& options) {
         return diagnose_curve_to_files(console, {options.curve_path, request.model_path, request.json_path,
                                                  request.plot_path, request.model_out_path});
     }
-    if (request.model_path.empty()) {
-        return wrong("give the --model that the recording is to be held against");
+    if (request.model_path.empty() && !options.is_plain) {
+        return wrong(
+            "give the --model that the recording is to be held against, or --auto for one of white "
+            "noise and a bias");
     }
     return diagnose_recording_to_files(console, request);
 }
@@ -45,8 +48,13 @@ Action setup_diagnose(CLI::App& app) {
     RecordingDiagnosisRequest& request = options->request;
     app.add_option("RECORDING", request.recording_path,
                    "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
-    app.add_option("--model", request.model_path, "The sensor model (.json) whose gap is sought")
-        ->type_name("FILE");
+    CLI::Option* model =
+        app.add_option("--model", request.model_path, "The sensor model (.json) whose gap is sought")
+            ->type_name("FILE");
+    CLI::Option* plain =
+        app.add_flag("--auto", options->is_plain,
+                     "Instead of a model: white noise and bias of the recording's quiet part");
+    plain->excludes(model);
     CLI::Option* curve =
         app.add_option("--curve", options->curve_path,
                        "Instead of a recording: an Allan curve from print (tau_s,x_dps, ...); "
@@ -85,7 +93,7 @@ Action setup_diagnose(CLI::App& app) {
         ->type_name("DPS")
         ->check(positive_number());
     for (const char* of_recordings :
-         {"--holdout", "--average", "--simulations", "--seed", "--threads", "--lsb-dps"}) {
+         {"--auto", "--holdout", "--average", "--simulations", "--seed", "--threads", "--lsb-dps"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

@@ -14,6 +14,7 @@
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "analysis/diagnose/multiscale/means_model.hpp"
+#include "analysis/simulate/plain_model.hpp"
 #include "host/app/command.hpp"
 #include "host/app/diagnosis_input.hpp"
 #include "host/app/diagnosis_output.hpp"
@@ -75,11 +76,39 @@ DiagnosisOptions options_of(Console& console, const RecordingDiagnosisRequest& r
     return options;
 }
 
+// Of the recording's own: what a simulator has that knows of white noise and a bias only.
+Result<ModelFile> read_plain_model(const Recording& recording, const std::string& path) {
+    std::optional<PlainModel> plain = plain_model(recording);
+    if (!plain) {
+        return Error{ErrorCode::failed,
+                     fmt::format("'{}' has no part of four seconds in which nothing turns, for --auto "
+                                 "to take white noise and bias from: give a --model",
+                                 path)};
+    }
+    ModelFile file;
+    std::vector<std::string> noise;
+    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+        if (recording.find(std::string("g") + axis_names[axis]) == nullptr) { continue; }
+        noise.push_back(fmt::format(
+            "{:.3g} ({})", plain->model.axes[axis].noise.N_rad_per_sqrt_s * deg_per_rad, axis_names[axis]));
+    }
+    file.notes.push_back(
+        fmt::format("the model is white noise and a bias, taken from {:.6g} s to {:.6g} s of the recording: "
+                    "N {} dps/sqrt(Hz), as the "
+                    "Allan deviation at 1 s has it",
+                    plain->still.from_s, plain->still.to_s, fmt::join(noise, ", ")));
+    file.model = std::move(plain->model);
+    return file;
+}
+
 Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& request) {
-    GYROLOG_TRY(ModelFile file, read_single_model(request.model_path));
+    const bool is_plain = request.model_path.empty();
+    ModelFile file;
+    if (!is_plain) { GYROLOG_TRY(file, read_single_model(request.model_path)); }
     RecordingInput input{request.recording_path, std::nullopt, request.lsb_dps};
     input.samples_per_row = request.average;
     GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
+    if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, request.recording_path)); }
     complete_from(*read.samples, file);
     DiagnosisInput second;
     if (!request.holdout_path.empty()) {
@@ -88,7 +117,8 @@ Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& r
     }
     DiagnosisOptions options = options_of(console, request);
     options.holdout = second.samples;
-    const std::string name = std::filesystem::path(request.model_path).filename().string();
+    const std::string name =
+        is_plain ? "white noise and bias" : std::filesystem::path(request.model_path).filename().string();
     auto diagnosis = read.means != nullptr
                          ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
                      : request.average > 1 ? diagnose_means(read, file.model, name, options)

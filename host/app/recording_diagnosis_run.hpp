@@ -13,7 +13,7 @@ namespace gyrolog {
 
 struct RecordingDiagnosisRequest {
     std::string recording_path;
-    std::string model_path;
+    std::string model_path;    // empty: a plain model of the recording's own (plain_model.hpp)
     std::string holdout_path;  // a second recording, on which the gap is measured; empty: none
     std::string json_path;     // "-" is standard output; empty: not wanted
     std::string plot_path;

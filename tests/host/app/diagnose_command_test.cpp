@@ -98,6 +98,42 @@ TEST_F(DiagnoseCommand, FindsTheCauseAndWritesTextJsonFigureAndModel) {
     EXPECT_EQ(read_model(corrected)->effects.size(), 1U);
 }
 
+TEST_F(DiagnoseCommand, WithoutAModelItIsHeldAgainstItsOwnWhiteNoiseAndBias) {
+    SensorModel wandering = typical_mpu9250();
+    for (AxisModel& axis : wandering.axes) {
+        axis.noise = {};
+        axis.noise.N_rad_per_sqrt_s = 0.005 * rad_per_deg;
+        axis.bias_rad_s = 0.3 * rad_per_deg;
+    }
+    wandering.effects.push_back(
+        {"tone", {"y"}, {{"f_hz", 17.0}, {"amplitude_dps", 0.05}, {"phase_rad", 0.0}}, ""});
+    write_recording_of(wandering);
+    const std::string corrected = folder.path("corrected.json");
+    ASSERT_EQ(diagnose({recording, "--auto", "--simulations", "20", "--json", "-", "--model-out", corrected}),
+              ExitCode::ok)
+        << err.str();
+    const json answer = json::parse(out.str());
+    EXPECT_EQ(answer["model"], "white noise and bias");
+    ASSERT_EQ(answer["causes"].size(), 1U) << answer["causes"];
+    EXPECT_EQ(answer["causes"][0]["effect"], "tone");
+    EXPECT_THAT(err.str(), HasSubstr("the model is white noise and a bias, taken from 0 s to 60 s"));
+    const Result<SensorModel> written = read_model(corrected);
+    ASSERT_TRUE(written.ok());
+    EXPECT_NEAR(written->axes[0].noise.N_rad_per_sqrt_s * deg_per_rad, 0.005, 0.001);
+    EXPECT_NEAR(written->axes[0].bias_rad_s * deg_per_rad, 0.3, 0.01);
+    EXPECT_EQ(written->axes[0].noise.B_rad_per_s, 0.0);
+
+    EXPECT_EQ(diagnose({recording, "--auto", "--model", model}), ExitCode::usage);
+    EXPECT_EQ(diagnose({"--curve", curve, "--auto"}), ExitCode::usage);
+    EXPECT_EQ(diagnose({recording}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("--auto"));
+
+    wandering.effects = {{"tone", {}, {{"f_hz", 0.3}, {"amplitude_dps", 20.0}, {"phase_rad", 0.0}}, ""}};
+    write_recording_of(wandering);
+    EXPECT_EQ(diagnose({recording, "--auto"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("no part of four seconds in which nothing turns"));
+}
+
 TEST_F(DiagnoseCommand, WarnsOfASensorThatWasTurnedWithoutAReference) {
     SensorModel swung = typical_mpu9250();
     write_recording_of(swung);
