@@ -1,5 +1,5 @@
-// How many simulations tell how much, and what they may take. More of them change
-// an answer only by the chance that they make smaller.
+// How many simulations tell how much, and what they may take. More of them change an answer only by the
+// chance that they make smaller.
 #pragma once
 
 #include <cstddef>

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// 100 Hz; x says its row, and the stamps do so too; row 200 begins after a hole of ten.
+// At 100 Hz; gx holds the row's number, and ten samples are missing before row 200.
 Recording moving(std::size_t rows) {
     Recording recording;
     recording.rate_hz = 100.0;

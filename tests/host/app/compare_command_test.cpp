@@ -61,6 +61,26 @@ TEST_F(CompareCommand, WithAModelWritesTextJsonAndFigure) {
     EXPECT_EQ(err.str(), "written: " + folder.path("c.json") + "\nwritten: " + folder.path("c.png") + "\n");
 }
 
+// A table whose reference is known 8 s of 10; what it turns meanwhile is nobody's gap.
+TEST_F(CompareCommand, WithAModelLeavesOutWhatTheReferenceDoesNotKnow) {
+    Recording turning = simulated(6000, 3);
+    std::vector<double> reference_rad_s(turning.rows(), 0.0);
+    for (std::size_t row = 0; row < turning.rows(); ++row) {
+        if (row % 1000 < 800) { continue; }
+        reference_rad_s[row] = std::nan("");
+        auto& counts = std::get<std::vector<std::int16_t>>(turning.columns[0].data);
+        counts[row] = static_cast<std::int16_t>(counts[row] + 5000);
+    }
+    turning.columns.push_back({"ref_x", "rad/s", std::move(reference_rad_s)});
+    ASSERT_TRUE(write_recording_csv(turning, recording).ok());
+    ASSERT_EQ(compare({recording, model, "--simulations", "12", "--json", "-"}), ExitCode::ok) << err.str();
+    const json answer = json::parse(out.str());
+    // 0.1 s may be one row more of a rate that is estimated, on each of eleven sides.
+    EXPECT_NEAR(answer["samples"].get<double>(), 800.0 - 10.0 + 5.0 * (800.0 - 20.0), 11.0);
+    EXPECT_LT(answer["axes"]["x"]["standard_deviation"]["recording"].get<double>(), 1.0) << "dps";
+    EXPECT_THAT(answer["warnings"].dump(), HasSubstr("is not known in 1200 of 6000 samples"));
+}
+
 TEST_F(CompareCommand, WithARecordingTakesNoModel) {
     ASSERT_TRUE(write_recording_csv(simulated(2000, 2), folder.path("day.csv")).ok());
     EXPECT_EQ(compare({recording, folder.path("day.csv"), "--json", "-"}), ExitCode::ok) << err.str();

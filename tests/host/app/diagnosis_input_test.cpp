@@ -71,7 +71,7 @@ TEST_F(DiagnosisInputTest, IsTheBeginningAndMeansOfAllOfALongRecordingAtRest) {
                 ElementsAre(HasSubstr("in means of 100 samples it has 50 samples")));
 }
 
-// On a table that turns and turns back, of which only the turning is known.
+// The reference is known for a part of every second.
 TEST_F(DiagnosisInputTest, IsWhatTheReferenceKnows) {
     const auto written_with = [&](std::size_t known_of_1000) {
         RecordingInput input{folder_.path("table.csv"), 1000.0, std::nullopt};
