@@ -170,21 +170,10 @@ JoinedArray join_recordings(std::span<const ArrayMember> members) {
 
 std::vector<Segment> segments_known(std::span<const Column* const> columns,
                                     std::span<const Segment> segments) {
-    std::vector<Segment> known;
-    for (const Segment& segment : segments) {
-        bool open = false;
-        for (std::size_t i = 0; i < segment.count; ++i) {
-            const std::size_t row = segment.first + i;
-            const bool all = std::ranges::all_of(
-                columns, [row](const Column* column) { return std::isfinite(column->value(row)); });
-            if (all && !open) {
-                known.push_back({row, 0, segment.first_index + static_cast<std::int64_t>(i)});
-            }
-            if (all) { ++known.back().count; }
-            open = all;
-        }
-    }
-    return known;
+    return segments_where(segments, [&](std::size_t row) {
+        return std::ranges::all_of(columns,
+                                   [row](const Column* column) { return std::isfinite(column->value(row)); });
+    });
 }
 
 Recording rows_of(const Recording& recording, std::span<const Column* const> columns,
@@ -194,26 +183,8 @@ Recording rows_of(const Recording& recording, std::span<const Column* const> col
     part.rate_hz = recording.rate_hz;
     part.rate_sd_hz = recording.rate_sd_hz;
     part.stamps = recording.stamps;
-    std::size_t rows = 0;
-    for (const Segment& segment : segments) {
-        part.segments.push_back({rows, segment.count, segment.first_index});
-        rows += segment.count;
-    }
-    for (const Column* column : columns) {
-        Column cut = *column;
-        std::visit(
-            [&](auto& data) {
-                auto to = data.begin();
-                for (const Segment& segment : segments) {
-                    const auto from = data.begin() + static_cast<std::ptrdiff_t>(segment.first);
-                    to = std::copy(from, from + static_cast<std::ptrdiff_t>(segment.count), to);
-                }
-                data.resize(rows);
-            },
-            cut.data);
-        part.columns.push_back(std::move(cut));
-    }
-    return part;
+    for (const Column* column : columns) { part.columns.push_back(*column); }
+    return rows_of(part, segments);
 }
 
 }  // namespace gyrolog

@@ -116,35 +116,43 @@ Recording means_of(const Recording& recording, std::size_t samples) {
     return means;
 }
 
-Recording rows_where(const Recording& recording, const std::vector<bool>& is_kept) {
-    const auto kept_of = [&](const auto& values) {
-        std::decay_t<decltype(values)> kept;
-        for (std::size_t row = 0; row < values.size(); ++row) {
-            if (is_kept[row]) { kept.push_back(values[row]); }
-        }
-        return kept;
-    };
-    Recording some = recording;
-    for (Column& column : some.columns) {
-        std::visit([&](auto& values) { values = kept_of(values); }, column.data);
-    }
-    some.t_s = kept_of(recording.t_s);
-    some.segments.clear();
-    std::size_t rows = 0;
-    for (const Segment& segment : recording.segments) {
+std::vector<Segment> segments_where(std::span<const Segment> segments,
+                                    const std::function<bool(std::size_t row)>& is_wanted) {
+    std::vector<Segment> wanted;
+    for (const Segment& segment : segments) {
         bool follows = false;
         for (std::size_t i = 0; i < segment.count; ++i) {
-            const bool kept = is_kept[segment.first + i];
-            if (kept && !follows) {
-                some.segments.push_back({rows, 0, segment.first_index + static_cast<std::int64_t>(i)});
+            const std::size_t row = segment.first + i;
+            const bool take = is_wanted(row);
+            if (take && !follows) {
+                wanted.push_back({row, 0, segment.first_index + static_cast<std::int64_t>(i)});
             }
-            follows = kept;
-            if (!kept) { continue; }
-            ++some.segments.back().count;
-            ++rows;
+            if (take) { ++wanted.back().count; }
+            follows = take;
         }
     }
-    return some;
+    return wanted;
+}
+
+Recording rows_of(const Recording& recording, std::span<const Segment> segments) {
+    const auto cut = [&](auto& values) {
+        auto to = values.begin();
+        for (const Segment& segment : segments) {
+            const auto from = values.begin() + static_cast<std::ptrdiff_t>(segment.first);
+            to = std::copy(from, from + static_cast<std::ptrdiff_t>(segment.count), to);
+        }
+        values.erase(to, values.end());
+    };
+    Recording part = recording;
+    for (Column& column : part.columns) { std::visit(cut, column.data); }
+    if (!part.t_s.empty()) { cut(part.t_s); }
+    part.segments.clear();
+    std::size_t rows = 0;
+    for (const Segment& segment : segments) {
+        part.segments.push_back({rows, segment.count, segment.first_index});
+        rows += segment.count;
+    }
+    return part;
 }
 
 Recording first_rows(Recording recording, std::size_t rows) {

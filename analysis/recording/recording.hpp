@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -92,9 +93,13 @@ struct Recording {
 // is missing the row is; causes of dropouts are as they were. No stamps are kept.
 Recording means_of(const Recording& recording, std::size_t samples);
 
-// The rows that are kept, on the grid as it was; `is_kept` has one value a row. The others are missing
-// without being dropouts: stamps and causes stay as they were.
-Recording rows_where(const Recording& recording, const std::vector<bool>& is_kept);
+// Parts of the segments whose rows are wanted, on the grid as it was.
+std::vector<Segment> segments_where(std::span<const Segment> segments,
+                                    const std::function<bool(std::size_t row)>& is_wanted);
+
+// The rows of these segments, which lie within the recording's. The others are missing without being
+// dropouts: stamps and causes stay as they were.
+Recording rows_of(const Recording& recording, std::span<const Segment> segments);
 
 // The recording as if it had ended after `rows`, at least one; whole if it has no more.
 Recording first_rows(Recording recording, std::size_t rows);

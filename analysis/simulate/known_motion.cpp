@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <string>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -11,9 +11,6 @@
 
 namespace gyrolog {
 namespace {
-
-// As long as the world's reference is joined; a lag or a filter of this kind of sensor is shorter.
-constexpr double margin_s = 0.1;
 
 // True `margin` rows before, at and after every true one.
 std::vector<bool> widened(const std::vector<bool>& marked, std::size_t margin) {
@@ -31,21 +28,22 @@ std::vector<bool> widened(const std::vector<bool>& marked, std::size_t margin) {
 
 }  // namespace
 
-Recording with_known_motion(Recording recording) {
+Recording with_known_motion(Recording recording, const KnownMotionOptions& options) {
     const bool has_reference = std::ranges::any_of(
         recording.columns, [](const Column& column) { return column.name.starts_with("ref_"); });
     if (!has_reference) { return recording; }
     const auto shared = std::make_shared<const Recording>(std::move(recording));
     const std::vector<bool> unknown = RecordedWorld(shared).is_long_unknown();
     if (unknown.empty()) { return *shared; }
-    const auto margin = static_cast<std::size_t>(std::ceil(margin_s * shared->rate_hz));
-    std::vector<bool> is_kept = widened(unknown, margin);
-    is_kept.flip();
-    Recording known = rows_where(*shared, is_kept);
-    known.warnings.push_back(
-        "the reference rate is not known in " + std::to_string(std::ranges::count(unknown, true)) + " of " +
-        std::to_string(shared->rows()) +
-        " samples for longer than a moment: they, and 0.1 s on either side, are left out");
+    const auto margin = static_cast<std::size_t>(std::ceil(options.memory_s * shared->rate_hz));
+    const std::vector<bool> left_out = widened(unknown, margin);
+    Recording known =
+        rows_of(*shared, segments_where(shared->segments, [&](std::size_t row) { return !left_out[row]; }));
+    std::ostringstream warning;
+    warning << "the reference rate is not known in " << std::ranges::count(unknown, true) << " of "
+            << shared->rows() << " samples for longer than a moment: they, and " << options.memory_s
+            << " s on either side, are left out";
+    known.warnings.push_back(warning.str());
     return known;
 }
 

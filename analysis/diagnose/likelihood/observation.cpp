@@ -8,12 +8,11 @@
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"
+#include "analysis/simulate/known_motion.hpp"
 #include "analysis/simulate/random_purpose.hpp"
 
 namespace gyrolog::resolution {
 
-// In motion, of the recording.
-constexpr double unknown_start_s = 0.1;
 // How many samples on either side say what the level in a hole is: so many that what they have in common with
 // the stand-ins is slower than the white noise reaches.
 constexpr std::size_t level_samples = 256;
@@ -220,7 +219,7 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
     const TransformPool::Lease transform = prediction_->transform();
     for (const std::size_t axis : prediction_->axes()) { observe(axis, *transform); }
     // What moved before the recording began is not known, and a sensor that lags shows it.
-    const double unknown_s = prediction_->moves() ? resolution::unknown_start_s : 0.0;
+    const double unknown_s = prediction_->moves() ? KnownMotionOptions{}.memory_s : 0.0;
     for (std::size_t slot = 0; slot < length; ++slot) {
         const bool known = static_cast<double>(slot) >= unknown_s * prediction_->rate_hz();
         present_[slot] = present_[slot] && known && has_slot(prediction_->half(), slot, length);
