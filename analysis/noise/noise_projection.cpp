@@ -10,9 +10,6 @@ namespace gyrolog {
 namespace {
 
 constexpr double octave_parts = 16.0;
-// Of the ranges that are searched. The least error is a kink, not a parabola: what a share is off, it is off.
-constexpr double log_odds_tolerance_rel = 1e-7;
-constexpr double log_correlation_tolerance_rel = 1e-4;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double dB(double variance_ratio) { return 10.0 * std::log10(variance_ratio); }
@@ -55,7 +52,8 @@ struct Mixture {
     double worst_dB = infinite;
 };
 
-Mixture best_mixture(const std::vector<double>& first, const std::vector<double>& second) {
+Mixture best_mixture(const std::vector<double>& first, const std::vector<double>& second,
+                     const ProjectionOptions& options) {
     const double first_scale = 1.0 / *std::ranges::max_element(first);
     const double second_scale = 1.0 / *std::ranges::max_element(second);
     const auto mixed = [&](double log_odds) {
@@ -76,19 +74,19 @@ Mixture best_mixture(const std::vector<double>& first, const std::vector<double>
     // Sets where largest / smallest <= a number are cones: along the mixing share there is one valley.
     constexpr double far = 40.0;
     const double at = place_of_top([&](double log_odds) { return -judged(mixed(log_odds)).worst_dB; }, -far,
-                                   far, log_odds_tolerance_rel);
+                                   far, options.log_odds_tolerance_rel);
     const Mixture both = judged(mixed(at));
     const Mixture alone = judged({first_scale, 0.0, 0.0});
     return alone.worst_dB <= both.worst_dB ? alone : both;
 }
 
-NoiseProjection with_gauss_markov(const Target& target) {
+NoiseProjection with_gauss_markov(const Target& target, const ProjectionOptions& options) {
     const auto white = target.ratios([](double tau_s) { return 1.0 / tau_s; });
     const auto shape_of = [](double correlation_s) {
         return [=](double tau_s) { return GaussMarkov{1.0, correlation_s}.allan_variance(tau_s); };
     };
     const auto mixture_at = [&](double log_correlation) {
-        return best_mixture(white, target.ratios(shape_of(std::exp(log_correlation))));
+        return best_mixture(white, target.ratios(shape_of(std::exp(log_correlation))), options);
     };
     // From less than a sample to where the process is a walk over the whole horizon. The error may have
     // several valleys: the lowest of a net of places is looked at closely.
@@ -101,7 +99,7 @@ NoiseProjection with_gauss_markov(const Target& target) {
         if (mixture_at(from + step * i).worst_dB < mixture_at(best).worst_dB) { best = from + step * i; }
     }
     best = place_of_top([&](double log_correlation) { return -mixture_at(log_correlation).worst_dB; },
-                        best - step, best + step, log_correlation_tolerance_rel);
+                        best - step, best + step, options.log_correlation_tolerance_rel);
     const Mixture found = mixture_at(best);
     NoiseProjection projection;
     projection.N_rad_per_sqrt_s = std::sqrt(found.first);
@@ -109,9 +107,9 @@ NoiseProjection with_gauss_markov(const Target& target) {
     return projection;
 }
 
-NoiseProjection with_walk(const Target& target) {
+NoiseProjection with_walk(const Target& target, const ProjectionOptions& options) {
     const Mixture found = best_mixture(target.ratios([](double tau_s) { return 1.0 / tau_s; }),
-                                       target.ratios([](double tau_s) { return tau_s / 3.0; }));
+                                       target.ratios([](double tau_s) { return tau_s / 3.0; }), options);
     NoiseProjection projection;
     projection.N_rad_per_sqrt_s = std::sqrt(found.first);
     projection.K_rad_per_s_sqrt_s = std::sqrt(found.second);
@@ -151,7 +149,7 @@ double NoiseProjection::allan_variance(double tau_s) const {
 }
 
 NoiseProjection project_noise(std::span<const NoiseModel> models, ProjectedTerms terms, double rate_hz,
-                              double horizon_s) {
+                              double horizon_s, const ProjectionOptions& options) {
     const Target target(models, rate_hz, horizon_s);
     // Without noise there is nothing to be near to. A line alone has none at some averaging times.
     if (std::ranges::any_of(target.variance(), [](double variance) { return variance <= 0.0; })) {
@@ -163,8 +161,8 @@ NoiseProjection project_noise(std::span<const NoiseModel> models, ProjectedTerms
         return nothing;
     }
     NoiseProjection projection = terms == ProjectedTerms::white        ? with_white_alone(target)
-                                 : terms == ProjectedTerms::white_walk ? with_walk(target)
-                                                                       : with_gauss_markov(target);
+                                 : terms == ProjectedTerms::white_walk ? with_walk(target, options)
+                                                                       : with_gauss_markov(target, options);
     judge(projection, target);
     return projection;
 }

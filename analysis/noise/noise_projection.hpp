@@ -16,6 +16,13 @@ enum class ProjectedTerms {
     white_gauss_markov,  // N and a Gauss-Markov process
 };
 
+// Of the ranges that are searched, 1 being all. The least error is a kink, not a parabola: what a place is
+// off, the error is off.
+struct ProjectionOptions {
+    double log_odds_tolerance_rel = 1e-7;         // of 80 nats between the two terms' shares: 4e-5 dB
+    double log_correlation_tolerance_rel = 1e-4;  // of two steps of the net of correlation times
+};
+
 struct NoiseProjection {
     double N_rad_per_sqrt_s = 0.0;
     double K_rad_per_s_sqrt_s = 0.0;  // of the walk
@@ -32,6 +39,6 @@ struct NoiseProjection {
 // One projection for all models: of a simulator that has one number for all axes, the error is that of the
 // axis where it is largest. `rate_hz` and `horizon_s` are above zero, the horizon not below one sample.
 NoiseProjection project_noise(std::span<const NoiseModel> models, ProjectedTerms terms, double rate_hz,
-                              double horizon_s);
+                              double horizon_s, const ProjectionOptions& options = {});
 
 }  // namespace gyrolog

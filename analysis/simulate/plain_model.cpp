@@ -14,8 +14,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr double read_at_s = 1.0;
-
 double mean_within(const Column& column, const std::vector<Segment>& parts) {
     double sum = 0.0;
     double count = 0.0;
@@ -40,9 +38,10 @@ double reference_noise_rad_s(const Recording& recording, const std::vector<Segme
     return axes > 0.0 ? std::sqrt(sum / axes) : 0.0;
 }
 
-AxisModel plain_axis(const Column& column, const std::vector<Segment>& parts, double rate_hz) {
+AxisModel plain_axis(const Column& column, const std::vector<Segment>& parts, double rate_hz,
+                     std::int64_t m) {
     AllanOptions options;
-    options.m = {std::max<std::int64_t>(1, std::llround(read_at_s * rate_hz))};
+    options.m = {m};
     AxisModel axis;
     axis.bias_rad_s = mean_within(column, parts);
     const AllanCurve curve = allan_deviation(column, parts, rate_hz, options);
@@ -56,7 +55,7 @@ AxisModel plain_axis(const Column& column, const std::vector<Segment>& parts, do
 
 }  // namespace
 
-std::optional<PlainModel> plain_model(const Recording& recording) {
+std::optional<PlainModel> plain_model(const Recording& recording, const PlainModelOptions& options) {
     std::vector<std::pair<std::size_t, const Column*>> gyros;
     std::vector<std::vector<double>> signals;
     for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
@@ -78,8 +77,10 @@ std::optional<PlainModel> plain_model(const Recording& recording) {
         plain.model.saturation_rad_s = converter->saturation_rad_s;
     }
     plain.model.ref_noise_rad_s = reference_noise_rad_s(recording, parts);
+    const std::int64_t m = std::max<std::int64_t>(1, std::llround(options.read_at_s * recording.rate_hz));
+    plain.tau_s = static_cast<double>(m) / recording.rate_hz;
     for (const auto& [axis, column] : gyros) {
-        plain.model.axes[axis] = plain_axis(*column, parts, recording.rate_hz);
+        plain.model.axes[axis] = plain_axis(*column, parts, recording.rate_hz, m);
     }
     return plain;
 }

@@ -94,9 +94,8 @@ Result<ModelFile> read_plain_model(const Recording& recording, const std::string
     }
     file.notes.push_back(
         fmt::format("the model is white noise and a bias, taken from {:.6g} s to {:.6g} s of the recording: "
-                    "N {} dps/sqrt(Hz), as the "
-                    "Allan deviation at 1 s has it",
-                    plain->still.from_s, plain->still.to_s, fmt::join(noise, ", ")));
+                    "N {} dps/sqrt(Hz), read off the Allan deviation at {:.6g} s",
+                    plain->still.from_s, plain->still.to_s, fmt::join(noise, ", "), plain->tau_s));
     file.model = std::move(plain->model);
     return file;
 }

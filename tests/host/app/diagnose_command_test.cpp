@@ -117,6 +117,7 @@ TEST_F(DiagnoseCommand, WithoutAModelItIsHeldAgainstItsOwnWhiteNoiseAndBias) {
     ASSERT_EQ(answer["causes"].size(), 1U) << answer["causes"];
     EXPECT_EQ(answer["causes"][0]["effect"], "tone");
     EXPECT_THAT(err.str(), HasSubstr("the model is white noise and a bias, taken from 0 s to 60 s"));
+    EXPECT_THAT(err.str(), HasSubstr("read off the Allan deviation at 1 s"));
     const Result<SensorModel> written = read_model(corrected);
     ASSERT_TRUE(written.ok());
     EXPECT_NEAR(written->axes[0].noise.N_rad_per_sqrt_s * deg_per_rad, 0.005, 0.001);
