@@ -32,6 +32,7 @@ constexpr ChainLink links[] = {
     effect(nonlinearity_effect),
     effect(asymmetry_effect),
     effect(dead_zone_effect),
+    effect(rate_table_effect),
     effect(g_sensitivity_effect),
     effect(vibration_rectification_effect),
     // the bias
@@ -42,6 +43,7 @@ constexpr ChainLink links[] = {
     effect(temp_linear_effect),
     effect(temp_quadratic_effect),
     effect(temp_lag_effect),
+    effect(temperature_table_effect),
     own(make_rate_ramp),
     // noise
     own(make_flicker_noise),
@@ -58,6 +60,7 @@ constexpr ChainLink links[] = {
     effect(arw_scale_effect),
     effect(variance_change_effect),
     effect(temp_noise_effect),
+    effect(density_table_effect),
     // white noise from outside, such as the supply's
     effect(common_mode_effect),
     // the sensor's bandwidth

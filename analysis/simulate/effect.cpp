@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"
@@ -35,6 +37,40 @@ std::optional<std::string> range_refusal(const EffectParam& param, double value)
     return std::nullopt;
 }
 
+std::optional<std::string> table_refusal(const EffectTable& table, const EffectModel& effect) {
+    const auto at = effect.table.find(std::string(table.at));
+    const auto value = effect.table.find(std::string(table.value));
+    for (const auto& [column, name] : {std::pair(at, table.at), std::pair(value, table.value)}) {
+        if (column == effect.table.end() || column->second.empty()) {
+            return "lacks the column " + name_in_quotes(name) + " of its table";
+        }
+    }
+    if (at->second.size() != value->second.size()) {
+        return "has columns of " + std::to_string(at->second.size()) + " and " +
+               std::to_string(value->second.size()) + " numbers in its table";
+    }
+    if (std::ranges::adjacent_find(at->second, std::ranges::greater_equal{}) != at->second.end()) {
+        return "has a table whose " + name_in_quotes(table.at) + " does not increase";
+    }
+    if (table.positive && std::ranges::any_of(value->second, [](double v) { return v <= 0.0; })) {
+        return "has a " + name_in_quotes(table.value) + " in its table that is not above zero";
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> refusal_of_columns(const EffectDefinition& definition, const EffectModel& effect) {
+    for (const auto& [name, column] : effect.table) {
+        if (!definition.table || (name != definition.table->at && name != definition.table->value)) {
+            return "has no column " + name_in_quotes(name) + " in its table";
+        }
+    }
+    return definition.table ? table_refusal(*definition.table, effect) : std::nullopt;
+}
+
+Course course_of(const EffectTable& table, const EffectModel& effect) {
+    return {effect.table.at(std::string(table.at)), effect.table.at(std::string(table.value))};
+}
+
 }  // namespace
 
 double EffectUse::operator[](std::string_view param) const {
@@ -46,6 +82,10 @@ double EffectUse::or_else(std::string_view param, double from_model) const {
     const auto given = effect_->params.find(std::string(param));
     return given != effect_->params.end() ? given->second : from_model;
 }
+
+Course EffectUse::course() const { return course_of(*definition_->table, *effect_); }
+
+Course EffectValues::course() const { return course_of(*find_effect(effect_->effect)->table, *effect_); }
 
 bool EffectUse::acts_on(std::size_t axis) const { return gyrolog::acts_on(*effect_, axis); }
 
@@ -78,6 +118,7 @@ std::optional<std::string> effect_refusal(const EffectModel& effect) {
             return name + " has no parameter " + name_in_quotes(given.first);
         }
     }
+    if (const auto refusal = refusal_of_columns(*definition, effect)) { return name + " " + *refusal; }
     for (const std::string& axis : effect.axes) {
         if (std::ranges::find(axis_names, axis) == axis_names.end()) {
             return name + " names an axis " + name_in_quotes(axis) + " that is not x, y or z";

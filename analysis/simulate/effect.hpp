@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/simulate/course.hpp"
 #include "analysis/simulate/effect_signature.hpp"
 #include "analysis/simulate/stage.hpp"
 
@@ -34,6 +35,15 @@ struct EffectParam {
     std::optional<double> most{};  // of its size, either sign
 };
 
+// A course that an entry gives by some of its points, straight between them, and constant before the first
+// and after the last.
+struct EffectTable {
+    std::string_view at;     // the first column, which increases; its unit at the end
+    std::string_view value;  // the second; its unit at the end
+    std::string_view meaning;
+    bool positive = false;  // the second is above zero
+};
+
 class EffectUse;
 
 struct EffectDefinition {
@@ -52,6 +62,10 @@ struct EffectDefinition {
     bool noise_only = false;
     // It moves, by a law, the moments at which the world is sampled, and does nothing else.
     bool timing_only = false;
+    // The course that an entry needs, if it needs one.
+    std::optional<EffectTable> table{};
+    // Under this name a diagnosis models with it what no effect of the catalogue is; empty for others.
+    std::string_view form{};
     // How it shows in a recording; null for what a diagnosis does not look for.
     const EffectSignature* signature = nullptr;
 };
@@ -69,6 +83,7 @@ public:
     double operator[](std::string_view param) const;
     // The value given, or `from_model` of a parameter that is marked so.
     double or_else(std::string_view param, double from_model) const;
+    Course course() const;  // of an effect with a table
     // An entry without axes acts on all.
     bool acts_on(std::size_t axis) const;
     // A random stream of this entry's own; `part` below 4096.

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/simulate/course.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
 namespace gyrolog {
@@ -30,6 +31,7 @@ class EffectValues {
 public:
     explicit EffectValues(const EffectModel& effect, std::size_t axis = 0) : effect_(&effect), axis_(axis) {}
     double operator[](std::string_view param) const;
+    Course course() const;                      // of an effect with a table
     std::size_t axis() const { return axis_; }  // on which it is looked at
 
 private:
@@ -60,6 +62,9 @@ enum class EvidenceMethod {
     outliers,               // single samples
     variance_change_point,  // their variance over time
     variance_with_temperature,
+    density_table,      // of the noise, without a formula
+    temperature_table,  // of the mean over the temperature, likewise
+    rate_table,         // over the rate
     shared_noise,       // between axes
     repeats,            // samples that are the ones before again
     quantisation_step,  // the converter's

@@ -40,6 +40,7 @@ struct EffectModel {
     std::vector<std::string> axes;
     std::map<std::string, double> params;
     std::string carried_json;  // keys of this entry that this build does not know; "" for none
+    std::map<std::string, std::vector<double>> table{};  // columns by name, of one length; {} for none
 };
 
 struct SensorModel {

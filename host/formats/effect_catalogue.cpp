@@ -33,6 +33,18 @@ bool has_plausible(const EffectParam& param) {
     return param.plausible_from != param.plausible_to || param.plausible_from != 0.0;
 }
 
+std::string table_text(const EffectTable& table) {
+    return fmt::format("    table                    {} over {}: {}{}\n", table.value, table.at,
+                       table.meaning, table.positive ? "; above 0" : "");
+}
+
+Json table_json(const EffectTable& table) {
+    return {{"at", table.at},
+            {"value", table.value},
+            {"meaning", table.meaning},
+            {"allowed", table.positive ? "above 0" : "any number"}};
+}
+
 std::string param_text(const EffectParam& param) {
     std::string text = fmt::format("    {:<24} {}; {}", param.name, param.meaning, allowed(param));
     if (has_plausible(param)) {
@@ -60,12 +72,15 @@ std::string effect_catalogue_text() {
         "Effects that a model may list, in the order in which they act on a sample. An entry of the model:\n"
         "  {\"effect\": NAME, \"axes\": [\"x\", \"y\", \"z\"], \"params\": {NAME: NUMBER}}; without axes it "
         "acts on all.\n"
+        "One that follows a course has a table of its points, straight between them:\n"
+        "  \"table\": {COLUMN: [NUMBER, ...], COLUMN: [NUMBER, ...]}.\n"
         "Plausible ranges are those of an MPU-9250.\n";
     for (const ChainLink& link : signal_chain()) {
         if (link.effect == nullptr) { continue; }
         const EffectDefinition& effect = *link.effect;
         text += fmt::format("\n{}\n    {}\n", effect.name, effect.model);
         for (const EffectParam& param : effect.params) { text += param_text(param); }
+        if (effect.table) { text += table_text(*effect.table); }
         if (!effect.source.empty()) { text += fmt::format("    source: {}\n", effect.source); }
     }
     return text;
@@ -83,6 +98,7 @@ Json effect_catalogue_json() {
         entry["source"] = link.effect->source;
         entry["params"] = Json::array();
         for (const EffectParam& param : link.effect->params) { entry["params"].push_back(param_json(param)); }
+        if (link.effect->table) { entry["table"] = table_json(*link.effect->table); }
         json["effects"].push_back(std::move(entry));
     }
     return json;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "analysis/recording/standard_gravity.hpp"
+#include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recorded_converter.hpp"
 #include "host/base/file_output.hpp"
 #include "host/base/printable.hpp"
@@ -95,15 +96,56 @@ TemperatureModel read_temperature(Keys& keys) {
     return temperature;
 }
 
-EffectModel read_effect(Keys& keys) {
+std::map<std::string, std::vector<double>> read_table(Keys& keys, const Json& table) {
+    std::map<std::string, std::vector<double>> columns;
+    if (!table.is_object()) { keys.fail(keys.name("table"), "is not an object of columns"); }
+    for (const auto& item : table.items()) {
+        const std::string where = keys.name("table") + "." + item.key();
+        if (!item.value().is_array()) { keys.fail(where, "is not a list of numbers"); }
+        for (const Json& number : item.value()) {
+            columns[item.key()].push_back(keys.number_in(number, where + "[]", Range::any));
+        }
+    }
+    return columns;
+}
+
+// The effect behind a form that has no name of its own; empty where there is none.
+std::string effect_of_form(std::string_view form) {
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect != nullptr && link.effect->form == form) { return std::string(link.effect->name); }
+    }
+    return {};
+}
+
+std::string_view form_of(const EffectModel& effect) {
+    const EffectDefinition* definition = find_effect(effect.effect);
+    return definition == nullptr ? std::string_view{} : definition->form;
+}
+
+// What takes an entry's first key for an effect's name.
+using EffectNamer = std::string (*)(Keys& keys);
+
+std::string named_effect(Keys& keys) { return keys.text("effect"); }
+
+std::string named_form(Keys& keys) {
+    const std::string form = keys.text("form");
+    std::string effect = effect_of_form(form);
+    if (effect.empty()) {
+        keys.fail(keys.name("form"), "is " + in_quotes(form) + ", which this version does not know");
+    }
+    return effect;
+}
+
+EffectModel read_effect(Keys& keys, EffectNamer name_of) {
     EffectModel effect;
-    effect.effect = keys.text("effect");
+    effect.effect = name_of(keys);
     if (const Json* axes = keys.find("axes")) {
         if (!axes->is_array()) { keys.fail(keys.name("axes"), "is not a list"); }
         for (const Json& axis : *axes) {
             effect.axes.push_back(keys.text_in(axis, keys.name("axes") + "[]"));
         }
     }
+    if (const Json* table = keys.find("table")) { effect.table = read_table(keys, *table); }
     Json carried = keys.left_over();
     carried.erase("params");
     if (const Json* params = keys.find("params")) {
@@ -116,6 +158,18 @@ EffectModel read_effect(Keys& keys) {
     }
     if (!carried.empty()) { effect.carried_json = carried.dump(); }
     return effect;
+}
+
+void read_effects(Keys& keys, const std::string& key, EffectNamer name_of,
+                  std::vector<EffectModel>& effects) {
+    static const Json none = Json::array();
+    const Json* given = keys.find(key);
+    const Json& list = given == nullptr ? none : *given;
+    if (!list.is_array()) { keys.fail(key, "is not a list"); }
+    for (std::size_t i = 0; list.is_array() && i < list.size(); ++i) {
+        Keys effect_keys = keys.inside(list[i], key + "[" + std::to_string(i) + "]");
+        effects.push_back(read_effect(effect_keys, name_of));
+    }
 }
 
 // The converter and the rate.
@@ -175,14 +229,8 @@ ModelFile read_document(const Json& document, std::optional<std::string>& proble
         model.temperature = read_temperature(temperature_keys);
         carry(carried, "temperature", temperature_keys.left_over());
     }
-    static const Json none = Json::array();
-    const Json* given = keys.find("effects");
-    const Json& effects = given == nullptr ? none : *given;
-    if (!effects.is_array()) { keys.fail("effects", "is not a list"); }
-    for (std::size_t i = 0; effects.is_array() && i < effects.size(); ++i) {
-        Keys effect_keys = keys.inside(effects[i], "effects[" + std::to_string(i) + "]");
-        model.effects.push_back(read_effect(effect_keys));
-    }
+    read_effects(keys, "effects", named_effect, model.effects);
+    read_effects(keys, "unnamed", named_form, model.effects);
     carried.update(keys.left_over());
     if (!carried.empty()) { model.carried_json = carried.dump(); }
     if (!stated.absent().empty()) {
@@ -260,6 +308,21 @@ void put_back(Json& to, const Json& carried) {
 void put_back(Json& to, const std::string& carried_json) {
     const Json carried = Json::parse(carried_json, nullptr, false);
     if (carried.is_object()) { put_back(to, carried); }
+}
+
+Json format_effect(const EffectModel& effect) {
+    Json entry;
+    if (const std::string_view form = form_of(effect); !form.empty()) {
+        entry["form"] = form;
+    } else {
+        entry["effect"] = effect.effect;
+    }
+    entry["axes"] = Json::array();
+    for (const std::string& axis : effect.axes) { entry["axes"].push_back(axis); }
+    if (!effect.params.empty() || effect.table.empty()) { entry["params"] = format_map(effect.params); }
+    for (const auto& [name, column] : effect.table) { entry["table"][name] = column; }
+    put_back(entry, effect.carried_json);
+    return entry;
 }
 
 Result<SensorModel> standing_for_itself(Result<ModelFile> file, const std::string& name) {
@@ -355,13 +418,8 @@ std::string format_model(const SensorModel& model) {
     }
     json["effects"] = Json::array();
     for (const EffectModel& effect : model.effects) {
-        Json entry;
-        entry["effect"] = effect.effect;
-        entry["axes"] = Json::array();
-        for (const std::string& axis : effect.axes) { entry["axes"].push_back(axis); }
-        entry["params"] = format_map(effect.params);
-        put_back(entry, effect.carried_json);
-        json["effects"].push_back(std::move(entry));
+        const bool is_unnamed = !form_of(effect).empty();
+        json[is_unnamed ? "unnamed" : "effects"].push_back(format_effect(effect));
     }
     put_back(json, model.carried_json);
     return written_out(json, 2);

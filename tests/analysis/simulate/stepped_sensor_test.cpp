@@ -27,6 +27,10 @@ EffectModel plausible(const EffectDefinition& definition) {
                 ? param.plausible_to
                 : 0.5 * (param.plausible_from + param.plausible_to);
     }
+    if (definition.table) {
+        entry.table[std::string(definition.table->at)] = {-10.0, 20.0, 30.0};
+        entry.table[std::string(definition.table->value)] = {1.0, 2.0, 0.5};
+    }
     return entry;
 }
 

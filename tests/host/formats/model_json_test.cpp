@@ -13,6 +13,7 @@
 namespace gyrolog {
 namespace {
 
+using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 constexpr const char* full_example = R"({
@@ -72,6 +73,39 @@ TEST(ModelJson, EveryKeyArrivesInSiUnits) {
 
 TEST(ModelJson, WhatIsReadIsWrittenBackWithTheSameNumbers) {
     EXPECT_EQ(Json::parse(format_model(model_of(example()))), example());
+}
+
+Json with_density(Json form) {
+    Json json = example();
+    json["unnamed"] = {{{"form", std::move(form)},
+                        {"axes", {"z"}},
+                        {"table", {{"f_hz", {0.0, 31.0, 50.0}}, {"factor", {1.0, 2.5, 0.7}}}}}};
+    return json;
+}
+
+TEST(ModelJson, WhatHasNoNameIsSimulatedAndWrittenBackApart) {
+    const Json json = with_density("density");
+    const SensorModel model = model_of(json);
+    ASSERT_EQ(model.effects.size(), 2U);
+    EXPECT_EQ(model.effects[1].effect, "density_table");
+    EXPECT_EQ(model.effects[1].axes, std::vector<std::string>{"z"});
+    EXPECT_EQ(model.effects[1].table.at("factor"), (std::vector<double>{1.0, 2.5, 0.7}));
+    const Json written = Json::parse(format_model(model));
+    EXPECT_EQ(written["unnamed"], json["unnamed"]);
+    EXPECT_EQ(written["effects"], json["effects"]);
+}
+
+TEST(ModelJson, ATableThatIsNoneIsNamed) {
+    EXPECT_THAT(refusal_of(with_density("shape").dump()), HasSubstr("unnamed[0].form"));
+    Json json = with_density("density");
+    json["unnamed"][0]["table"]["factor"][1] = "2";
+    EXPECT_THAT(refusal_of(json.dump()), HasSubstr("unnamed[0].table.factor[]"));
+    json["unnamed"][0]["table"]["factor"] = 2.0;
+    EXPECT_THAT(refusal_of(json.dump()), HasSubstr("unnamed[0].table.factor is not a list of numbers"));
+    json["unnamed"][0]["table"] = {1.0};
+    EXPECT_THAT(refusal_of(json.dump()), HasSubstr("unnamed[0].table is not an object of columns"));
+    json["unnamed"] = 3;
+    EXPECT_THAT(refusal_of(json.dump()), HasSubstr("unnamed is not a list"));
 }
 
 TEST(ModelJson, UnknownKeysAreKeptWhereTheyStood) {
