@@ -21,8 +21,8 @@ struct Worth {
     double evidence_nats = 0.0;
 };
 
-// `together_nats`: what the spectra's likelihood gains by all of them. One fitted beside others may have
-// little that is its own, and much with them; what tails or codes gain is not in the spectra.
+// `together_nats`: what the spectra's likelihood gains by all of them beside the other causes. One that was
+// found before those had less; what tails or codes gain is not in the spectra.
 Worth worth_of(CauseSpan causes, const NullBias& null_bias, double together_nats) {
     Worth worth;
     for (const FoundCause& cause : causes) {
@@ -30,7 +30,7 @@ Worth worth_of(CauseSpan causes, const NullBias& null_bias, double together_nats
         worth.evidence_nats += cause.finding.evidence_nats + null_bias.of(cause.finding);
     }
     const double cost_nats = worth.gain_nats - worth.evidence_nats;
-    if (causes.size() > 1 && together_nats > worth.gain_nats) {
+    if (together_nats > worth.gain_nats) {
         worth = {together_nats, together_nats - cost_nats};
     }
     return worth;

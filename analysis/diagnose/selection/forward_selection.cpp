@@ -65,6 +65,7 @@ public:
             forget_null_bias();
             latest = with_causes();
         }
+        if (!are_weighed_ && !weigh()) { return std::nullopt; }
         return result_of(std::move(latest));
     }
 
@@ -405,13 +406,38 @@ private:
                 causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(i));
                 continue;
             }
-            // What is a cause already is no rival of another.
-            causes_[i].rivals.clear();
-            std::ranges::copy_if(findings, std::back_inserter(causes_[i].rivals), [&](const Finding& f) {
-                return f.effect == causes_[i].finding.effect ||
-                       (is_new(f) && !is_of_codes(causes_[i].finding));
-            });
+            causes_[i].rivals = rivals_of(causes_[i].finding, findings);
             ++i;
+            if (!told()) { return false; }
+        }
+        return true;
+    }
+
+    // What is a cause already is no rival of another.
+    std::vector<Finding> rivals_of(const Finding& cause, const std::vector<Finding>& findings) const {
+        std::vector<Finding> rivals;
+        std::ranges::copy_if(findings, std::back_inserter(rivals), [&](const Finding& f) {
+            return f.effect == cause.effect || (is_new(f) && !is_of_codes(cause));
+        });
+        return rivals;
+    }
+
+    // Evidence and rivals of causes beside the others as they are now. The parameters, which were fitted
+    // together, stay: a fit one by one would find others, and less evidence for them.
+    bool weigh() {
+        const double with_all_nats = log_likelihood_nats(observed());
+        for (std::size_t i = 0; i < causes_.size(); ++i) {
+            const Hypotheses without = examine(first_.prediction->with(model_with_all_but(i)), recording_,
+                                               options_.seed, options_.threads);
+            const std::vector<Finding> findings = findings_of(without);
+            Finding& cause = causes_[i].finding;
+            causes_[i].rivals = rivals_of(cause, findings);
+            const double more_nats =
+                with_all_nats - log_likelihood_nats(*without.observation) - cause.gain_nats;
+            if (more_nats > 0.0) {
+                cause.gain_nats += more_nats;
+                cause.evidence_nats += more_nats;
+            }
             if (!told()) { return false; }
         }
         return true;
@@ -426,7 +452,11 @@ private:
         const double before_nats = may_get_lost ? log_likelihood_nats(observed()) : 0.0;
         if (!refit()) { return false; }
         static_cast<void>(settle_responses());
-        if (may_get_lost && log_likelihood_nats(observed()) < before_nats - lost_nats) { causes_ = before; }
+        are_weighed_ = true;
+        if (may_get_lost && log_likelihood_nats(observed()) < before_nats - lost_nats) {
+            causes_ = before;
+            are_weighed_ = false;
+        }
         return true;
     }
 
@@ -442,6 +472,7 @@ private:
     std::vector<std::size_t> free_axes_;
     NullBias null_bias_;
     int main_causes_ = 0;
+    bool are_weighed_ = true;  // as they were when each was found, otherwise
 };
 
 }  // namespace
