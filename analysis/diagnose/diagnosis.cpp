@@ -19,6 +19,7 @@
 #include "analysis/diagnose/selection/better_shape.hpp"
 #include "analysis/diagnose/selection/cause_probability.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
+#include "analysis/diagnose/selection/unnamed_forms.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog::resolution {
@@ -152,37 +153,78 @@ private:
         return take(select_causes(first, recording_, selection_options()));
     }
 
-    // Without the causes that close nothing on data that the fit did not use, one after the other; and no
-    // corrected model is farther from them than the first.
+    // Without the causes and forms that close nothing on data that the fit did not use, one after the other;
+    // and no corrected model is farther from them than the first.
     bool measure(const Hypotheses& first) {
-        while (!found_.causes.empty()) {
-            if (!judge_what_is_left() || !measure_causes(first)) { return false; }
-            const auto least = std::ranges::min_element(measured_->returning_nats);
-            if (*least > 0.0 && measured_->named.value <= measured_->before.value) { break; }
-            const auto cause = static_cast<std::size_t>(least - measured_->returning_nats.begin());
-            if (!leave_out(cause, first)) { return false; }
+        if (!judge_what_is_left()) { return false; }
+        model_what_is_left(first);
+        while (!found_.causes.empty() || !unnamed_.empty()) {
+            if (!measure_causes(first)) { return false; }
+            const std::optional<std::size_t> place = needless();
+            if (!place) { break; }
+            if (*place >= found_.causes.size()) {
+                unnamed_.erase(unnamed_.begin() + static_cast<std::ptrdiff_t>(*place - found_.causes.size()));
+                continue;
+            }
+            if (!leave_out(*place, first) || !judge_what_is_left()) { return false; }
+            model_what_is_left(first);
         }
+        answer_.corrected = found_.corrected;
+        answer_.noise_refits = found_.noise_refits;
+        return unnamed_.empty() || judge_what_forms_leave();
+    }
+
+    // Of the causes, then the forms: one without which the gap is no larger.
+    std::optional<std::size_t> needless() const {
+        const std::vector<double>& nats = measured_->returning_nats;
+        const auto least_of = [&](std::size_t from, std::size_t to) {
+            const auto begin = nats.begin();
+            return static_cast<std::size_t>(std::min_element(begin + static_cast<std::ptrdiff_t>(from),
+                                                             begin + static_cast<std::ptrdiff_t>(to)) -
+                                            begin);
+        };
+        const std::size_t causes = found_.causes.size();
+        const std::size_t least = least_of(0, nats.size());
+        if (nats[least] <= 0.0) { return least; }
+        if (causes > 0 && measured_->named.value > measured_->before.value) { return least_of(0, causes); }
+        const bool forms_harm = !unnamed_.empty() && measured_->after.value > measured_->named.value;
+        return forms_harm ? std::optional(least_of(causes, nats.size())) : std::nullopt;
+    }
+
+    // A sensor that was turned and whose reference nobody knows leaves its motion.
+    void model_what_is_left(const Hypotheses& first) {
+        unnamed_.clear();
+        if (answer_.p_left >= left_from_p() || seems_to_have_turned(*first.observation)) { return; }
+        unnamed_ = unnamed_forms(prediction_->with(found_.corrected), recording_, options_.seed);
+    }
+
+    bool judge_what_forms_leave() {
+        SensorModel model = found_.corrected;
+        for (const Finding& form : unnamed_) { model = with_cause(std::move(model), form); }
+        after_forms_ = remainder_of(model);
+        return after_forms_.has_value();
+    }
+
+    bool judge_what_is_left() {
         if (found_.causes.empty()) {
             remainder_.reset();
             answer_.p_left = answer_.p_none;
             return true;
         }
-        answer_.corrected = found_.corrected;
-        answer_.noise_refits = found_.noise_refits;
-        return true;
+        remainder_ = remainder_of(found_.corrected);
+        if (remainder_) { answer_.p_left = remainder_->p; }
+        return remainder_.has_value();
     }
 
-    bool judge_what_is_left() {
+    std::optional<Remainder> remainder_of(const SensorModel& model) const {
         RemainderOptions options;
         options.simulations =
             simulation_options(std::min(options_.simulations, options_.simulations_after_most),
                                RandomPurpose::simulations_after);
         options.simulations.on_progress = progress("simulating the corrected model", 0.7, 0.1);
         options.doubted_below_p = left_from_p();
-        const auto prediction = prediction_->with(found_.corrected);
-        remainder_ = judge_remainder(prediction, Observation(prediction, recording_, options_.seed), options);
-        if (remainder_) { answer_.p_left = remainder_->p; }
-        return remainder_.has_value();
+        const auto prediction = prediction_->with(model);
+        return judge_remainder(prediction, Observation(prediction, recording_, options_.seed), options);
     }
 
     // What causes leave is by chance where its probability is more.
@@ -219,6 +261,12 @@ private:
         return causes;
     }
 
+    std::vector<Finding> findings_and_forms() const {
+        std::vector<Finding> all = findings();
+        all.insert(all.end(), unnamed_.begin(), unnamed_.end());
+        return all;
+    }
+
     // The corrected model less its causes, which were added last.
     static SensorModel without_causes(SensorModel corrected, const std::vector<Finding>& causes) {
         std::size_t entries = 0;
@@ -228,10 +276,10 @@ private:
     }
 
     GapTrial trial_on_halves() {
-        GapTrial trial{recording_, {}, {}, findings(), 0.0, 0.0};
-        trial.without_causes = without_causes(found_.corrected, trial.causes);
+        GapTrial trial{recording_, {}, {}, findings_and_forms(), 0.0, 0.0, unnamed_.size()};
+        trial.without_causes = without_causes(found_.corrected, findings());
         answer_.not_held_out.clear();
-        for (const Finding& cause : trial.causes) {
+        for (const Finding& cause : findings()) {
             if (!can_be_halved(cause.effect, *prediction_)) {
                 append_new(answer_.not_held_out, {cause.effect});
             }
@@ -249,7 +297,7 @@ private:
     // What happened at one time of the first recording did not happen in the second.
     GapTrial trial_on_holdout() {
         answer_.held_out = options_.holdout->name;
-        GapTrial trial{options_.holdout, {}, {}, findings(), 0.0, 0.0};
+        GapTrial trial{options_.holdout, {}, {}, findings_and_forms(), 0.0, 0.0, unnamed_.size()};
         std::vector<std::optional<Finding>> lasting;
         for (Finding& cause : trial.causes) {
             const bool is_gone = is_event(cause);
@@ -296,7 +344,9 @@ private:
 
     void decide() {
         const JudgedCurves last = last_curves();
-        answer_.left = places_that_stand_out(last.curves, last.reference);
+        const std::optional<Remainder>& left = after_forms_;
+        answer_.left = left ? places_that_stand_out(left->curves, left->reference)
+                            : places_that_stand_out(last.curves, last.reference);
         answer_.better_shape = better_shape(found_, prediction_, recording_,
                                             {.seed = options_.seed, .threads = options_.threads});
         for (std::size_t i = 0; i < found_.causes.size(); ++i) {
@@ -305,6 +355,9 @@ private:
             cause.share = measured_->shares[i];
             cause.sense = sense_of(cause.finding);
             answer_.causes.push_back(std::move(cause));
+        }
+        for (std::size_t i = 0; i < unnamed_.size(); ++i) {
+            answer_.unnamed.push_back(unnamed_of(unnamed_[i], measured_->shares[found_.causes.size() + i]));
         }
         std::ranges::stable_sort(answer_.causes, std::greater{},
                                  [](const Cause& cause) { return cause.share.value; });
@@ -317,12 +370,12 @@ private:
     void describe_measured_gap() {
         if (!measured_) { return; }
         answer_.gap_before = measured_->before;
-        answer_.gap_named = answer_.gap_after = found_.causes.empty() ? measured_->before : measured_->named;
+        answer_.gap_named = found_.causes.empty() ? measured_->before : measured_->named;
+        answer_.gap_after = unnamed_.empty() ? answer_.gap_named : measured_->after;
         answer_.floor_nats = measured_->floor_nats;
         answer_.excess_nats = measured_->excess_nats;
-        if (found_.causes.empty()) { return; }
-        answer_.shrink = measured_->shrink;
-        answer_.shrink_modelled = measured_->shrink.value;
+        if (!found_.causes.empty()) { answer_.shrink = measured_->shrink; }
+        answer_.shrink_modelled = unnamed_.empty() ? answer_.shrink.value : measured_->shrink_modelled.value;
     }
 
     Verdict verdict() const {
@@ -383,7 +436,9 @@ private:
     Diagnosis answer_;
     NullJudgement null_;
     CauseSelection found_;
-    std::optional<Remainder> remainder_;
+    std::vector<Finding> unnamed_;
+    std::optional<Remainder> remainder_;    // of the causes
+    std::optional<Remainder> after_forms_;  // of the forms without a name
     std::optional<MeasuredGap> measured_;
 };
 

@@ -68,6 +68,8 @@ Action setup_diagnose(CLI::App& app) {
         ->check(png_file());
     app.add_option("--model-out", request.model_out_path, "Write the model with the causes added")
         ->type_name("FILE");
+    app.add_flag("--unnamed", request.with_unnamed, "Into --model-out also what was modelled without a name")
+        ->needs(app.get_option("--model-out"));
     app.add_option("--holdout", request.holdout_path,
                    "A second recording of the sensor: the gap is measured on it")
         ->type_name("RECORDING");
@@ -92,8 +94,8 @@ Action setup_diagnose(CLI::App& app) {
     app.add_option("--lsb-dps", request.lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());
-    for (const char* of_recordings :
-         {"--auto", "--holdout", "--average", "--simulations", "--seed", "--threads", "--lsb-dps"}) {
+    for (const char* of_recordings : {"--auto", "--unnamed", "--holdout", "--average", "--simulations",
+                                      "--seed", "--threads", "--lsb-dps"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

@@ -151,7 +151,10 @@ Status write_results(Console& console, const RecordingDiagnosisRequest& request,
     results.file(request.plot_path, [&] {
         return write_diagnosis_plot(diagnosis, "recording", facts_of(diagnosis), request.plot_path);
     });
-    results.text(request.model_out_path, [&] { return format_model(diagnosis.corrected); });
+    results.text(request.model_out_path, [&] {
+        return format_model(request.with_unnamed ? with_unnamed(diagnosis.corrected, diagnosis)
+                                                 : diagnosis.corrected);
+    });
     return results.finish();
 }
 

@@ -18,6 +18,7 @@ struct RecordingDiagnosisRequest {
     std::string json_path;     // "-" is standard output; empty: not wanted
     std::string plot_path;
     std::string model_out_path;  // the model with the causes added
+    bool with_unnamed = false;   // and what was modelled without a name
     std::optional<double> lsb_dps;
     std::size_t average = 1;  // samples of which means are looked at
     std::size_t simulations = 200;

@@ -231,6 +231,15 @@ std::string sentences_text(const char* title, const std::vector<std::string>& se
     return text;
 }
 
+// What makes most of what the causes do not; nothing where that has no place.
+std::string unnamed_sentence(const Diagnosis& diagnosis) {
+    if (diagnosis.unnamed.empty()) { return {}; }
+    const Unnamed& most = *std::ranges::max_element(diagnosis.unnamed, {}, &Unnamed::share);
+    return wrapped_text(
+        "", fmt::format("{} on {} that no known effect has makes {} of the gap", words_of_form(most.form),
+                        axes_text(most.where.axes), percent_text(most.share)));
+}
+
 // `causes`: their names.
 std::string verdict_on(const std::string& causes, const Diagnosis& diagnosis, std::string_view of) {
     const bool one = diagnosis.causes.size() == 1;
@@ -280,7 +289,8 @@ std::string short_verdict_sentence(const Diagnosis& diagnosis, std::string_view 
 }
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {
-    std::string text = verdict_sentence(diagnosis) + "\n\n" + heading_text(diagnosis);
+    std::string text =
+        verdict_sentence(diagnosis) + "\n" + unnamed_sentence(diagnosis) + "\n" + heading_text(diagnosis);
     text += gap_section(diagnosis);
     if (diagnosis.verdict != Verdict::none) {
         text += explained_section(diagnosis) + left_section(diagnosis);

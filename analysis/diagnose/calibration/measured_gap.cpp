@@ -92,6 +92,9 @@ public:
             views_.push_back(fold.given->with(corrected_));
             add_paired(without(fold.causes, trial.causes.size()));
         }
+        for (const Fold& fold : trial.folds) {
+            if (trial.unnamed > 0) { add_paired(without(named_of(fold), trial.causes.size())); }
+        }
     }
 
     std::optional<MeasuredGap> run() {
@@ -101,19 +104,28 @@ public:
         gap.floor_nats = floor_nats_;
         const Surprisal before = of_recording(
             [&](std::size_t f) { return std::pair(paired_[given_].views[f], shift_of(given_, f)); });
-        const Surprisal named = of_recording([&](std::size_t f) {
-            return std::pair(paired_[fold_model(f)].views[f], shift_of(fold_model(f), f));
-        });
+        const auto with_models = [&](auto model_of_fold) {
+            return of_recording([&](std::size_t f) {
+                const std::size_t model = model_of_fold(f);
+                return std::pair(paired_[model].views[f], shift_of(model, f));
+            });
+        };
+        const Surprisal after = with_models([&](std::size_t f) { return fold_model(f); });
+        const Surprisal named =
+            trial_.unnamed == 0 ? after : with_models([&](std::size_t f) { return named_model(f); });
         const double before_nats = before.nats + trial_.stamps_before_nats;
         const double named_nats = named.nats + trial_.stamps_named_nats;
+        const double after_nats = after.nats + trial_.stamps_named_nats;
         gap.before = gap_of_nats(before_nats, before);
         gap.named = gap_of_nats(named_nats, named);
+        gap.after = gap_of_nats(after_nats, after);
         gap.excess_nats = std::max(before_nats - floor_nats_, floor_sd_nats_);
         gap.shrink = shrink(named_nats, named, gap.excess_nats);
+        gap.shrink_modelled = shrink(after_nats, after, gap.excess_nats);
         for (std::size_t i = 0; i < trial_.causes.size(); ++i) {
             const Surprisal left_out = of_recording([&](std::size_t f) { return view_without(i, f); });
             const double stamps_nats = stamps_without_nats(i);
-            const double returning_nats = left_out.nats - named.nats + stamps_nats;
+            const double returning_nats = left_out.nats - after.nats + stamps_nats;
             gap.returning_nats.push_back(returning_nats);
             gap.shares.push_back(share(returning_nats, left_out, gap.excess_nats));
         }
@@ -125,6 +137,11 @@ private:
     std::size_t folds() const { return trial_.folds.size(); }
     static std::size_t model_without(std::size_t cause) { return 1 + cause; }
     std::size_t fold_model(std::size_t fold) const { return 1 + trial_.causes.size() + fold; }
+    std::size_t named_model(std::size_t fold) const { return fold_model(folds() + fold); }
+
+    std::vector<std::optional<Finding>> named_of(const Fold& fold) const {
+        return {fold.causes.begin(), fold.causes.end() - static_cast<std::ptrdiff_t>(trial_.unnamed)};
+    }
 
     std::vector<std::optional<Finding>> whole_fit() const {
         return {trial_.causes.begin(), trial_.causes.end()};

@@ -24,7 +24,8 @@
 
 namespace gyrolog {
 
-// A fold is a part of the data that judges, with the causes as the other part has them.
+// A fold is a part of the data that judges, with the causes and the forms without a name as the other part
+// has them.
 struct Fold {
     std::shared_ptr<const Prediction> given;  // of the model that was given, for the part that judges
     std::vector<std::optional<Finding>> causes;
@@ -33,11 +34,13 @@ struct Fold {
 struct GapTrial {
     std::shared_ptr<const Recording> recording;  // that the folds are parts of
     std::vector<Fold> folds;                     // of one world
-    SensorModel without_causes;                  // the corrected model without them
-    std::vector<Finding> causes;                 // as the whole of the data that were fitted has them
+    SensorModel without_causes;                  // the corrected model without causes and forms
+    // As the whole of the data that were fitted has them: the causes, then the forms without a name.
+    std::vector<Finding> causes;
     // Evidence in the time stamps beyond a model: simulations copy stamps, so that no curve shows it.
     double stamps_before_nats = 0.0;
     double stamps_named_nats = 0.0;
+    std::size_t unnamed = 0;  // how many of `causes` are forms without a name
 };
 
 struct MeasuredGapOptions {
@@ -52,9 +55,11 @@ struct MeasuredGapOptions {
 
 struct MeasuredGap {
     Gap before, named;
+    Gap after;  // with the forms without a name; `named` where there are none
     Share shrink;
-    std::vector<Share> shares;           // by cause
-    std::vector<double> returning_nats;  // by cause: the surprisal that returns without it
+    Share shrink_modelled;               // with those forms
+    std::vector<Share> shares;           // by cause or form
+    std::vector<double> returning_nats;  // by cause or form: the surprisal that returns without it
     double floor_nats = 0.0;             // a simulation's surprisal
     double excess_nats = 0.0;            // the recording's under the first model, beyond that
 };

@@ -4,8 +4,10 @@
 #include <iterator>
 
 #include "analysis/diagnose/estimators/bias_step.hpp"
+#include "analysis/diagnose/estimators/density_table.hpp"
 #include "analysis/diagnose/estimators/line.hpp"
 #include "analysis/diagnose/estimators/mean_response.hpp"
+#include "analysis/diagnose/estimators/mean_table.hpp"
 #include "analysis/diagnose/estimators/noise_spectrum.hpp"
 #include "analysis/diagnose/estimators/outliers.hpp"
 #include "analysis/diagnose/estimators/quantisation_step.hpp"
@@ -55,6 +57,12 @@ constexpr EstimatorTraits rows[] = {
      .can_be_halved = false},
     {.method = EvidenceMethod::variance_change_point, .make = make_variance_change_point_estimator},
     {.method = EvidenceMethod::variance_with_temperature, .make = make_variance_with_temperature_estimator},
+    {.method = EvidenceMethod::density_table,
+     .make = make_density_table_estimator,
+     .is_noise = true,
+     .shows_in_means = false},
+    {.method = EvidenceMethod::temperature_table, .make = make_temperature_table_estimator},
+    {.method = EvidenceMethod::rate_table, .make = make_rate_table_estimator},
     {.method = EvidenceMethod::shared_noise, .make = make_shared_noise_estimator},
     {.method = EvidenceMethod::repeats,
      .make = make_repeat_estimator,
@@ -131,11 +139,16 @@ MadeEstimator make_estimator(const EffectDefinition& effect,
     return make == nullptr ? MadeEstimator{} : make(effect, prediction);
 }
 
+std::string untestable_in(const EffectDefinition& effect, const Prediction& prediction) {
+    return lacking(*effect.signature, prediction);
+}
+
 std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Prediction>& prediction,
                                            unsigned threads) {
     std::vector<CatalogueEntry> catalogue;
     for (const ChainLink& link : signal_chain()) {
         if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
+        if (!link.effect->form.empty()) { continue; }
         catalogue.push_back({link.effect, nullptr, lacking(*link.effect->signature, *prediction)});
     }
     parallel_for(catalogue.size(), threads, [&](std::size_t i) {

@@ -71,7 +71,12 @@ struct CatalogueEntry {
 MadeEstimator make_estimator(const EffectDefinition& effect,
                              const std::shared_ptr<const Prediction>& prediction);
 
-// The catalogue holds every effect that has a signature, in the order of the signal chain.
+// The function says why the recording cannot show the effect at all: no temperature, no reference rate, means
+// of samples. It returns nothing where the recording may.
+std::string untestable_in(const EffectDefinition& effect, const Prediction& prediction);
+
+// The catalogue holds every effect that has a signature and a name of its own, in the order of the signal
+// chain.
 std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Prediction>& prediction,
                                            unsigned threads = 1);
 

@@ -6,6 +6,7 @@
 
 #include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/gain_band.hpp"
 #include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
 #include "analysis/diagnose/likelihood/whittle.hpp"
@@ -202,26 +203,12 @@ private:
                 const AxisObservation& seen = observation.axis(axis);
                 const std::vector<SpectralParts> parts = changed_parts(axis, entry.params);
                 for (std::size_t i = 0; i < bins.size(); ++i) {
-                    const double after = parts[i].sum();
-                    const double before = prediction_->parts(axis)[i].sum();
-                    const double ratio = seen.power[i];
-                    arises[i] +=
-                        0.5 * bins[i].count() * (std::log(before / after) + ratio / before - ratio / after);
+                    arises[i] += bin_gain_nats(bins[i], seen.power[i], prediction_->parts(axis)[i].sum(),
+                                               parts[i].sum());
                 }
             }
         }
-        double sum = 0.0;
-        for (double& share : arises) { sum += share = std::max(share, 0.0); }
-        double below = 0.0;
-        Span band{bins.front().f_hz, bins.back().f_hz};
-        for (std::size_t i = 0; i < bins.size(); ++i) {
-            if (below < 0.05 * sum) { band.from = bins[i].f_hz; }
-            if (below < 0.95 * sum) { band.to = bins[i].f_hz; }
-            below += arises[i];
-        }
-        finding.where.freq_hz = band;
-        // Where the Allan deviation looks at the band: its filter peaks at 0.37 / tau.
-        finding.where.tau_s = {0.37 / band.to, 0.37 / band.from};
+        put_gain_band(bins, std::move(arises), finding.where);
     }
 
     const EffectDefinition& effect_;

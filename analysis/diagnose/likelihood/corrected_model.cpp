@@ -20,4 +20,11 @@ SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const
     return model;
 }
 
+SensorModel with_unnamed(SensorModel model, const Diagnosis& diagnosis) {
+    for (const Unnamed& form : diagnosis.unnamed) {
+        model.effects.insert(model.effects.end(), form.entries.begin(), form.entries.end());
+    }
+    return model;
+}
+
 }  // namespace gyrolog

@@ -82,9 +82,11 @@ private:
     void join_causes() {
         whole_.causes = beginning_.causes;
         whole_.causes.insert(whole_.causes.end(), means_.causes.begin(), means_.causes.end());
+        whole_.unnamed.insert(whole_.unnamed.end(), other().unnamed.begin(), other().unnamed.end());
         if (!whole_.better_shape) { whole_.better_shape = other().better_shape; }
         whole_.left.insert(whole_.left.end(), other().left.begin(), other().left.end());
         std::ranges::stable_sort(whole_.left, std::ranges::greater{}, &Left::size);
+        std::ranges::stable_sort(whole_.unnamed, std::ranges::greater{}, &Unnamed::share);
     }
 
     const Diagnosis& other() const { return &main_ == &means_ ? beginning_ : means_; }

@@ -14,6 +14,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/simulate/known_motion.hpp"
 #include "analysis/simulate/plain_model.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
@@ -182,6 +183,35 @@ TEST(Diagnosis, HoldsGainsAgainstRivalsBesideEachOther) {
     DiagnosisOptions options;
     options.simulations = 20;
     expect_turntable_gains(*diagnose(recording, plain_model(*recording)->model, "plain", options));
+}
+
+// Two humps and a hollow: no effect of the catalogue. The model with the form is that of another recording,
+// too.
+TEST(Diagnosis, ModelsWithoutANameWhatNoEffectIs) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel sensor = model;
+    sensor.effects.push_back({"density_table",
+                              {"x", "y"},
+                              {},
+                              "",
+                              {{"f_hz", {8.0, 12.0, 16.0, 22.0, 28.0, 34.0, 40.0, 44.0, 50.0}},
+                               {"factor", {1.0, 2.5, 1.0, 1.0, 0.4, 1.0, 1.0, 2.0, 1.0}}}});
+    DiagnosisOptions options;
+    options.simulations = 24;
+    const Diagnosis answer = *diagnose(recorded(sensor, 48'000, 98), model, "model", options);
+    EXPECT_NE(answer.verdict, Verdict::known);
+    ASSERT_FALSE(answer.unnamed.empty());
+    EXPECT_EQ(answer.unnamed.front().form, "density");
+    EXPECT_LT(answer.gap_after.value, answer.gap_named.value);
+    EXPECT_LT(answer.gap_after.value, 1.5);
+    EXPECT_GT(answer.gap_before.value, 3.0);
+    EXPECT_GT(answer.shrink_modelled, 0.95);
+    EXPECT_GT(answer.unnamed.front().share, 0.3);
+    const auto again = recorded(sensor, 48'000, 99);
+    const Diagnosis with_form = *diagnose(again, with_unnamed(answer.corrected, answer), "form", options);
+    EXPECT_LT(with_form.gap_before.value, 1.5);
+    const Diagnosis without_form = *diagnose(again, answer.corrected, "named", options);
+    EXPECT_GT(without_form.gap_before.value, 2.0);
 }
 
 // A jump of the first recording is none of the second, in which a correction by it would be a gap.

@@ -48,15 +48,15 @@ TEST(Catalogue, KnowsWhatEachEffectIs) {
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_not_normal; }),
                 ElementsAre("heavy_tail", "rtn", "spikes"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_noise; }),
-                ElementsAre("arw_scale", "flicker_missing", "gauss_markov", "heavy_tail", "lowpass",
-                            "rrw_missing", "rtn"));
+                ElementsAre("arw_scale", "density_table", "flicker_missing", "gauss_markov", "heavy_tail",
+                            "lowpass", "rrw_missing", "rtn"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.far_off == FarOff::single_samples; }),
                 ElementsAre("spikes"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.far_off == FarOff::in_distribution; }),
                 ElementsAre("heavy_tail"));
     EXPECT_THAT(effects_with([](const auto& t) { return !t.shows_in_means; }),
-                ElementsAre("clock_jitter", "clock_rate", "dropped", "heavy_tail", "quantization",
-                            "saturation", "stale"));
+                ElementsAre("clock_jitter", "clock_rate", "density_table", "dropped", "heavy_tail",
+                            "quantization", "saturation", "stale"));
     EXPECT_THAT(effects_with([](const auto& t) { return !t.can_be_halved; }),
                 ElementsAre("clock_jitter", "clock_rate", "dropped", "quantization", "rtn", "saturation",
                             "spikes", "stale", "tone"));
