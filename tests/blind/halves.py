@@ -5,6 +5,8 @@ The first half of a recording at rest is diagnosed from a model with white noise
 then simulates recordings like the second half, and measures written apart from analysis/ tell how far those are from
 the second half. The model that `analyze` fits to the first half is the rival.
 
+The corrected model is taken twice: with the named causes alone, and with what was modelled without a name as well.
+
 The measures, by family, for each axis: density in third-octave bands (dB), Allan deviation by octave (dB),
 autocorrelation, tails, repeated samples, spread of the variance over time (dB), slow course (dB), and the correlation
 between axes. A gap's square is the mean over the families that can see something of the mean over their measures of
@@ -168,9 +170,9 @@ def of_recording(program, data, out, name, begin_s, end_s, count):
     directory = os.path.join(out, name.replace("/", "_"))
     os.makedirs(directory, exist_ok=True)
     log = os.path.join(directory, "log.txt")
-    first, second, white, fitted, corrected, answer = (
+    first, second, white, fitted, corrected, modelled, answer = (
         os.path.join(directory, n) for n in ("first.csv", "second.csv", "white.json", "fitted.json", "corrected.json",
-                                             "diagnosis.json"))
+                                             "modelled.json", "diagnosis.json"))
     header, a, b = halves_of(os.path.join(data, name + ".csv.xz"), begin_s, end_s)
     write_lines(first, header, a)
     write_lines(second, header, b)
@@ -179,18 +181,23 @@ def of_recording(program, data, out, name, begin_s, end_s, count):
         json.dump(white_model(rates_dps, rate_hz), file)
     scale = ["--lsb-dps", repr(LSB_DPS)] if "_lsb" in header else []
     program_says([program, "analyze", first, "--model", fitted, *scale], log)
-    program_says([program, "diagnose", first, "--model", white, "--json", answer, "--model-out", corrected, *scale],
-                 log)
+    program_says([program, "diagnose", first, "--model", white, "--json", answer, "--model-out", modelled, "--unnamed",
+                  *scale], log)
+    with open(modelled) as file:
+        model = json.load(file)
+    model.pop("unnamed", None)
+    with open(corrected, "w") as file:
+        json.dump(model, file)
     real = measures(*read_rates(second))
     gaps = {"white": gap_squares(real, simulated(program, white, second, directory, count, log))}
-    models = {"analyze": fitted, "named": corrected}
+    models = {"analyze": fitted, "named": corrected, "unnamed": modelled}
     for model, path in models.items():
         gaps[model] = gap_squares(real, simulated(program, path, second, directory, count, log))
     with open(answer) as file:
         said = json.load(file)
     result = {"name": name, "gap_squares": gaps, "verdict": said["verdict"],
               "causes": [(c["effect"], c.get("axes") or c.get("where", {}).get("axes"), c.get("share")) for c in
-                         said["causes"]]}
+                         said["causes"]] + [(f"no name: {u['form']}", u["axes"], u["share"]) for u in said["unnamed"]]}
     with open(os.path.join(directory, "result.json"), "w") as file:
         json.dump(result, file, indent=1)
     return result
