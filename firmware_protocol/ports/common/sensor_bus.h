@@ -1,6 +1,6 @@
-/// SPI to the MPU-9250: the high-speed SPI (Flexcomm 8), mode 3, chip select by a GPIO.
-#ifndef GYROLOG_PORT_LPCXPRESSO55S69_SENSOR_BUS_H
-#define GYROLOG_PORT_LPCXPRESSO55S69_SENSOR_BUS_H
+/// SPI to the MPU-9250, chip select by a GPIO.
+#ifndef GYROLOG_PORT_SENSOR_BUS_H
+#define GYROLOG_PORT_SENSOR_BUS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,17 +1,18 @@
 #include "usb_link.h"
 
 #include <device/dcd.h>
-#include <fsl_clock.h>
-#include <fsl_power.h>
-#include <fsl_reset.h>
 #include <gyrolog_protocol/usb_identity.h>
 #include <tusb.h>
 
 #include "handlers.h"
+#include "port.h"
+#include "sample_timer.h"
+#include "usb_controller.h"
 
 enum {
-    PRIORITY_USB = 1,  // below the capture of the sensor's line
-    FRAME_NUMBER_MASK = 0x7FF,
+    FRAME_NUMBER_MASK = 0x7FF,         // wraps after 2048 ms
+    FRAME_COUNT_TICKS = CORE_HZ / 2U,  // between two looks at it
+    // The number fixes the kind on some parts (SPEC 10.2); these numbers suit all.
     NOTIFICATION_IN = 0x81,
     DATA_OUT = 0x02,
     DATA_IN = 0x82,
@@ -61,7 +62,7 @@ const uint8_t usb_link_configuration_descriptor[CONFIGURATION_BYTES] = {
 // clang-format on
 _Static_assert(DATA_PACKET_BYTES == GLP_USB_PACKET_BYTES, "SPEC 10.2");
 
-const char usb_link_product[] = GLP_USB_PRODUCT_PREFIX " LPC55S69-EVK";
+const char usb_link_product[] = GLP_USB_PRODUCT_PREFIX " " PORT_BOARD;
 
 static char serial[TEXT_MAX + 1];
 static void (*line_state_changed)(bool dtr);
@@ -69,6 +70,7 @@ static bool dtr_told;
 static volatile bool bus_was_reset;
 static uint32_t frames;
 static uint32_t last_frame;
+static uint32_t frames_counted_ticks;
 
 static void tell(bool dtr) {
     if (dtr == dtr_told) { return; }
@@ -84,38 +86,26 @@ static void write_serial(const uint8_t uid[GLP_UID_BYTES]) {
     }
 }
 
-static void power_controller(void) {
-    POWER_DisablePD(kPDRUNCFG_PD_USB0_PHY);
-    RESET_PeripheralReset(kUSB0D_RST_SHIFT_RSTn);
-    RESET_PeripheralReset(kUSB0HSL_RST_SHIFT_RSTn);
-    RESET_PeripheralReset(kUSB0HMR_RST_SHIFT_RSTn);
-    // UM11126, USB0: the port belongs to the host controller until PORTMODE gives it away, which needs that
-    // controller's clock.
-    CLOCK_EnableClock(kCLOCK_Usbhsl0);
-    USBFSH->PORTMODE |= USBFSH_PORTMODE_DEV_ENABLE_MASK;
-    CLOCK_DisableClock(kCLOCK_Usbhsl0);
-    CLOCK_EnableClock(kCLOCK_Usbd0);
-    CLOCK_EnableClock(kCLOCK_UsbRam1);
-}
-
 void usb_link_start(const uint8_t uid[GLP_UID_BYTES], void (*on_line_state)(bool dtr)) {
     line_state_changed = on_line_state;
     write_serial(uid);
-    power_controller();
-    NVIC_SetPriority(USB0_IRQn, PRIORITY_USB);
+    usb_controller_start();
     const tusb_rhport_init_t device = {.role = TUSB_ROLE_DEVICE, .speed = TUSB_SPEED_FULL};
     tusb_init(0, &device);
 }
 
 static void count_frames(void) {
-    const uint32_t now = USB0->INFO & FRAME_NUMBER_MASK;
+    if (!tud_ready()) { return; }  // no tokens come, and a suspended controller need not answer
+    const uint32_t now = usb_controller_frame_number() & FRAME_NUMBER_MASK;
     frames += (now - last_frame) & FRAME_NUMBER_MASK;
     last_frame = now;
+    frames_counted_ticks = sample_timer_now();
 }
 
 void usb_link_poll(void) {
     tud_task();
-    count_frames();
+    usb_controller_poll();
+    if (sample_timer_now() - frames_counted_ticks > FRAME_COUNT_TICKS) { count_frames(); }
     if (bus_was_reset) {
         bus_was_reset = false;
         tell(false);
@@ -130,12 +120,12 @@ size_t usb_link_write(const uint8_t* bytes, size_t size) {
 }
 // TinyUSB ends a transfer of full packets by a zero-length one of its own accord when nothing follows.
 void usb_link_flush(void) { tud_cdc_write_flush(); }
-uint32_t usb_link_frame_number(void) { return frames; }
+uint32_t usb_link_frame_number(void) {
+    count_frames();
+    return frames;
+}
 
-void on_usb(void) { tusb_int_handler(0, true); }
-
-// -------------------------------------------------------------------------------------- what TinyUSB asks
-// for
+// ---------------------------------------------------------------------------- what TinyUSB asks for
 
 // In the interrupt: a host that resets the bus and opens the port again between two polls must not look as if
 // DTR had never fallen.

@@ -1,10 +1,10 @@
-// The port: what the board's core is supplied with, and the main loop.
-#include <fsl_device_registers.h>
-
+// What the board's core is supplied with, and the main loop. What differs between the ports is in their
+// port.h.
 #include "../../device/board.h"
 #include "clocks.h"
 #include "handlers.h"
 #include "pins.h"
+#include "port.h"
 #include "sample_timer.h"
 #include "sensor_bus.h"
 #include "supervision.h"
@@ -17,7 +17,7 @@ enum {
 };
 
 static glp_board board;
-static uint8_t ring[RING_BYTES];
+PORT_RING_SECTION static uint8_t ring[RING_BYTES];
 
 static uint64_t ticks(void* context) {
     (void)context;
@@ -84,7 +84,7 @@ static bool start(void) {
     clocks_start();
     sample_timer_start(on_edge);
     sensor_bus_start();
-    glp_board_identity identity = {.firmware = "gyrolog lpc55s69",
+    glp_board_identity identity = {.firmware = PORT_FIRMWARE,
                                    .tick_hz = CORE_HZ,
                                    .tick_bits = 32,
                                    .rate_max_mHz = RATE_MAX_mHz,

@@ -1,6 +1,6 @@
 /// What the vectors of this port point to.
-#ifndef GYROLOG_PORT_LPCXPRESSO55S69_HANDLERS_H
-#define GYROLOG_PORT_LPCXPRESSO55S69_HANDLERS_H
+#ifndef GYROLOG_PORT_HANDLERS_H
+#define GYROLOG_PORT_HANDLERS_H
 
 void reset(void);
 void run(void);

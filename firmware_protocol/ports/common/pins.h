@@ -1,6 +1,6 @@
-/// The board's pins: sensor on the Arduino headers, the RGB LED. The table of wires is in README.md.
-#ifndef GYROLOG_PORT_LPCXPRESSO55S69_PINS_H
-#define GYROLOG_PORT_LPCXPRESSO55S69_PINS_H
+/// The board's pins: the sensor, and an LED of three colours. The table of wires is in the port's README.md.
+#ifndef GYROLOG_PORT_PINS_H
+#define GYROLOG_PORT_PINS_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /// The USB side of the board: CDC-ACM of SPEC section 10 on TinyUSB's device stack.
-#ifndef GYROLOG_PORT_LPCXPRESSO55S69_USB_LINK_H
-#define GYROLOG_PORT_LPCXPRESSO55S69_USB_LINK_H
+#ifndef GYROLOG_PORT_USB_LINK_H
+#define GYROLOG_PORT_USB_LINK_H
 
 #include <gyrolog_protocol/message.h>
 #include <stdbool.h>

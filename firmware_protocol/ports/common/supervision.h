@@ -1,6 +1,6 @@
 /// What the part knows about its own life: unique number, number of this boot, why it was reset, watchdog.
-#ifndef GYROLOG_PORT_LPCXPRESSO55S69_SUPERVISION_H
-#define GYROLOG_PORT_LPCXPRESSO55S69_SUPERVISION_H
+#ifndef GYROLOG_PORT_SUPERVISION_H
+#define GYROLOG_PORT_SUPERVISION_H
 
 #include <gyrolog_protocol/message.h>
 #include <stdint.h>
@@ -9,7 +9,7 @@
 void supervision_start_watchdog(void);
 void supervision_feed(void);
 void supervision_read_uid(uint8_t uid[GLP_UID_BYTES]);
-/// A random number of the part's generator: differs from boot to boot, but does not count.
+/// A random number: differs from boot to boot, but does not count.
 uint32_t supervision_boot_id(void);
 glp_reset_cause supervision_reset_cause(void);
 

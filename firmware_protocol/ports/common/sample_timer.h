@@ -1,7 +1,7 @@
 /// The timer that time stamps are taken from: 32 bits at CORE_HZ, captured by the data-ready line itself, so
 /// that no interrupt latency enters a stamp.
-#ifndef GYROLOG_PORT_LPCXPRESSO55S69_SAMPLE_TIMER_H
-#define GYROLOG_PORT_LPCXPRESSO55S69_SAMPLE_TIMER_H
+#ifndef GYROLOG_PORT_SAMPLE_TIMER_H
+#define GYROLOG_PORT_SAMPLE_TIMER_H
 
 #include <stdint.h>
 
