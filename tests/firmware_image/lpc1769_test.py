@@ -176,6 +176,15 @@ class Image(unittest.TestCase):
         bench.host.read_for(200 * MS)
         self.check_stream(bench, 10)
 
+    def test_a_suspended_bus_ends_the_stream(self):
+        bench = Bench()
+        bench.host.set_line(dtr=True)
+        bench.host.read_for(100 * MS)
+        bench.part.usb.suspend(True)
+        bench.host.frame_at = None
+        bench.host.run(20 * MS)
+        self.assertFalse(bench.part.led(*BLUE))
+
     def test_without_a_sensor_it_answers_and_says_which_register_is_wrong(self):
         sensor = Mpu9250(value_of)
         sensor.wired = False

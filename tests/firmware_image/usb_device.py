@@ -231,7 +231,9 @@ class UsbDevice(Registers):
             endpoint = self.endpoints[self.command - 0x40]
             if endpoint.index > 1 and not data & 1:
                 endpoint.buffers = []
-            endpoint.stalled = bool(data & 0x81)
+            endpoint.stalled = bool(data & 0x01)
+            if data & 0x80:  # both control endpoints, until the next SETUP
+                self.endpoints[0].stalled = self.endpoints[1].stalled = True
         elif self.command != 0xF3:
             raise Violation(f"data for command {self.command:02x}")
 

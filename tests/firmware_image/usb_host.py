@@ -6,6 +6,7 @@ import struct
 from usb_device import ACK, NAK, STALL
 
 FRAME_TICKS = 100_000
+FIRST_FRAME = 2000    # of 2048: the number wraps in every test
 TRANSACTION_TICKS = 5_500  # a bulk packet of 64 bytes takes about 50 us of a full-speed bus
 GET_DESCRIPTOR, SET_ADDRESS, SET_CONFIGURATION = 6, 5, 9
 SET_LINE_CODING, GET_LINE_CODING, SET_CONTROL_LINE_STATE = 0x20, 0x21, 0x22
@@ -19,10 +20,10 @@ class Stalled(Exception):
 class UsbHost:
     def __init__(self, part):
         self.machine, self.device = part.machine, part.usb
+        self.device.frame = FIRST_FRAME
         self.address = 0
         self.frame_at = None
         self.received = bytearray()
-        self.packets = []
 
     def run(self, ticks):
         """Lets the part run, with a start of frame every millisecond."""
@@ -92,11 +93,20 @@ class UsbHost:
         self.address = 7
         self.run(2 * FRAME_TICKS)
         self.device_descriptor = self.descriptor(1, size=18)
+        self.refused(lambda: self.descriptor(6, size=10))  # the qualifier of a device that knows high speed too
         size = struct.unpack_from("<H", self.descriptor(2, size=9), 2)[0]
         self.configuration = self.descriptor(2, size=size)
         self.product, self.serial = self.text(self.device_descriptor[15]), self.text(self.device_descriptor[16])
         self.control(0, SET_CONFIGURATION, 1, 0, b"")
         self.bulk = {entry[2] >> 7: entry[2] & 15 for entry in self.entries() if entry[1] == 5 and entry[3] & 3 == 2}
+
+    @staticmethod
+    def refused(request):
+        try:
+            request()
+        except Stalled:
+            return
+        raise IOError("what a full-speed device does not have was answered")
 
     def entries(self):
         """The descriptors of which the configuration consists."""
@@ -118,7 +128,6 @@ class UsbHost:
         if answer in (STALL, None):
             raise IOError(f"IN: {answer}")
         if answer != NAK:
-            self.packets.append(len(answer))
             self.received += answer
         return answer != NAK
 
