@@ -1,5 +1,4 @@
-// SSP1. Its chip select rises between bytes in this mode of the part's own; the GPIO of pins.c takes its
-// place.
+// SSP1. Its own chip select would rise whenever the FIFO runs empty; the GPIO of pins.c takes its place.
 #include "spi.h"
 
 #include "port.h"
