@@ -42,6 +42,7 @@ constexpr ChainLink links[] = {
     effect(warmup_effect),
     effect(temp_linear_effect),
     effect(temp_quadratic_effect),
+    effect(temp_cubic_effect),
     effect(temp_lag_effect),
     effect(temperature_table_effect),
     own(make_rate_ramp),

@@ -50,6 +50,10 @@ constexpr std::array rates_per_C2 = {
     WrittenUnit{1e-3, 1.0, " deg/s per degC^2"},
     WrittenUnit{0.0, per_hour, " deg/h per degC^2"},
 };
+constexpr std::array rates_per_C3 = {
+    WrittenUnit{1e-3, 1.0, " deg/s per degC^3"},
+    WrittenUnit{0.0, per_hour, " deg/h per degC^3"},
+};
 constexpr std::array rates_per_g = {
     WrittenUnit{1e-3, 1.0, " deg/s per g"},
     WrittenUnit{0.0, per_hour, " deg/h per g"},
@@ -80,6 +84,7 @@ constexpr std::array plain = {WrittenUnit{0.0, 1.0, ""}};
 constexpr QuantityKind kinds[] = {
     {"_dps_per_sqrt_hz", angle_walks},
     {"_dps_sqrt_hz", rate_walks},
+    {"_dps_per_C3", rates_per_C3},
     {"_dps_per_C2", rates_per_C2},
     {"_dps_per_C", rates_per_C},
     {"_dps_per_g2", rates_per_g2},

@@ -33,6 +33,7 @@ extern const EffectDefinition scale_factor_effect;
 extern const EffectDefinition self_heating_effect;
 extern const EffectDefinition spikes_effect;
 extern const EffectDefinition stale_effect;
+extern const EffectDefinition temp_cubic_effect;
 extern const EffectDefinition temp_lag_effect;
 extern const EffectDefinition temp_linear_effect;
 extern const EffectDefinition temp_noise_effect;

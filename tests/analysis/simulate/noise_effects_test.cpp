@@ -139,6 +139,26 @@ TEST(TemperatureEffects, TheBiasFollowsALineOrAParabolaAboutTheReference) {
         waving_world());
 }
 
+TEST(TemperatureEffects, TheBiasFollowsACubicAboutTheReference) {
+    expect_bias(
+        with_effect(ideal_model(), "temp_cubic",
+                    {{"c1_dps_per_C", 0.03},
+                     {"c2_dps_per_C2", -0.002},
+                     {"c3_dps_per_C3", 0.0004},
+                     {"reference_C", 22.0}},
+                    {"x"}),
+        1e-13,
+        [](std::size_t i) {
+            const double above_C = wave_C(i) - 22.0;
+            return 0.03 * above_C - 0.002 * above_C * above_C + 0.0004 * above_C * above_C * above_C;
+        },
+        waving_world());
+    // The lower orders are none unless given.
+    expect_bias(
+        with_effect(ideal_model(), "temp_cubic", {{"c3_dps_per_C3", 0.0004}}, {"x"}), 1e-13,
+        [](std::size_t i) { return 0.0004 * std::pow(wave_C(i) - 25.0, 3.0); }, waving_world());
+}
+
 TEST(TemperatureEffects, WithoutAReferenceTheModelsOwnCounts) {
     SensorModel model = ideal_model();
     model.temperature = TemperatureModel{.reference_C = 31.0, .bias_rad_s_per_C = {}, .scale_per_C = {}};

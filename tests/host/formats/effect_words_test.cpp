@@ -21,6 +21,7 @@ TEST(EffectWords, WriteQuantitiesInUnitsThatPeopleLike) {
     EXPECT_EQ(quantity_text("delay_s", 0.0032, 0.0001, nullptr), "3.20 ± 0.10 ms");
     EXPECT_EQ(quantity_text("c1_dps_per_C", 0.021, 0.002, nullptr), "0.0210 ± 0.0020 deg/s per degC");
     EXPECT_EQ(quantity_text("c1_dps_per_C", -0.0005, 0.0, nullptr), "-1.8 deg/h per degC");
+    EXPECT_EQ(quantity_text("c3_dps_per_C3", 0.004, 0.001, nullptr), "0.0040 ± 0.0010 deg/s per degC^3");
     EXPECT_EQ(quantity_text("ramp_dps_per_s", 1e-4, 0.0, nullptr), "0.36 deg/s per h");
     EXPECT_EQ(quantity_text("ramp_dps_per_s", 1e-8, 0.0, nullptr), "0.13 deg/h per h");
     EXPECT_EQ(quantity_text("sigma_dps", 0.0125, 0.0, nullptr), "0.0125 deg/s");

@@ -1,0 +1,89 @@
+// A line, a parabola and a cubic over the temperature: each is itself, and none where there is none.
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/estimators/mean_response.hpp"
+#include "analysis/diagnose/selection/forward_selection.hpp"
+#include "tests/analysis/diagnose/observed.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint64_t half_an_hour = 180'000;
+constexpr std::array curves = {"temp_linear", "temp_quadratic", "temp_cubic"};
+
+// Up and down by 12 degC on either side of 27 degC, within half an hour.
+std::shared_ptr<const World> swept() {
+    auto world = std::make_shared<FormulaWorld>();
+    world->temperature_C = [](double t_s) { return 27.0 + 12.0 * triangle(t_s / 1800.0); };
+    return world;
+}
+
+std::map<std::string, double> evidences(const SensorModel& sensor, std::uint64_t seed) {
+    const auto recording = recorded(sensor, half_an_hour, seed, swept());
+    std::map<std::string, double> nats;
+    for (const char* curve : curves) {
+        nats[curve] = evidence(found(make_mean_response_estimator, curve, recording, calibrated_sensor()));
+    }
+    return nats;
+}
+
+TEST(TemperatureCurve, CubicIsFoundWithItsCoefficients) {
+    const std::map<std::string, double> put_in = {
+        {"c1_dps_per_C", 0.004}, {"c2_dps_per_C2", -3e-4}, {"c3_dps_per_C3", 4e-5}};
+    const auto recording =
+        recorded(with_effect(calibrated_sensor(), "temp_cubic", put_in, {"y"}), half_an_hour, 61, swept());
+    const auto finding = found(make_mean_response_estimator, "temp_cubic", recording, calibrated_sensor());
+    ASSERT_TRUE(finding);
+    EXPECT_EQ(finding->where.axes, std::vector<std::size_t>{1});
+    for (const auto& [name, value] : put_in) {
+        EXPECT_NEAR(finding->entries.front().params.at(name), value, 4.0 * finding->sd.front().at(name))
+            << name;
+        EXPECT_LT(finding->sd.front().at(name), 0.3 * std::fabs(value)) << name;
+    }
+}
+
+// The weakest curve of each order that is clearly one: its last term alone has some tens of nats.
+TEST(TemperatureCurve, OfEachOrderIsItself) {
+    const std::array<std::map<std::string, double>, 3> params = {
+        std::map<std::string, double>{{"c1_dps_per_C", 0.002}},
+        {{"c1_dps_per_C", 0.002}, {"c2_dps_per_C2", 2e-4}},
+        {{"c1_dps_per_C", 0.002}, {"c2_dps_per_C2", 2e-4}, {"c3_dps_per_C3", 3e-5}}};
+    for (std::size_t order = 0; order < curves.size(); ++order) {
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+            const SensorModel sensor =
+                with_effect(calibrated_sensor(), curves.at(order), params.at(order), {"x"});
+            const std::map<std::string, double> nats = evidences(sensor, 100 * order + seed);
+            const auto best = std::ranges::max_element(nats, {}, [](const auto& one) { return one.second; });
+            EXPECT_EQ(best->first, curves.at(order)) << seed << " " << testing::PrintToString(nats);
+            EXPECT_GT(best->second, 20.0) << seed;
+        }
+    }
+}
+
+TEST(TemperatureCurve, IsNoneWhereNothingFollowsTheTemperature) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        for (const auto& [curve, nats] : evidences(calibrated_sensor(), 200 + seed)) {
+            EXPECT_LT(nats, 3.0) << curve << " " << seed;
+        }
+    }
+}
+
+TEST(TemperatureCurve, OfThirdOrderIsOneCause) {
+    const SensorModel model = calibrated_sensor();
+    const SensorModel sensor = with_effect(
+        model, "temp_cubic", {{"c1_dps_per_C", 0.002}, {"c2_dps_per_C2", 2e-4}, {"c3_dps_per_C3", 5e-5}});
+    const auto recording = recorded(sensor, half_an_hour, 62, swept());
+    const Hypotheses first = examine(prediction_of(recording, model), recording, 1, 1);
+    const auto selection = select_causes(first, recording, {});
+    ASSERT_TRUE(selection);
+    ASSERT_EQ(selection->causes.size(), 1U);
+    EXPECT_EQ(selection->causes.front().finding.effect, "temp_cubic");
+}
+
+}  // namespace
+}  // namespace gyrolog
