@@ -61,6 +61,7 @@ constexpr ChainLink links[] = {
     effect(arw_scale_effect),
     effect(variance_change_effect),
     effect(temp_noise_effect),
+    effect(noise_colour_effect),
     effect(density_table_effect),
     // white noise from outside, such as the supply's
     effect(common_mode_effect),

@@ -140,7 +140,8 @@ private:
                 const EffectParam& param = param_of(effect_, signature_.spectral[i]);
                 const double value = std::exp(logs[i]);
                 if (value < param.plausible_from / (10.0 * decisions.beyond_plausible) ||
-                    value > param.plausible_to * decisions.beyond_plausible) {
+                    value > param.plausible_to * decisions.beyond_plausible ||
+                    (param.most && value > *param.most)) {
                     return minus_infinity;
                 }
             }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numeric>
 #include <ostream>
 #include <vector>
@@ -11,6 +12,7 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
+#include "analysis/simulate/chain.hpp"
 #include "tests/analysis/simulate/periodogram.hpp"
 #include "tests/analysis/simulate/simulated.hpp"
 
@@ -116,6 +118,109 @@ TEST(AngleNoise, HasTheSpectrumOfADifferenceAndItsFullVarianceFromTheFirstSample
     }
     EXPECT_NEAR(first / (2.0 * Q_dps_s * Q_dps_s * rate_hz * rate_hz), 1.0,
                 4.0 * std::sqrt(2.0 / (3.0 * seeds)));
+}
+
+// Products of a sample with itself and with the next ones, over many sensors, at two places of a block: the
+// covariance there and one standard deviation of it, which is known from the covariance itself.
+constexpr std::array<std::size_t, 2> places = {0, 500};
+constexpr std::size_t lags = 4;
+
+void expect_covariance_at_the_start_and_later(const SensorModel& model, double rate_hz,
+                                              const std::array<double, lags>& expected_dps2) {
+    constexpr int seeds = 2500;
+    constexpr double draws = 3.0 * seeds;
+    std::array<std::array<double, lags>, places.size()> products{};
+    for (int seed = 1; seed <= seeds; ++seed) {
+        for (const Samples& y : rates_dps(model, rate_hz, static_cast<std::uint64_t>(seed), 1)) {
+            for (std::size_t place = 0; place < places.size(); ++place) {
+                const std::size_t at = places[place];
+                for (std::size_t lag = 0; lag < lags; ++lag) {
+                    products[place][lag] += y[at] * y[at + lag] / draws;
+                }
+            }
+        }
+    }
+    for (std::size_t lag = 0; lag < lags; ++lag) {
+        const double variance = expected_dps2[0];
+        const double sd = std::sqrt((variance * variance + expected_dps2[lag] * expected_dps2[lag]) / draws);
+        EXPECT_NEAR(products[0][lag], expected_dps2[lag], 4.0 * sd)
+            << "lag " << lag << " at the first sample";
+        EXPECT_NEAR(products[1][lag], expected_dps2[lag], 4.0 * sd) << "lag " << lag << " in mid-block";
+    }
+}
+
+// y_k = pole y_(k-1) + g (w_k - zero w_(k-1)), from the two numbers that the effect is given.
+struct Colour {
+    double gain;
+    double middle_of_rate;
+
+    double x() const { return std::tan(pi * middle_of_rate); }
+    double zero() const { return (std::sqrt(gain) - x()) / (std::sqrt(gain) + x()); }
+    double pole() const { return (1.0 / std::sqrt(gain) - x()) / (1.0 / std::sqrt(gain) + x()); }
+    double g() const { return (1.0 - pole()) / (1.0 - zero()); }
+    // Of white noise of density one, at nu cycles a sample.
+    double density(double nu) const {
+        const auto back = std::polar(1.0, -2.0 * pi * nu);
+        return g() * g() * std::norm(1.0 - zero() * back) / std::norm(1.0 - pole() * back);
+    }
+    // Box, Jenkins, Reinsel, 3.4.
+    double covariance(std::size_t lag) const {
+        const double p = pole();
+        const double z = zero();
+        const double of_none = (1.0 + z * z - 2.0 * p * z) / (1.0 - p * p);
+        const double of_one = (1.0 - p * z) * (p - z) / (1.0 - p * p);
+        return g() * g() * (lag == 0 ? of_none : of_one * std::pow(p, static_cast<double>(lag) - 1.0));
+    }
+
+    friend void PrintTo(const Colour& colour, std::ostream* out) {
+        *out << colour.gain << " at half the rate, middle at " << colour.middle_of_rate << " of it";
+    }
+};
+
+class ColourAt : public testing::TestWithParam<Colour> {};
+INSTANTIATE_TEST_SUITE_P(Colours, ColourAt,
+                         testing::Values(Colour{0.3, 0.2}, Colour{3.0, 0.1}, Colour{0.05, 0.4},
+                                         Colour{6.0, 0.05}));
+
+constexpr double colour_rate_hz = 200.0;
+constexpr double colour_N_dps = 0.02;
+
+SensorModel coloured(const Colour& colour) {
+    return with_effect(white_model(colour_N_dps * rad_per_deg), "noise_colour",
+                       {{"gain", colour.gain}, {"middle_of_rate", colour.middle_of_rate}});
+}
+
+TEST_P(ColourAt, WhiteNoiseHasTheSpectrumOfOneZeroAndOnePole) {
+    const Colour colour = GetParam();
+    const double N2_dps2 = colour_N_dps * colour_N_dps * colour_rate_hz;
+    expect_spectrum(coloured(colour), colour_rate_hz, 2, 0.0,
+                    [&](double nu) { return N2_dps2 * colour.density(nu); });
+    EXPECT_NEAR(colour.density(0.0), 1.0, 1e-12);
+    EXPECT_NEAR(colour.density(0.5), colour.gain * colour.gain, 1e-9);
+    EXPECT_NEAR(colour.density(colour.middle_of_rate), colour.gain, 1e-9);
+}
+
+TEST_P(ColourAt, WhiteNoiseIsStationaryFromTheFirstSample) {
+    const Colour colour = GetParam();
+    std::array<double, lags> expected{};
+    for (std::size_t lag = 0; lag < lags; ++lag) {
+        expected[lag] = colour_N_dps * colour_N_dps * colour_rate_hz * colour.covariance(lag);
+    }
+    expect_covariance_at_the_start_and_later(coloured(colour), colour_rate_hz, expected);
+}
+
+// What an estimator expects is what the simulator makes.
+TEST_P(ColourAt, SignatureHasTheSameSpectrum) {
+    const Colour colour = GetParam();
+    const EffectModel entry = coloured(colour).effects.front();
+    std::vector<double> f_hz;
+    for (int i = 1; i < 100; ++i) { f_hz.push_back(i); }
+    std::vector<SpectralParts> parts(f_hz.size(), {.white = 2.0, .flicker = 3.0, .walk = 4.0, .other = 5.0});
+    find_effect("noise_colour")->signature->spectrum(f_hz, colour_rate_hz, EffectValues(entry), parts);
+    for (std::size_t i = 0; i < f_hz.size(); ++i) {
+        EXPECT_NEAR(parts[i].white, 2.0 * colour.density(f_hz[i] / colour_rate_hz), 1e-9);
+        EXPECT_EQ(parts[i].flicker + parts[i].walk + parts[i].other, 12.0);
+    }
 }
 
 // What a telegraph's parameters say about its samples.
