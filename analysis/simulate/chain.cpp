@@ -70,6 +70,7 @@ constexpr ChainLink links[] = {
     own(make_noise_sum),
     // a line as high as it shows: the filter passed it at its true frequency, not at the one it folds to
     effect(tone_effect),
+    effect(narrowband_effect),
     own(make_temperature_scale),
     effect(temp_scale_effect),
     effect(saturation_effect),

@@ -56,6 +56,7 @@ enum class EvidenceMethod {
     response,               // the mean answer to the world
     spectrum,               // of the noise
     line,                   // a steady line in the spectrum
+    narrow_band,            // noise about a frequency
     step,                   // a jump at an unknown moment
     random_telegraph,       // a hidden Markov chain
     tails,                  // distribution of the whitened samples
@@ -98,7 +99,8 @@ struct EffectSignature {
     std::span<const std::span<const TrialValues>> trials{};
     // Positive parameters of the spectrum that are fitted, from the trial values on where they have some.
     std::span<const std::string_view> spectral{};
-    // Changes the expected parts, one for each frequency, in place.
+    // Changes the expected parts, one for each frequency, in place. The frequencies rise; what is narrower
+    // than their distance is averaged over it.
     void (*spectrum)(std::span<const double> f_hz, double rate_hz, const EffectValues& effect,
                      std::span<SpectralParts> parts) = nullptr;
 

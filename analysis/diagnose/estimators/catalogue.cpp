@@ -8,6 +8,7 @@
 #include "analysis/diagnose/estimators/line.hpp"
 #include "analysis/diagnose/estimators/mean_response.hpp"
 #include "analysis/diagnose/estimators/mean_table.hpp"
+#include "analysis/diagnose/estimators/narrow_band.hpp"
 #include "analysis/diagnose/estimators/noise_spectrum.hpp"
 #include "analysis/diagnose/estimators/outliers.hpp"
 #include "analysis/diagnose/estimators/quantisation_step.hpp"
@@ -38,6 +39,10 @@ constexpr EstimatorTraits rows[] = {
      .is_line = true,
      .recurs = true,
      .can_be_halved = false},
+    {.method = EvidenceMethod::narrow_band,
+     .make = make_narrow_band_estimator,
+     .is_noise = true,
+     .recurs = true},
     {.method = EvidenceMethod::step, .make = make_bias_step_estimator, .recurs = true},
     {.method = EvidenceMethod::random_telegraph,
      .make = make_random_telegraph_estimator,

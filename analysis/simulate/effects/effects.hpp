@@ -23,6 +23,7 @@ extern const EffectDefinition latency_effect;
 extern const EffectDefinition lowpass_effect;
 extern const EffectDefinition misalignment_effect;
 extern const EffectDefinition nonlinearity_effect;
+extern const EffectDefinition narrowband_effect;
 extern const EffectDefinition noise_colour_effect;
 extern const EffectDefinition quantization_effect;
 extern const EffectDefinition rate_ramp_effect;

@@ -223,6 +223,99 @@ TEST_P(ColourAt, SignatureHasTheSameSpectrum) {
     }
 }
 
+// Noise about a frequency, and the rate that it is sampled at.
+struct NarrowLaw {
+    double f_hz;
+    double width_hz;
+    double rate_hz;
+
+    double covariance(std::size_t lag) const {
+        const double t_s = static_cast<double>(lag) / rate_hz;
+        return std::exp(-pi * width_hz * t_s) * std::cos(2.0 * pi * f_hz * t_s);
+    }
+    // Of samples with a standard deviation of one: the continuous density with all that folds, at nu cycles a
+    // sample per (cycle/sample); the tail as an integral.
+    double density(double nu) const {
+        constexpr int images = 2000;
+        const double half_width = 0.5 * width_hz / rate_hz;
+        const auto lorentzian = [&](double from_middle) {
+            return half_width / pi / (from_middle * from_middle + half_width * half_width);
+        };
+        double sum = 0.0;
+        for (int k = -images; k <= images; ++k) {
+            sum += 0.5 * (lorentzian(nu + k - f_hz / rate_hz) + lorentzian(nu + k + f_hz / rate_hz));
+        }
+        return sum + 2.0 * half_width / pi / (images + 0.5);
+    }
+    SensorModel model() const {
+        return with_effect(ideal_model(), "narrowband",
+                           {{"f_hz", f_hz}, {"width_hz", width_hz}, {"sigma_dps", 1.0}});
+    }
+
+    friend void PrintTo(const NarrowLaw& law, std::ostream* out) {
+        *out << law.width_hz << " Hz wide at " << law.f_hz << " Hz, sampled at " << law.rate_hz << " Hz";
+    }
+};
+
+class NarrowbandAt : public testing::TestWithParam<NarrowLaw> {};
+INSTANTIATE_TEST_SUITE_P(Bands, NarrowbandAt,
+                         testing::Values(NarrowLaw{31.0, 0.5, 100.0}, NarrowLaw{31.0, 8.0, 100.0},
+                                         NarrowLaw{83.0, 2.0, 100.0}, NarrowLaw{217.0, 20.0, 100.0},
+                                         NarrowLaw{38.0, 3.0, 1000.0}));
+
+TEST_P(NarrowbandAt, HasTheFoldedSpectrumInEveryOctave) {
+    const NarrowLaw law = GetParam();
+    // The window smears a peak: by a twelfth of the density's curvature over a bin.
+    const double bins_per_width = 16.0 * block_samples * law.width_hz / law.rate_hz;
+    expect_spectrum(law.model(), law.rate_hz, 2, 8.0 / (bins_per_width * bins_per_width),
+                    [&](double nu) { return law.density(nu); });
+}
+
+TEST_P(NarrowbandAt, IsStationaryFromTheFirstSample) {
+    const NarrowLaw law = GetParam();
+    std::array<double, lags> expected{};
+    for (std::size_t lag = 0; lag < lags; ++lag) { expected[lag] = law.covariance(lag); }
+    expect_covariance_at_the_start_and_later(law.model(), law.rate_hz, expected);
+}
+
+// The signature averages over the bins: over many small ones it is the density itself, and over few large
+// ones all of the variance is in them.
+TEST_P(NarrowbandAt, SignatureHasTheSameSpectrum) {
+    const NarrowLaw law = GetParam();
+    const EffectModel entry = law.model().effects.front();
+    const auto parts_at = [&](const std::vector<double>& f_hz) {
+        std::vector<SpectralParts> parts(f_hz.size());
+        find_effect("narrowband")->signature->spectrum(f_hz, law.rate_hz, EffectValues(entry), parts);
+        return parts;
+    };
+    std::vector<double> fine_hz;
+    for (int i = 1; i < 5000; ++i) { fine_hz.push_back(0.5 * law.rate_hz * i / 5000.0); }
+    const std::vector<SpectralParts> fine = parts_at(fine_hz);
+    const double dps2 = deg_per_rad * deg_per_rad;
+    for (std::size_t i = 1; i + 1 < fine.size(); i += 7) {
+        const double density = law.density(fine_hz[i] / law.rate_hz) / law.rate_hz;
+        EXPECT_NEAR(fine[i].other * dps2 / density, 1.0, 0.01) << fine_hz[i];
+    }
+    std::vector<double> coarse_hz;
+    for (double f_hz = 0.01 * law.rate_hz; f_hz < 0.5 * law.rate_hz; f_hz *= 1.05) {
+        coarse_hz.push_back(f_hz);
+    }
+    const std::vector<SpectralParts> coarse = parts_at(coarse_hz);
+    double variance = 0.0;
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        variance += 2.0 * coarse[i].other * dps2 * coarse_hz[i] * (std::sqrt(1.05) - 1.0 / std::sqrt(1.05));
+    }
+    double from_density = 0.0;
+    const double from_nu = 0.01 / std::sqrt(1.05);
+    const double to_nu = coarse_hz.back() * std::sqrt(1.05) / law.rate_hz;
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i) {
+        from_density +=
+            2.0 * law.density(from_nu + (to_nu - from_nu) * (i + 0.5) / steps) * (to_nu - from_nu) / steps;
+    }
+    EXPECT_NEAR(variance, from_density, 1e-3);
+}
+
 // What a telegraph's parameters say about its samples.
 struct TelegraphLaw {
     double dwell_high_s;

@@ -245,8 +245,11 @@ const std::vector<EffectModel>& noise_effects() {
         effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.004}}),
         effect_entry("temp_linear", {{"c1_dps_per_C", 0.02}}),
         effect_entry("temp_quadratic", {{"c2_dps_per_C2", 0.01}}),
+        effect_entry("temp_cubic", {{"c3_dps_per_C3", 0.001}}),
         effect_entry("temp_lag", {{"c1_dps_per_C", 0.1}, {"tau_s", 3.0}, {"play_C", 0.001}}),
         effect_entry("warmup", {{"a_dps", 0.3}, {"tau_s", 10.0}}),
+        effect_entry("noise_colour", {{"gain", 0.4}, {"middle_of_rate", 0.2}}),
+        effect_entry("narrowband", {{"f_hz", 31.0}, {"width_hz", 2.0}, {"sigma_dps", 0.02}}),
     };
     return all;
 }
@@ -271,7 +274,7 @@ TEST(NoiseEffects, ListedTwiceDrawTwice) {
         const Simulated once = simulate(model, rate_hz, 5, 1);
         const bool random = effect.effect == "flicker_missing" || effect.effect == "rrw_missing" ||
                             effect.effect == "angle_noise" || effect.effect == "rtn" ||
-                            effect.effect == "common_mode";
+                            effect.effect == "common_mode" || effect.effect == "narrowband";
         if (!random) { continue; }
         model.effects = {effect, effect};
         const Simulated twice = simulate(model, rate_hz, 5, 1);
@@ -297,7 +300,7 @@ TEST(NoiseEffects, GiveTheSameCountsOnEveryMachine) {
             }
         }
     }
-    EXPECT_EQ(hash, 0xAB959019CA43B4A5U);
+    EXPECT_EQ(hash, 0x1E359E9001C56FB2U);
 }
 
 }  // namespace

@@ -44,13 +44,13 @@ TEST(Catalogue, KnowsWhatEachEffectIs) {
                 ElementsAre("clock_jitter", "clock_rate", "dropped"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_line; }), ElementsAre("tone"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.recurs; }),
-                ElementsAre("bias_step", "tone"));
+                ElementsAre("bias_step", "narrowband", "tone"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_of_codes; }), ElementsAre("quantization"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_not_normal; }),
                 ElementsAre("heavy_tail", "rtn", "spikes"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_noise; }),
                 ElementsAre("arw_scale", "density_table", "flicker_missing", "gauss_markov", "heavy_tail",
-                            "lowpass", "noise_colour", "rrw_missing", "rtn"));
+                            "lowpass", "narrowband", "noise_colour", "rrw_missing", "rtn"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.far_off == FarOff::single_samples; }),
                 ElementsAre("spikes"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.far_off == FarOff::in_distribution; }),
@@ -81,6 +81,7 @@ TEST(Catalogue, LooksForAFilterInTheMotionWhereThereIsOne) {
 TEST(Catalogue, LeavesOutOfMeansWhatFolds) {
     EXPECT_TRUE(shows_in_means(*find_effect("gauss_markov")->signature));
     EXPECT_FALSE(shows_in_means(*find_effect("lowpass")->signature));
+    EXPECT_FALSE(shows_in_means(*find_effect("narrowband")->signature));
     EXPECT_FALSE(shows_in_means(*find_effect("noise_colour")->signature));
     EXPECT_FALSE(shows_in_means(*find_effect("heavy_tail")->signature));
 }
