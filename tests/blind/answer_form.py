@@ -15,7 +15,7 @@ SPANS = ("freq_hz", "tau_s", "time_s", "rate_dps", "amplitude_sigma")
 FLAGS = ("temperature", "acceleration")
 # Effects of the contract that the catalogue here does not make. What is absent the model has and the recording lacks.
 ABSENT = ("line_absent", "flicker_excess", "rrw_excess", "effect_absent")
-EFFECTS = {*CATALOGUE, *ABSENT, "narrowband", "noise_colour", "disturbance", "temp_cubic"}
+EFFECTS = {*CATALOGUE, *ABSENT, "disturbance"}
 TENTH = 0.1  # of the gap's square: what is worth a verdict
 LIKELY = 0.5  # the score of a cause that a verdict may rest on
 ROUNDED = 1e-6  # by how much printed numbers may miss what they are worked out from, in units of the gap's square

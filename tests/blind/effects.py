@@ -156,6 +156,46 @@ class ArwScale(Acting):
         return {"tau_s": [0.01, 2.0], "freq_hz": [5.0, 50.0]}
 
 
+class NoiseColour(Acting):
+    """One zero and one pole on the white noise, whose slow part stays as it is."""
+
+    name, family = "noise_colour", "white"
+    # Neighbours share what is one sample's: tails are fewer, and a level is known less well, than those two count.
+    apart_from = ("tails", "level")
+
+    @classmethod
+    def shape(cls, rng, context, axes):
+        return {"up": bool(rng.random() < 0.5), "middle_of_rate": float(rng.uniform(0.08, 0.4))}
+
+    @classmethod
+    def range(cls, context, shape):
+        return 0.003, np.log(6.0)
+
+    @classmethod
+    def to_params(cls, shape, strength):
+        return {"gain": float(np.exp(strength if shape["up"] else -strength)),
+                "middle_of_rate": shape["middle_of_rate"]}
+
+    def _power(self, f, axis):
+        """|g (1 - zero / u) / (1 - pole / u)|^2 on the unit circle, 1 at zero and gain^2 at half the rate."""
+        root = np.sqrt(self.of("gain", axis))
+        x = np.tan(np.pi * self.of("middle_of_rate", axis))
+        zero, pole = (root - x) / (root + x), (1.0 - root * x) / (1.0 + root * x)
+        back = np.exp(-2j * np.pi * f / self.context.rate_hz)
+        return np.abs((1.0 - pole) / (1.0 - zero) * (1.0 - zero * back) / (1.0 - pole * back)) ** 2
+
+    def whitened(self, axis, white, around, rng):
+        return filtered(white, lambda f: np.sqrt(self._power(f, axis)), self.context.rate_hz)
+
+    def describe(self, d):
+        for axis in self.acting_axes():
+            d.colour[axis].append(lambda f, axis=axis: self._power(f, axis))
+
+    def where(self):
+        middle_hz = self.params["middle_of_rate"] * self.context.rate_hz
+        return {"freq_hz": [0.5 * middle_hz, 0.5 * self.context.rate_hz], "tau_s": [0.005, 1.0 / middle_hz]}
+
+
 class FlickerMissing(Acting):
     name, family = "flicker_missing", "slow"
 
@@ -531,6 +571,50 @@ class CommonMode(Acting):
 # ------------------------------------------------------------------ slow bias
 
 
+class Narrowband(Acting):
+    """A damped oscillator in white noise, sampled; narrow against its frequency, wide against the bins."""
+
+    name, family = "narrowband", "line"
+    apart_from = ("clock_rate",)
+
+    @classmethod
+    def shape(cls, rng, context, axes):
+        rate = context.rate_hz
+        f = float(log_uniform(rng, 4.0, 0.45 * rate))
+        width = f * float(log_uniform(rng, 0.06, 0.4))
+        return {"f_hz": f if rng.random() < 0.7 else rate - f, "width_hz": width}
+
+    @classmethod
+    def range(cls, context, shape):
+        return 0.0004, 0.5
+
+    @classmethod
+    def to_params(cls, shape, strength):
+        return {"sigma_dps": strength, **shape}
+
+    def _density(self, f, sigma):
+        rate, p = self.context.rate_hz, self.params
+        kept = np.exp(-np.pi * p["width_hz"] / rate)
+        total = 0.0
+        for f_line in (p["f_hz"], -p["f_hz"]):
+            total = total + (1.0 - kept**2) / np.abs(1.0 - kept * np.exp(2j * np.pi * (f - f_line) / rate)) ** 2
+        return 0.5 * sigma**2 / rate * total
+
+    def noise(self, axis, rng, around):
+        sigma = self.of("sigma_dps", axis)
+        return shaped(rng, self.context.n, self.context.rate_hz, lambda f: self._density(f, sigma))
+
+    def describe(self, d):
+        for axis in self.acting_axes():
+            sigma = self.of("sigma_dps", axis)
+            d.extra[axis].append(lambda f, sigma=sigma: self._density(f, sigma))
+
+    def where(self):
+        rate, p = self.context.rate_hz, self.params
+        seen = abs(p["f_hz"] - rate * round(p["f_hz"] / rate))
+        return {"freq_hz": [seen - p["width_hz"], seen + p["width_hz"]]}
+
+
 class RateRamp(Acting):
     name, family = "rate_ramp", "drift"
 
@@ -647,6 +731,37 @@ class TempQuadratic(Acting):
     def added(self, axis, around):
         T = around.T - self.of("reference_C", axis, REFERENCE_C)
         return self.of("c1_dps_per_C", axis, 0.0) * T + self.of("c2_dps_per_C2", axis, 0.0) * T**2
+
+    def where(self):
+        return {"temperature": True}
+
+
+class TempCubic(Acting):
+    name, family, temperature = "temp_cubic", "temperature", "sweep"
+
+    @classmethod
+    def shape(cls, rng, context, axes):
+        # Up and down again within the sweep: between its turns it is neither a line nor a parabola.
+        T = context.slow.T
+        span = np.ptp(T)
+        return {"sign": float(rng.choice([-1.0, 1.0])), "middle_C": float(T.min() + rng.uniform(0.4, 0.6) * span),
+                "turn_C": float(rng.uniform(0.25, 0.35) * span)}
+
+    @classmethod
+    def range(cls, context, shape):
+        return 1e-6, 1e-3
+
+    @classmethod
+    def to_params(cls, shape, strength):
+        """sign strength ((T - middle)^3 - 3 turn^2 (T - middle)) about the reference, but for its constant."""
+        c3, m = shape["sign"] * strength, shape["middle_C"] - REFERENCE_C
+        return {"c1_dps_per_C": 3.0 * c3 * (m**2 - shape["turn_C"] ** 2), "c2_dps_per_C2": -3.0 * c3 * m,
+                "c3_dps_per_C3": c3, "reference_C": REFERENCE_C}
+
+    def added(self, axis, around):
+        T = around.T - self.of("reference_C", axis, REFERENCE_C)
+        return sum(self.of(name, axis, 0.0) * T**n for n, name in
+                   enumerate(("c1_dps_per_C", "c2_dps_per_C2", "c3_dps_per_C3"), 1))
 
     def where(self):
         return {"temperature": True}
@@ -1080,7 +1195,7 @@ class GSensitivity(Acting):
 
 
 CATALOGUE = {cls.name: cls for cls in (
-    ArwScale, FlickerMissing, RrwMissing, GaussMarkov, Lowpass, Tone, RateRamp, Warmup, BiasStep, TempLinear,
-    TempQuadratic, TempLag, TempNoise, Rtn, Spikes, HeavyTail, VarianceChange, Quantization, Stale, Dropped, ClockRate,
-    ClockJitter, CommonMode, ScaleFactor, Misalignment, Nonlinearity, Saturation, DeadZone, Latency, GSensitivity,
-    Asymmetry)}
+    ArwScale, NoiseColour, FlickerMissing, RrwMissing, GaussMarkov, Lowpass, Tone, Narrowband, RateRamp, Warmup, BiasStep,
+    TempLinear, TempQuadratic, TempCubic, TempLag, TempNoise, Rtn, Spikes, HeavyTail, VarianceChange, Quantization, Stale,
+    Dropped, ClockRate, ClockJitter, CommonMode, ScaleFactor, Misalignment, Nonlinearity, Saturation, DeadZone, Latency,
+    GSensitivity, Asymmetry)}

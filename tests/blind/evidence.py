@@ -114,6 +114,7 @@ class Description:
 
     def __init__(self):
         self.white = np.ones(3)  # factor of the white noise's power
+        self.colour = [[], [], []]  # functions of the frequency: factors of the white noise's power
         self.filter = [None] * 3  # (fc_hz, order)
         self.extra = [[], [], []]  # densities, functions of f
         self.mean = {}  # axis: series on the context's slow grid
@@ -139,6 +140,8 @@ def _spectrum(context, description, axis, N, B, K):
     white = N**2 * description.white[axis] * np.ones_like(f)
     if axis in description.level:
         white = white * np.mean(description.level[axis])
+    for factor in description.colour[axis]:
+        white = white * factor(f)
     if description.filter[axis]:
         fc_hz, order = description.filter[axis]
         white = white * folded_lowpass(f, fc_hz, order, context.rate_hz)
@@ -311,6 +314,7 @@ def nats(context, true, other, free=False, apart=False, perfect=False, beside=No
     total = 0.0
     for axis in range(3):
         spectral = (true.white[axis] != other.white[axis] or true.filter[axis] != other.filter[axis]
+                    or true.colour[axis] or other.colour[axis]
                     or true.extra[axis] or other.extra[axis] or true.common or other.common
                     or axis in true.level or axis in other.level
                     or axis in true.mean or axis in other.mean)

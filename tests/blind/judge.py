@@ -192,6 +192,7 @@ class Case:
 # By effect, parameters that one recording does not tell: from which frequency a line is folded, and with it the phase;
 # how a common noise is shared out between its size and its gains.
 NOT_TOLD = {"tone": ("f_hz", "phase_rad"),
+            "narrowband": ("f_hz",),
             "common_mode": ("N_dps_per_sqrt_hz", "gain_x", "gain_y", "gain_z")}
 
 
