@@ -146,14 +146,18 @@ std::vector<double> deviations(const Objective& objective, const SimplexMaximum&
         moved[static_cast<std::size_t>(j)] += by_j;
         return objective(moved);
     };
+    constexpr double step_least = 0.002;
     // Steps that change the gain by about half a nat, so that neither rounding nor a flat top misleads.
-    Eigen::VectorXd step(count);
-    Eigen::MatrixXd information(count, count);
+    Eigen::VectorXd step = Eigen::VectorXd::Constant(count, step_least);
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
     for (Eigen::Index i = 0; i < count; ++i) {
         for (int doubling = 0; doubling < 10; ++doubling) {
-            const double by = std::ldexp(0.002, doubling);
-            const double fall = 2.0 * maximum.value - at(i, by, i, 0.0) - at(i, -by, i, 0.0);
-            if (doubling > 0 && !(fall < 1e300)) { break; }
+            const double by = std::ldexp(step_least, doubling);
+            const double up = maximum.value - at(i, by, i, 0.0);
+            const double down = maximum.value - at(i, -by, i, 0.0);
+            // At the end of what is allowed one side tells.
+            const double fall = std::isfinite(up + down) ? up + down : 2.0 * std::min(up, down);
+            if (!std::isfinite(fall)) { break; }
             step[i] = by;
             information(i, i) = fall / (by * by);
             if (fall > 0.5) { break; }
@@ -166,12 +170,15 @@ std::vector<double> deviations(const Objective& objective, const SimplexMaximum&
             information(i, j) = information(j, i) = -mixed / (4.0 * step[i] * step[j]);
         }
     }
-    std::vector<double> sd(static_cast<std::size_t>(count), resolution::sd_log_most);
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
-    if (!information.allFinite() || factor.info() != Eigen::Success) { return sd; }
-    const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(count, count));
+    const bool is_maximum = information.allFinite() && factor.info() == Eigen::Success;
+    const Eigen::VectorXd variance =
+        is_maximum ? Eigen::VectorXd(factor.solve(Eigen::MatrixXd::Identity(count, count)).diagonal())
+                   : Eigen::VectorXd(information.diagonal().cwiseInverse());
+    std::vector<double> sd(static_cast<std::size_t>(count), resolution::sd_log_most);
     for (Eigen::Index i = 0; i < count; ++i) {
-        sd[static_cast<std::size_t>(i)] = std::min(std::sqrt(covariance(i, i)), resolution::sd_log_most);
+        if (!(variance[i] > 0.0)) { continue; }
+        sd[static_cast<std::size_t>(i)] = std::min(std::sqrt(variance[i]), resolution::sd_log_most);
     }
     return sd;
 }
