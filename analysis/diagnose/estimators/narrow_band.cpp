@@ -31,8 +31,8 @@ namespace gyrolog {
 
 namespace definition {
 
-// Of a line whose width is its frequency, no middle is seen.
-constexpr double width_per_frequency_most = 1.0;
+// A resonance whose quality is below two is a hump of the noise, and no band.
+constexpr double width_per_frequency_most = 0.5;
 
 }  // namespace definition
 

@@ -16,6 +16,8 @@
 namespace gyrolog::resolution {
 
 constexpr int amplitudes_tried = 9;
+// How far below the plausible range the size of an effect is still fitted.
+constexpr double size_below_plausible = 10.0;
 
 }  // namespace gyrolog::resolution
 
@@ -139,8 +141,7 @@ private:
             for (std::size_t i = 0; i < logs.size(); ++i) {
                 const EffectParam& param = param_of(effect_, signature_.spectral[i]);
                 const double value = std::exp(logs[i]);
-                if (value < param.plausible_from / (10.0 * decisions.beyond_plausible) ||
-                    value > param.plausible_to * decisions.beyond_plausible ||
+                if (value < least_of(param) || value > param.plausible_to * decisions.beyond_plausible ||
                     (param.most && value > *param.most)) {
                     return minus_infinity;
                 }
@@ -163,6 +164,17 @@ private:
         for (const std::size_t axis : axes) { fit.gain_nats.push_back(gain(observation, axis, best)); }
         add_uncertainty(objective, maximum, fit);
         return fit;
+    }
+
+    // A parameter of the shape is within its range, or little beyond; of an effect that has it, a size may be
+    // far smaller than one that people meet.
+    double least_of(const EffectParam& param) const {
+        const bool is_of_shape =
+            std::ranges::any_of(signature_.trials, [&](std::span<const TrialValues> group) {
+                return std::ranges::count(group, param.name, &TrialValues::param) > 0;
+            });
+        const double smaller = is_of_shape ? 1.0 : resolution::size_below_plausible;
+        return param.plausible_from / (smaller * decisions.beyond_plausible);
     }
 
     // From the curvature of the gain about its maximum.
