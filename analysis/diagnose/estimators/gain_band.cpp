@@ -5,14 +5,14 @@
 
 namespace gyrolog {
 
-namespace {
+namespace definition {
 
-// Outside of the band, on either side.
+// Outside of the band, on either side: a band is where nine tenths lie.
 constexpr double outside_share = 0.05;
 // The Allan deviation's filter peaks at this frequency times the averaging time.
 constexpr double allan_peak_turns = 0.37;
 
-}  // namespace
+}  // namespace definition
 
 double bin_gain_nats(const SpectralBin& bin, double power, double before, double after) {
     return 0.5 * bin.count() * (std::log(before / after) + power / before - power / after);
@@ -24,12 +24,12 @@ void put_gain_band(const SpectralBins& bins, std::vector<double> gains_nats, Pla
     double below = 0.0;
     Span band{bins.front().f_hz, bins.back().f_hz};
     for (std::size_t i = 0; i < bins.size(); ++i) {
-        if (below < outside_share * sum) { band.from = bins[i].f_hz; }
-        if (below < (1.0 - outside_share) * sum) { band.to = bins[i].f_hz; }
+        if (below < definition::outside_share * sum) { band.from = bins[i].f_hz; }
+        if (below < (1.0 - definition::outside_share) * sum) { band.to = bins[i].f_hz; }
         below += gains_nats[i];
     }
     where.freq_hz = band;
-    where.tau_s = {allan_peak_turns / band.to, allan_peak_turns / band.from};
+    where.tau_s = {definition::allan_peak_turns / band.to, definition::allan_peak_turns / band.from};
 }
 
 }  // namespace gyrolog

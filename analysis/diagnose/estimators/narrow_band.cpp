@@ -24,17 +24,12 @@ constexpr std::size_t narrowest = 8;
 constexpr double bins_per_width = 8.0;
 // To either side of the middle, in widths: beyond, a Lorentzian has a fiftieth of itself.
 constexpr double finely_within_widths = 16.0;
+// Of the logarithm of a parameter, to see the curvature by.
+constexpr double step_least = 0.002;
 
 }  // namespace gyrolog::resolution
 
 namespace gyrolog {
-
-namespace definition {
-
-// A resonance whose quality is below two is a hump of the noise, and no band.
-constexpr double width_per_frequency_most = 0.5;
-
-}  // namespace definition
 
 namespace {
 
@@ -146,13 +141,12 @@ std::vector<double> deviations(const Objective& objective, const SimplexMaximum&
         moved[static_cast<std::size_t>(j)] += by_j;
         return objective(moved);
     };
-    constexpr double step_least = 0.002;
     // Steps that change the gain by about half a nat, so that neither rounding nor a flat top misleads.
-    Eigen::VectorXd step = Eigen::VectorXd::Constant(count, step_least);
+    Eigen::VectorXd step = Eigen::VectorXd::Constant(count, resolution::step_least);
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
     for (Eigen::Index i = 0; i < count; ++i) {
         for (int doubling = 0; doubling < 10; ++doubling) {
-            const double by = std::ldexp(step_least, doubling);
+            const double by = std::ldexp(resolution::step_least, doubling);
             const double up = maximum.value - at(i, by, i, 0.0);
             const double down = maximum.value - at(i, -by, i, 0.0);
             // At the end of what is allowed one side tells.
@@ -275,8 +269,7 @@ private:
 
     bool is_allowed(const Band& band) const {
         return band.f_hz > decisions.slowest_line_hz && band.f_hz < 0.5 * prediction_->rate_hz() &&
-               band.width_hz > narrowest_hz() &&
-               band.width_hz < definition::width_per_frequency_most * band.f_hz &&
+               band.width_hz > narrowest_hz() && band.width_hz * decisions.band_quality_least < band.f_hz &&
                band.sigma_rad_s * deg_per_rad <
                    param_of(effect_, "sigma_dps").plausible_to * decisions.beyond_plausible;
     }
@@ -288,7 +281,7 @@ private:
         std::vector<LocalSpectrum> spectra;
         Band from = start.front();
         from.width_hz = std::max(from.width_hz, 1.01 * narrowest_hz());
-        from.width_hz = std::min(from.width_hz, 0.99 * definition::width_per_frequency_most * from.f_hz);
+        from.width_hz = std::min(from.width_hz, 0.99 * from.f_hz / decisions.band_quality_least);
         std::vector<double> variables = {0.0, std::log(from.width_hz)};
         for (std::size_t i = 0; i < axes.size(); ++i) {
             spectra.emplace_back(observation, axes[i], from);

@@ -30,9 +30,7 @@ Worth worth_of(CauseSpan causes, const NullBias& null_bias, double together_nats
         worth.evidence_nats += cause.finding.evidence_nats + null_bias.of(cause.finding);
     }
     const double cost_nats = worth.gain_nats - worth.evidence_nats;
-    if (together_nats > worth.gain_nats) {
-        worth = {together_nats, together_nats - cost_nats};
-    }
+    if (together_nats > worth.gain_nats) { worth = {together_nats, together_nats - cost_nats}; }
     return worth;
 }
 
