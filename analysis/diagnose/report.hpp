@@ -111,8 +111,8 @@ struct Cause {
 struct Unnamed {
     std::string form;  // "density", "drift", "temperature", "rate", "level", "masked"
     Place where;
-    double share = 0.0;                // of the gap's square
-    std::vector<EffectModel> entries;  // to be added to the model
+    double share = 0.0;                  // of the gap's square
+    std::vector<EffectModel> entries{};  // to be added to the model
 };
 
 // What nothing describes.
