@@ -185,6 +185,7 @@ private:
         effect_.signature->spectrum(prediction_->bin_frequencies_hz(), prediction_->rate_hz(),
                                     EffectValues(entry), parts);
         std::vector<double> density;
+        density.reserve(parts.size());
         for (const SpectralParts& part : parts) { density.push_back(part.sum()); }
         return density;
     }

@@ -234,7 +234,8 @@ private:
         std::optional<Band> found;
         double most_nats = decisions.seen_nats();
         for (std::size_t width = resolution::narrowest; 8 * width < length(); width *= 2) {
-            const double windows_nats = std::log(2.0 * static_cast<double>(length() / width));
+            const std::size_t windows = 2 * length() / width;
+            const double windows_nats = std::log(static_cast<double>(windows));
             const std::size_t begin = std::max({slowest, 2 * width, std::size_t{1}});
             for (std::size_t first = begin; first + width < length(); first += width / 2) {
                 const std::size_t end = first + width;
