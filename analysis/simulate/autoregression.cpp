@@ -8,6 +8,13 @@
 
 namespace gyrolog {
 
+namespace {
+
+// Of the variance: a smaller error of the prediction is that of the arithmetic.
+constexpr double rounding_error = 1e-12;
+
+}  // namespace
+
 Autoregression::Autoregression(std::span<const double> covariances)
     : variance_(covariances.front()), predictors_(1), error_sd_{std::sqrt(covariances.front())} {
     double error = covariances.front();
@@ -16,10 +23,12 @@ Autoregression::Autoregression(std::span<const double> covariances)
         double unexplained = covariances[n];
         for (std::size_t j = 1; j < n; ++j) { unexplained -= before[j - 1] * covariances[n - j]; }
         const double reflection = unexplained / error;
+        const double next_error = error * (1.0 - reflection * reflection);
+        if (!(next_error > rounding_error * variance_)) { break; }
         std::vector<double> next(n);
         for (std::size_t j = 1; j < n; ++j) { next[j - 1] = before[j - 1] - reflection * before[n - j - 1]; }
         next[n - 1] = reflection;
-        error *= 1.0 - reflection * reflection;
+        error = next_error;
         predictors_.push_back(std::move(next));
         error_sd_.push_back(std::sqrt(error));
     }

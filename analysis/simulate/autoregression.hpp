@@ -14,7 +14,7 @@ namespace gyrolog {
 class Autoregression {
 public:
     // `covariances` r_0 ... r_p are those of a density above zero, over the variance of the white noise. The
-    // arithmetic is portable.
+    // order is p, or less where nothing is left to predict. The arithmetic is portable.
     explicit Autoregression(std::span<const double> covariances);
 
     std::size_t order() const { return predictors_.size() - 1; }

@@ -115,6 +115,19 @@ TEST(DensityTable, IsTheFactorOfTheDensityAtEveryFrequency) {
     }
 }
 
+// Nearly all is predicted from the samples before, up to rounding.
+TEST(DensityTable, MayBeNextToNothingInHalfOfTheBand) {
+    const SensorModel model =
+        with_table(white_model(0.02), table_entry("density_table", {{"f_hz", {0.0, 24.0, 26.0, 50.0}},
+                                                                    {"factor", {1.0, 1.0, 1e-300, 1e-300}}}));
+    const Simulated out = simulate(model, rate_hz, 3, 40);
+    double sum = 0.0;
+    for (const double rate_rad_s : out.rate_rad_s[0]) { sum += rate_rad_s * rate_rad_s; }
+    // Half of the white noise's variance, known to a hundredth.
+    EXPECT_NEAR(sum / static_cast<double>(out.size()), 0.5 * 0.02 * 0.02 * rate_hz,
+                0.05 * 0.02 * 0.02 * rate_hz);
+}
+
 TEST(TemperatureTable, IsStraightBetweenItsPointsAndLevelBeyondThem) {
     auto world = std::make_shared<FormulaWorld>();
     world->temperature_C = [](double t_s) { return 20.0 + t_s; };
