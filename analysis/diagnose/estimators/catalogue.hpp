@@ -30,6 +30,9 @@ struct EstimatorTraits {
     // steps that such noise does not have; the power of heavy tails and of spikes varies by more than its
     // does.
     bool is_not_normal = false;
+    // What tells the effect is beside the spectra: in the samples' distribution, their codes, their stamps,
+    // the course of their variance, what axes share.
+    bool is_beside_spectra = false;
     // The effect is a steady line. Its phase is the recording's, not the model's.
     bool is_line = false;
     // The effect may be there more than once, each time with parameters of its own.

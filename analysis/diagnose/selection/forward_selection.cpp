@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
@@ -17,8 +19,8 @@ namespace {
 // Less is no reason to prefer what was not first.
 constexpr double margin_nats = 3.0;
 constexpr double far_better_nats = 8.0;
-// How many causes are tried as the first.
-constexpr std::size_t beginnings_most = 4;
+// How many are tried as the first cause, or the next.
+constexpr std::size_t candidates_most = 4;
 // A cause of such evidence changes everything that others are judged by.
 constexpr double huge_nats = 1e4;
 
@@ -30,10 +32,13 @@ constexpr double worth_refitting_nats = 100.0;
 // Of responses, to fit them better than one by one.
 constexpr double worth_settling_nats = 1000.0;
 
-// No cause that is dropped as needless explained so much.
-constexpr double lost_nats = 100.0;
-
 enum class Rivals { may_replace, stay_out };
+
+// What is seen beside causes.
+struct Beside {
+    double log_likelihood_nats = 0.0;
+    std::vector<std::optional<Finding>> findings;  // by effect of the catalogue
+};
 
 class ForwardSelection {
 public:
@@ -56,12 +61,12 @@ public:
                 static_cast<void>(settle_responses());
                 latest = with_causes();
             }
-            const bool freed = free_noise_of_model(*latest->observation);
-            const Finding* next = further(*latest);
-            if (!freed && (next == nullptr || causes_.size() == options_.causes_most)) { break; }
             // What is next is not known before the noise is.
-            if (!freed && !add_response(*latest, *next)) { causes_.push_back({*next, findings_of(*latest)}); }
-            if (!told() || !refit_all()) { return std::nullopt; }
+            const bool freed = free_noise_of_model(*latest->observation);
+            if (!told() || (freed && !refit_all())) { return std::nullopt; }
+            const std::optional<bool> grown = freed ? true : take_further(*latest);
+            if (!grown) { return std::nullopt; }
+            if (!*grown) { break; }
             forget_null_bias();
             latest = with_causes();
         }
@@ -125,17 +130,30 @@ private:
     // other is not in the model.
     std::vector<Finding> beginnings() const {
         std::map<EvidenceMethod, Finding> best;
-        for (const Finding& finding : findings_of(first_)) {
+        for (const Finding& finding : findings_of(first_.findings)) {
             if (finding.evidence_nats < options_.evidence_min_nats) { break; }
             if (is_of_codes(finding)) { return {finding}; }
             best.try_emplace(traits_of(finding.effect, *first_.prediction).method, finding);
         }
+        return best_first(std::move(best));
+    }
+
+    static std::vector<Finding> best_first(std::map<EvidenceMethod, Finding> best) {
         std::vector<Finding> found;
         found.reserve(best.size());
         for (auto& [method, finding] : best) { found.push_back(std::move(finding)); }
         std::ranges::sort(found, std::greater{}, &Finding::evidence_nats);
-        if (found.size() > beginnings_most) { found.resize(beginnings_most); }
+        if (found.size() > candidates_most) { found.resize(candidates_most); }
         return found;
+    }
+
+    // Beside others of those the spectra's likelihood is another.
+    static std::set<std::string> not_normal_among(const std::vector<FoundCause>& causes) {
+        std::set<std::string> effects;
+        for (const FoundCause& cause : causes) {
+            if (traits_of(cause.finding.effect).is_not_normal) { effects.insert(cause.finding.effect); }
+        }
+        return effects;
     }
 
     // It comes before all other causes, and stays.
@@ -161,7 +179,9 @@ private:
 
     // One beside which others may only seem to be.
     bool has_new_main_cause(const Hypotheses& with_causes) const {
-        if (causes_.empty() || (causes_.size() == 1 && further(with_causes) == nullptr)) { return false; }
+        if (causes_.empty() || (causes_.size() == 1 && further(with_causes.findings) == nullptr)) {
+            return false;
+        }
         const Finding* main = main_cause();
         if (!is_of_codes(*main) && !traits_of(main->effect).is_not_normal &&
             main->evidence_nats < huge_nats) {
@@ -240,11 +260,10 @@ private:
     // What a response leaves that was fitted without another one looks like noise, and like more of it than
     // the other gains beside the first as it is. Takes the other if all fitted together do better than
     // `next`.
-    bool add_response(const Hypotheses& latest, const Finding& next) {
+    bool add_response(const Beside& latest, const Finding& next) {
         const std::vector<std::size_t> places = fast_responses();
         const bool is_fast = is_fast_response(next);
         if (places.empty() || (!is_fast && next.evidence_nats < worth_refitting_nats)) { return false; }
-        const double before_nats = log_likelihood_nats(*latest.observation);
         double best_nats = is_fast ? -1e300 : evidence_less_bias_nats(next);
         std::vector<Finding> best;
         for (const std::optional<Finding>& other : latest.findings) {
@@ -252,14 +271,14 @@ private:
             if (evidence_less_bias_nats(*other) < evidence_least_nats()) { continue; }
             JointRefit refit = fitted_together(places, &*other);
             const double cost_nats = other->gain_nats - evidence_less_bias_nats(*other);
-            const double nats = refit.log_likelihood_nats - before_nats - cost_nats;
+            const double nats = refit.log_likelihood_nats - latest.log_likelihood_nats - cost_nats;
             if (!(nats > best_nats)) { continue; }
             best_nats = nats;
             best = std::move(refit.findings);
         }
         if (best.empty()) { return false; }
         for (std::size_t i = 0; i < places.size(); ++i) { causes_[places[i]].finding = best[i]; }
-        causes_.push_back({best.back(), findings_of(latest)});
+        causes_.push_back({best.back(), findings_of(latest.findings)});
         return true;
     }
 
@@ -284,11 +303,14 @@ private:
         const double better_by_nats =
             is_huge ? std::max(margin_nats, formulas_share * first.front().evidence_nats) : margin_nats;
         for (const Finding& finding : first) {
-            causes_ = {{finding, is_of_codes(finding) ? std::vector{finding} : findings_of(first_)}};
+            causes_ = {{finding, is_of_codes(finding) ? std::vector{finding} : findings_of(first_.findings)}};
             Hypotheses with_it = with_causes();
-            const Finding* next = further(with_it);
+            const Finding* next = further(with_it.findings);
+            const double claimed_nats = finding.evidence_nats + (next ? next->evidence_nats : 0.0);
             const double nats = is_huge ? likelihood_with(with_it, next)
-                                        : finding.evidence_nats + (next ? next->evidence_nats : 0.0);
+                                        : std::min(claimed_nats, realised_nats(finding, with_it, next));
+            // What the second mends is only what the first spoils.
+            if (nats <= 0.0) { continue; }
             // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one,
             // unless noise that leaves nothing either does far better.
             const bool explains_all = next == nullptr && !is_noise(finding) &&
@@ -305,6 +327,39 @@ private:
         return best;
     }
 
+    // Of all measures: the spectra's likelihood, and what each cause gains beside them, less the price of its
+    // freedom. What a cause explains in one measure and spoils in another counts against it.
+    double worth_nats(const Observation& with_causes) const {
+        return log_likelihood_nats(with_causes) + worth_beside_spectra_nats();
+    }
+
+    double worth_nats(const Hypotheses& with_causes, const Finding* next) const {
+        if (next == nullptr) { return worth_nats(*with_causes.observation); }
+        return worth_nats(
+                   with_causes.observation->under(with_cause(with_causes.prediction->model(), *next))) +
+               worth_beside_spectra_nats(*next);
+    }
+
+    double worth_beside_spectra_nats() const {
+        double nats = 0.0;
+        for (const FoundCause& cause : causes_) { nats += worth_beside_spectra_nats(cause.finding); }
+        return nats;
+    }
+
+    static double worth_beside_spectra_nats(const Finding& finding) {
+        const bool is_beside = traits_of(finding.effect).is_beside_spectra;
+        return finding.evidence_nats - (is_beside ? 0.0 : finding.gain_nats);
+    }
+
+    // What `first`, which is all of the causes, and `next` explain.
+    double realised_nats(const Finding& first, const Hypotheses& with_first, const Finding* next) const {
+        const auto is_not_normal = [](const Finding& finding) {
+            return traits_of(finding.effect).is_not_normal;
+        };
+        if (is_not_normal(first) || (next != nullptr && is_not_normal(*next))) { return 1e300; }
+        return worth_nats(with_first, next) - log_likelihood_nats(*first_.observation);
+    }
+
     double likelihood_with(const Hypotheses& hypotheses, const Finding* next) const {
         if (next == nullptr) { return log_likelihood_nats(*hypotheses.observation); }
         const auto prediction =
@@ -319,9 +374,9 @@ private:
     }
 
     // The best first, by what is beyond the bias.
-    std::vector<Finding> findings_of(const Hypotheses& hypotheses) const {
+    std::vector<Finding> findings_of(const std::vector<std::optional<Finding>>& found) const {
         std::vector<Finding> findings;
-        for (const std::optional<Finding>& finding : hypotheses.findings) {
+        for (const std::optional<Finding>& finding : found) {
             if (!finding) { continue; }
             findings.push_back(*finding);
             findings.back().evidence_nats = evidence_less_bias_nats(*finding);
@@ -332,16 +387,72 @@ private:
 
     // The best finding that is not of an effect found before: what those could explain, their fit has. Null
     // where none has evidence enough.
-    const Finding* further(const Hypotheses& hypotheses) const {
+    const Finding* further(const std::vector<std::optional<Finding>>& found) const {
         const Finding* best = nullptr;
         double best_nats = 0.0;
-        for (const std::optional<Finding>& finding : hypotheses.findings) {
+        for (const std::optional<Finding>& finding : found) {
             if (!finding || !is_new(*finding)) { continue; }
             const double evidence_nats = evidence_less_bias_nats(*finding);
             if (evidence_nats < evidence_least_nats()) { continue; }
             if (best == nullptr || evidence_nats > best_nats) { best = &*finding, best_nats = evidence_nats; }
         }
         return best;
+    }
+
+    // The best of each estimator that has evidence enough, the best first.
+    std::vector<Finding> all_further(const std::vector<std::optional<Finding>>& found) const {
+        std::map<EvidenceMethod, Finding> best;
+        for (const Finding& finding : findings_of(found)) {
+            if (finding.evidence_nats < evidence_least_nats()) { break; }
+            if (!is_new(finding)) { continue; }
+            best.try_emplace(traits_of(finding.effect, *first_.prediction).method, finding);
+        }
+        return best_first(std::move(best));
+    }
+
+    // Takes the first of the further causes with which, the others fitted again, all measures together are
+    // better explained; where it spoils one, with what it calls for next. Whether there is such; no value
+    // when ended early.
+    std::optional<bool> take_further(Hypotheses& latest) {
+        const std::vector<Finding> candidates = all_further(latest.findings);
+        if (candidates.empty() || causes_.size() == options_.causes_most) { return false; }
+        const std::vector<FoundCause> before = causes_;
+        const double before_nats = worth_nats(*latest.observation);
+        const Beside beside = given_up(std::move(latest));
+        for (const Finding& next : candidates) {
+            causes_ = before;
+            if (!add(beside, next)) { return std::nullopt; }
+            if (is_of_codes(next) || not_normal_among(causes_) != not_normal_among(before)) { return true; }
+            if (worth_nats(observed()) > before_nats) { return true; }
+            if (causes_.size() == options_.causes_most) { continue; }
+            const std::optional<bool> mended = add_next();
+            if (!mended) { return std::nullopt; }
+            if (*mended && worth_nats(observed()) > before_nats) { return true; }
+        }
+        causes_ = before;
+        latest = with_causes();
+        return false;
+    }
+
+    // Of a long recording an observation is large: the fits that follow make their own.
+    static Beside given_up(Hypotheses hypotheses) {
+        return {log_likelihood_nats(*hypotheses.observation), std::move(hypotheses.findings)};
+    }
+
+    // Whether there is a further cause; no value when ended early.
+    std::optional<bool> add_next() {
+        Hypotheses latest = with_causes();
+        const Finding* next = further(latest.findings);
+        if (next == nullptr) { return false; }
+        const Finding chosen = *next;
+        if (!add(given_up(std::move(latest)), chosen)) { return std::nullopt; }
+        return true;
+    }
+
+    // False when ended early.
+    bool add(const Beside& causes, const Finding& next) {
+        if (!add_response(causes, next)) { causes_.push_back({next, findings_of(causes.findings)}); }
+        return told() && refit_all();
     }
 
     bool is_new(const Finding& finding) const {
@@ -388,7 +499,7 @@ private:
         for (std::size_t i = 0; i < causes_.size();) {
             const Hypotheses without = examine(first_.prediction->with(model_with_all_but(i)), recording_,
                                                options_.seed, options_.threads);
-            const std::vector<Finding> findings = findings_of(without);
+            const std::vector<Finding> findings = findings_of(without.findings);
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
             const double least_nats =
                 &causes_[i].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
@@ -429,7 +540,7 @@ private:
         for (std::size_t i = 0; i < causes_.size(); ++i) {
             const Hypotheses without = examine(first_.prediction->with(model_with_all_but(i)), recording_,
                                                options_.seed, options_.threads);
-            const std::vector<Finding> findings = findings_of(without);
+            const std::vector<Finding> findings = findings_of(without.findings);
             Finding& cause = causes_[i].finding;
             causes_[i].rivals = rivals_of(cause, findings);
             const double more_nats =
@@ -444,19 +555,21 @@ private:
     }
 
     // The responses among the causes together, too. One by one each is fitted to what the others' errors
-    // leave, and noise may take its place: what explains far less than before all of them together is no
-    // better.
+    // leave, and another may take its place: what explains less than before all of them together is no
+    // better. A cause that is dropped as needless had less than a further one needs. Beside the spectra a
+    // cause has what it was found with, which others may have explained since: having less is no loss.
     bool refit_all() {
         const std::vector<FoundCause> before = causes_;
-        const bool may_get_lost = evidence_nats_of(fast_responses()) >= worth_settling_nats;
-        const double before_nats = may_get_lost ? log_likelihood_nats(observed()) : 0.0;
+        const double likelihood_before_nats = log_likelihood_nats(observed());
+        const double beside_before_nats = worth_beside_spectra_nats();
         if (!refit()) { return false; }
         static_cast<void>(settle_responses());
-        are_weighed_ = true;
-        if (may_get_lost && log_likelihood_nats(observed()) < before_nats - lost_nats) {
-            causes_ = before;
-            are_weighed_ = false;
-        }
+        const double gained_nats = log_likelihood_nats(observed()) - likelihood_before_nats +
+                                   std::max(worth_beside_spectra_nats() - beside_before_nats, 0.0);
+        const double dropped = static_cast<double>(before.size() - std::min(before.size(), causes_.size()));
+        are_weighed_ = gained_nats >= -dropped * evidence_least_nats() - margin_nats ||
+                       not_normal_among(before) != not_normal_among(causes_);
+        if (!are_weighed_) { causes_ = before; }
         return true;
     }
 
