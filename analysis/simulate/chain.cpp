@@ -71,6 +71,7 @@ constexpr ChainLink links[] = {
     // a line as high as it shows: the filter passed it at its true frequency, not at the one it folds to
     effect(tone_effect),
     effect(narrowband_effect),
+    effect(disturbance_effect),
     own(make_temperature_scale),
     effect(temp_scale_effect),
     effect(saturation_effect),

@@ -67,6 +67,7 @@ enum class EvidenceMethod {
     temperature_table,  // of the mean over the temperature, likewise
     rate_table,         // over the rate
     shared_noise,       // between axes
+    disturbances,       // from outside, at rest
     repeats,            // samples that are the ones before again
     quantisation_step,  // the converter's
     saturation,         // a largest rate

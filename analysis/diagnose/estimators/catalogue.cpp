@@ -5,6 +5,7 @@
 
 #include "analysis/diagnose/estimators/bias_step.hpp"
 #include "analysis/diagnose/estimators/density_table.hpp"
+#include "analysis/diagnose/estimators/disturbance.hpp"
 #include "analysis/diagnose/estimators/line.hpp"
 #include "analysis/diagnose/estimators/mean_response.hpp"
 #include "analysis/diagnose/estimators/mean_table.hpp"
@@ -75,6 +76,12 @@ constexpr EstimatorTraits rows[] = {
     {.method = EvidenceMethod::temperature_table, .make = make_temperature_table_estimator},
     {.method = EvidenceMethod::rate_table, .make = make_rate_table_estimator},
     {.method = EvidenceMethod::shared_noise, .make = make_shared_noise_estimator, .is_beside_spectra = true},
+    {.method = EvidenceMethod::disturbances,
+     .make = make_disturbance_estimator,
+     .is_not_normal = true,
+     .is_beside_spectra = true,
+     .shows_in_means = false,
+     .can_be_halved = false},
     {.method = EvidenceMethod::repeats,
      .make = make_repeat_estimator,
      .is_beside_spectra = true,

@@ -14,6 +14,7 @@ extern const EffectDefinition clock_rate_effect;
 extern const EffectDefinition common_mode_effect;
 extern const EffectDefinition dead_zone_effect;
 extern const EffectDefinition density_table_effect;
+extern const EffectDefinition disturbance_effect;
 extern const EffectDefinition dropped_effect;
 extern const EffectDefinition flicker_missing_effect;
 extern const EffectDefinition g_sensitivity_effect;

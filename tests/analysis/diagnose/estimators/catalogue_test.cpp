@@ -47,7 +47,7 @@ TEST(Catalogue, KnowsWhatEachEffectIs) {
                 ElementsAre("bias_step", "narrowband", "tone"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_of_codes; }), ElementsAre("quantization"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_not_normal; }),
-                ElementsAre("heavy_tail", "rtn", "spikes"));
+                ElementsAre("disturbance", "heavy_tail", "rtn", "spikes"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_noise; }),
                 ElementsAre("arw_scale", "density_table", "flicker_missing", "gauss_markov", "heavy_tail",
                             "lowpass", "narrowband", "noise_colour", "rrw_missing", "rtn"));
@@ -56,11 +56,11 @@ TEST(Catalogue, KnowsWhatEachEffectIs) {
     EXPECT_THAT(effects_with([](const auto& t) { return t.far_off == FarOff::in_distribution; }),
                 ElementsAre("heavy_tail"));
     EXPECT_THAT(effects_with([](const auto& t) { return !t.shows_in_means; }),
-                ElementsAre("clock_jitter", "clock_rate", "density_table", "dropped", "heavy_tail",
-                            "quantization", "saturation", "stale"));
+                ElementsAre("clock_jitter", "clock_rate", "density_table", "disturbance", "dropped",
+                            "heavy_tail", "quantization", "saturation", "stale"));
     EXPECT_THAT(effects_with([](const auto& t) { return !t.can_be_halved; }),
-                ElementsAre("clock_jitter", "clock_rate", "dropped", "quantization", "rtn", "saturation",
-                            "spikes", "stale", "tone"));
+                ElementsAre("clock_jitter", "clock_rate", "disturbance", "dropped", "quantization", "rtn",
+                            "saturation", "spikes", "stale", "tone"));
 }
 
 // In motion the mean answer tells far more of a filter than the noise does.

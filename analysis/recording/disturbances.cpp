@@ -1,0 +1,219 @@
+#include "analysis/recording/disturbances.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/numerics/distributions.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::size_t blocks_least = 20;
+constexpr double sd_per_mad = 1.4826;     // of a normal distribution
+constexpr double fitted_per_block = 3.0;  // two means and where the step is
+constexpr std::size_t largest_left_out = 2;
+
+struct Block {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    std::int64_t index = 0;  // on the grid
+};
+
+struct Power {
+    double log = 0.0;
+    double largest = 0.0;
+};
+
+std::vector<Block> blocks_of(const Recording& recording, const DisturbanceOptions& options) {
+    const auto wanted = static_cast<std::size_t>(std::llround(options.block_s * recording.rate_hz));
+    const std::size_t count = std::max(options.block_samples_least, wanted);
+    std::vector<Block> blocks;
+    for (const Segment& segment : recording.segments) {
+        for (std::size_t at = 0; at + count <= segment.count; at += count) {
+            blocks.push_back(
+                {segment.first + at, count, segment.first_index + static_cast<std::int64_t>(at)});
+        }
+    }
+    return blocks;
+}
+
+// The largest squares about the two means, the least of them first.
+void keep_largest(std::array<double, largest_left_out>& largest, double square) {
+    if (square <= largest.front()) { return; }
+    largest.front() = square;
+    std::ranges::sort(largest);
+}
+
+Power power_of(std::span<const double> values) {
+    const auto n = static_cast<double>(values.size());
+    const double origin = values.front();
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const double value : values) {
+        sum += value - origin;
+        squares += (value - origin) * (value - origin);
+    }
+    std::size_t step = values.size();
+    double before = sum;
+    double explained = sum * sum / n;
+    double running = 0.0;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        running += values[i - 1] - origin;
+        const auto k = static_cast<double>(i);
+        const double rest = sum - running;
+        const double here = running * running / k + rest * rest / (n - k);
+        if (here > explained) { explained = here, step = i, before = running; }
+    }
+    const double mean = origin + before / static_cast<double>(step);
+    const double after =
+        step < values.size() ? origin + (sum - before) / (n - static_cast<double>(step)) : mean;
+    std::array<double, largest_left_out> largest{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double off = values[i] - (i < step ? mean : after);
+        keep_largest(largest, off * off);
+    }
+    const double kept = squares - explained - largest[0] - largest[1];
+    return {std::log(std::max(kept / n, std::numeric_limits<double>::min())), std::sqrt(largest.back())};
+}
+
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+struct Signal {
+    std::vector<Power> powers;  // by block
+    double median_log = 0.0;
+    std::vector<bool> loud;
+
+    double ratio(std::size_t block) const { return std::exp(powers[block].log - median_log); }
+};
+
+Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double quantile) {
+    Signal signal;
+    std::vector<double> logs;
+    for (const Block& block : blocks) {
+        signal.powers.push_back(power_of(values.subspan(block.first, block.count)));
+        logs.push_back(signal.powers.back().log);
+    }
+    signal.median_log = median_of(logs);
+    for (double& log : logs) { log = std::abs(log - signal.median_log); }
+    // A logarithm of a chi-squared variable has this spread at least; coarse codes may have none.
+    const double degrees = static_cast<double>(blocks.front().count) - fitted_per_block;
+    const double sd = std::max(sd_per_mad * median_of(std::move(logs)), std::sqrt(2.0 / degrees));
+    for (const Power& power : signal.powers) {
+        signal.loud.push_back(power.log > signal.median_log + quantile * sd);
+    }
+    return signal;
+}
+
+// P(X >= count) of a Poisson variable.
+double poisson_tail(std::size_t count, double mean) {
+    if (count == 0) { return 1.0; }
+    return 1.0 - gamma_upper_tail(static_cast<double>(count), mean);
+}
+
+std::size_t loud_at_once(const std::vector<Signal>& signals, std::size_t block) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(signals, [&](const Signal& signal) { return signal.loud[block]; }));
+}
+
+// Whether blocks that are loud on two signals at once are more than chance has.
+bool is_no_chance(const std::vector<Signal>& signals, double chance_each, double false_alarms_most) {
+    const std::size_t blocks = signals.front().loud.size();
+    std::size_t together = 0;
+    std::vector<double> alone(signals.size(), 0.0);
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const std::size_t count = loud_at_once(signals, block);
+        if (count > 1) { ++together; }
+        if (count != 1) { continue; }
+        for (std::size_t s = 0; s < signals.size(); ++s) { alone[s] += signals[s].loud[block] ? 1.0 : 0.0; }
+    }
+    const auto n = static_cast<double>(blocks);
+    double expected = 0.0;
+    for (std::size_t a = 0; a < signals.size(); ++a) {
+        for (std::size_t b = a + 1; b < signals.size(); ++b) {
+            expected += n * (chance_each + alone[a] / n) * (chance_each + alone[b] / n);
+        }
+    }
+    return together > 0 && poisson_tail(together, expected) < 1.001 * false_alarms_most;
+}
+
+// Of a variance of its own: the likelihood ratio of a block of normal samples.
+double gain_nats(const Signal& signal, std::size_t block, std::size_t count) {
+    const double ratio = signal.ratio(block);
+    const double degrees = static_cast<double>(count) - fitted_per_block;
+    return ratio > 1.0 ? 0.5 * degrees * (ratio - 1.0 - std::log(ratio)) : 0.0;
+}
+
+void add_block(Disturbance& disturbance, const std::vector<Signal>& signals, std::size_t block,
+               std::size_t count) {
+    for (std::size_t s = 0; s < signals.size(); ++s) {
+        disturbance.gain_nats[s] += gain_nats(signals[s], block, count);
+        disturbance.largest = std::max(disturbance.largest, signals[s].powers[block].largest);
+        if (signals[s].loud[block] && std::ranges::count(disturbance.loud, s) == 0) {
+            disturbance.loud.push_back(s);
+        }
+    }
+}
+
+// Disturbed blocks with their neighbours, as long as those follow without a hole.
+std::vector<Disturbance> stretches(const Recording& recording, const std::vector<Block>& blocks,
+                                   const std::vector<Signal>& signals) {
+    std::vector<bool> disturbed(blocks.size(), false);
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+        if (loud_at_once(signals, block) < 2) { continue; }
+        for (std::size_t i = block == 0 ? 0 : block - 1; i < std::min(block + 2, blocks.size()); ++i) {
+            disturbed[i] = true;
+        }
+    }
+    std::vector<Disturbance> found;
+    const std::int64_t origin = recording.segments.front().first_index;
+    const auto seconds = [&](std::int64_t index) {
+        return static_cast<double>(index - origin) / recording.rate_hz;
+    };
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+        if (!disturbed[block]) { continue; }
+        const Block& here = blocks[block];
+        const bool goes_on = block > 0 && disturbed[block - 1] && !found.empty() &&
+                             found.back().first + found.back().rows == here.first;
+        if (!goes_on) {
+            found.push_back(
+                {here.first, 0, seconds(here.index), 0.0, {}, std::vector<double>(signals.size(), 0.0), 0.0});
+        }
+        found.back().rows += here.count;
+        found.back().to_s = seconds(here.index + static_cast<std::int64_t>(here.count));
+        add_block(found.back(), signals, block, here.count);
+    }
+    return found;
+}
+
+}  // namespace
+
+std::vector<Disturbance> disturbances(const Recording& recording,
+                                      std::span<const std::vector<double>> signals,
+                                      const DisturbanceOptions& options) {
+    if (signals.size() < 2) { return {}; }
+    const std::vector<Block> blocks = blocks_of(recording, options);
+    if (blocks.size() < blocks_least) { return {}; }
+    const auto pairs = 0.5 * static_cast<double>(signals.size() * (signals.size() - 1));
+    const double chance_each =
+        std::sqrt(options.false_alarms_most / (pairs * static_cast<double>(blocks.size())));
+    std::vector<Signal> seen;
+    for (const std::vector<double>& signal : signals) {
+        seen.push_back(signal_of(signal, blocks, normal_upper_quantile(chance_each)));
+    }
+    if (!is_no_chance(seen, chance_each, options.false_alarms_most)) { return {}; }
+    std::vector<Disturbance> found = stretches(recording, blocks, seen);
+    const auto rows = static_cast<double>(recording.rows());
+    std::erase_if(found, [&](const Disturbance& one) {
+        return static_cast<double>(one.rows) > options.longest_share * rows || one.loud.size() < 2;
+    });
+    double together = 0.0;
+    for (const Disturbance& one : found) { together += static_cast<double>(one.rows); }
+    return together > options.together_share * rows ? std::vector<Disturbance>{} : found;
+}
+
+}  // namespace gyrolog

@@ -1,0 +1,46 @@
+// Disturbances are short stretches in which something outside moved the sensor: a bump on the bench, a shock,
+// a hand on the cable.
+//
+// A sensor's own noise is loud on one axis at a time. A block of the recording is loud on an axis where the
+// logarithm of its power lies above the axis' median by more than chance has it; the block's power is what is
+// left about two means with one step between them, less its two largest squares, so that neither a step of
+// the bias nor single samples that are off count. A block that is loud on two axes at once is disturbed,
+// where the recording has more of them than the axes' loud blocks would meet by chance (Poisson), and so are
+// the blocks beside it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "analysis/recording/recording.hpp"
+
+namespace gyrolog {
+
+struct DisturbanceOptions {
+    double block_s = 0.25;  // a bump's length
+    std::size_t block_samples_least = 16;
+    double false_alarms_most = 1e-3;  // of recordings without disturbances
+    // Shares of the recording. What lasts longer is not from outside, or cannot be told from a sensor whose
+    // noise changes.
+    double longest_share = 0.05;
+    double together_share = 0.1;
+};
+
+struct Disturbance {
+    std::size_t first = 0;  // row
+    std::size_t rows = 0;
+    double from_s = 0.0;  // from the first sampling instant
+    double to_s = 0.0;
+    std::vector<std::size_t> loud;  // signals
+    std::vector<double> gain_nats;  // by signal: of a power of its own over the median's
+    double largest = 0.0;           // off the means of its blocks, in the signals' unit
+};
+
+// Of the signals, one value a row each, all as long as the recording has rows. Empty with fewer than two.
+std::vector<Disturbance> disturbances(const Recording& recording,
+                                      std::span<const std::vector<double>> signals,
+                                      const DisturbanceOptions& options = {});
+
+}  // namespace gyrolog

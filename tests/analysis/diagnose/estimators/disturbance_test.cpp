@@ -1,0 +1,54 @@
+#include "analysis/diagnose/estimators/disturbance.hpp"
+
+#include <gtest/gtest.h>
+
+#include "analysis/diagnose/diagnosis.hpp"
+#include "tests/analysis/diagnose/observed.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::uint64_t two_minutes = 12'000;  // samples
+
+SensorModel bumped(const SensorModel& model) {
+    return with_effect(model, "disturbance",
+                       {{"per_hour", 120.0}, {"size_dps", 1.0}, {"decay_s", 0.3}, {"f_hz", 8.0}}, {});
+}
+
+TEST(Disturbance, IsTheOnlyCauseOfBumps) {
+    const SensorModel model = calibrated_sensor();
+    const auto recording = recorded(bumped(model), two_minutes, 3);
+    DiagnosisOptions options;
+    options.simulations = 60;
+    const auto diagnosis = diagnose(recording, model, "model.json", options);
+    ASSERT_TRUE(diagnosis);
+    EXPECT_EQ(diagnosis->verdict, Verdict::known);
+    ASSERT_EQ(diagnosis->causes.size(), 1U);
+    const Cause& cause = diagnosis->causes.front();
+    EXPECT_EQ(cause.finding.effect, "disturbance");
+    EXPECT_GT(cause.share.value, 0.9);
+    EXPECT_GT(cause.score, 0.9);
+    ASSERT_TRUE(cause.finding.where.time_s);
+    // The corrected model leaves them out and simulates none.
+    EXPECT_EQ(cause.finding.entries.front().params.at("simulated"), 0.0);
+}
+
+TEST(Disturbance, IsNoneWithoutBumps) {
+    const SensorModel model = calibrated_sensor();
+    int found_any = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const auto recording = recorded(model, two_minutes, seed);
+        if (found(make_disturbance_estimator, "disturbance", recording, model)) { ++found_any; }
+    }
+    EXPECT_EQ(found_any, 0);
+}
+
+TEST(Disturbance, IsNotLookedForTwice) {
+    const SensorModel model = calibrated_sensor();
+    const auto recording = recorded(bumped(model), two_minutes, 3);
+    EXPECT_TRUE(found(make_disturbance_estimator, "disturbance", recording, model));
+    EXPECT_FALSE(found(make_disturbance_estimator, "disturbance", recording, bumped(model)));
+}
+
+}  // namespace
+}  // namespace gyrolog

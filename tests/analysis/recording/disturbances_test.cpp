@@ -1,0 +1,121 @@
+#include "analysis/recording/disturbances.hpp"
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace gyrolog {
+namespace {
+
+constexpr double rate_hz = 100.0;
+constexpr std::size_t rows = 30'000;
+
+using Signals = std::vector<std::vector<double>>;
+
+Recording grid_of(std::size_t count) {
+    Recording recording;
+    recording.rate_hz = rate_hz;
+    Column column{"gx", "rad/s", std::vector<double>(count, 0.0)};
+    recording.columns.push_back(std::move(column));
+    recording.segments = {{0, count, 0}};
+    return recording;
+}
+
+template <class Distribution>
+Signals noise(std::uint64_t seed, Distribution distribution, std::size_t count = rows) {
+    std::mt19937_64 random(seed);
+    Signals signals(3, std::vector<double>(count));
+    for (std::vector<double>& signal : signals) {
+        for (double& value : signal) { value = distribution(random); }
+    }
+    return signals;
+}
+
+Signals white(std::uint64_t seed, std::size_t count = rows) {
+    return noise(seed, std::normal_distribution<double>(), count);
+}
+
+void add_bump(Signals& signals, std::size_t at, double size) {
+    for (std::size_t s = 0; s < signals.size(); ++s) {
+        for (std::size_t i = at; i < std::min(at + 200, signals[s].size()); ++i) {
+            const double since_s = static_cast<double>(i - at) / rate_hz;
+            signals[s][i] += size * std::exp(-since_s / 0.3) * std::sin(2.0 * M_PI * 8.0 * since_s);
+        }
+    }
+}
+
+TEST(Disturbances, AreFoundWhereTheyAre) {
+    Signals signals = white(1);
+    add_bump(signals, 7000, 8.0);
+    add_bump(signals, 21'000, 8.0);
+    const std::vector<Disturbance> found = disturbances(grid_of(rows), signals);
+    ASSERT_EQ(found.size(), 2U);
+    for (const auto& [one, at_s] : {std::pair{found[0], 70.0}, std::pair{found[1], 210.0}}) {
+        EXPECT_LE(one.from_s, at_s);
+        EXPECT_GE(one.from_s, at_s - 1.0);
+        EXPECT_GE(one.to_s, at_s + 0.5);
+        EXPECT_LE(one.to_s, at_s + 2.0);
+        EXPECT_EQ(one.loud.size(), 3U);
+        EXPECT_GT(one.largest, 5.0);
+        EXPECT_EQ(one.first, static_cast<std::size_t>(std::lround(one.from_s * rate_hz)));
+    }
+}
+
+TEST(Disturbances, AreFoundWhereTheRecordingBegins) {
+    Signals signals = white(2);
+    add_bump(signals, 0, 8.0);
+    const std::vector<Disturbance> found = disturbances(grid_of(rows), signals);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].first, 0U);
+}
+
+// A step that two axes share, single samples that are off on all, more noise on one axis for a while, and on
+// all of them for a fifth of the time, are the sensor's own.
+TEST(Disturbances, AreNotWhatASensorDoes) {
+    Signals step = white(3);
+    for (std::size_t s = 0; s < 2; ++s) {
+        for (std::size_t i = 12'345; i < rows; ++i) { step[s][i] += 10.0; }
+    }
+    Signals spikes = white(4);
+    for (std::vector<double>& signal : spikes) {
+        for (std::size_t i = 500; i < rows; i += 2500) { signal[i] += 30.0; }
+    }
+    Signals one_axis = white(5);
+    for (std::size_t i = 9000; i < 9500; ++i) { one_axis[1][i] *= 5.0; }
+    Signals change = white(6);
+    for (std::vector<double>& signal : change) {
+        for (std::size_t i = rows - rows / 5; i < rows; ++i) { signal[i] *= 3.0; }
+    }
+    for (const Signals* signals : {&step, &spikes, &one_axis, &change}) {
+        EXPECT_TRUE(disturbances(grid_of(rows), *signals).empty()) << signals - &step;
+    }
+}
+
+TEST(Disturbances, NeedTwoAxes) {
+    Signals signals = white(7);
+    add_bump(signals, 7000, 8.0);
+    signals.resize(1);
+    EXPECT_TRUE(disturbances(grid_of(rows), signals).empty());
+}
+
+// The chance is one in 1000 each; 9 of 1000 or more is one in 10^6 by Poisson's law.
+TEST(Disturbances, AreRareWhereThereAreNone) {
+    constexpr std::uint64_t recordings = 1000;
+    int normal = 0;
+    int heavy = 0;
+    for (std::uint64_t seed = 1; seed <= recordings; ++seed) {
+        const Recording grid = grid_of(6000);
+        if (!disturbances(grid, white(1000 + seed, 6000)).empty()) { ++normal; }
+        const Signals tails = noise(5000 + seed, std::student_t_distribution<double>(3.5), 6000);
+        if (!disturbances(grid, tails).empty()) { ++heavy; }
+    }
+    std::cout << "of " << recordings << " recordings: normal noise " << normal << ", heavy tails " << heavy
+              << '\n';
+    EXPECT_LT(normal, 9);
+    EXPECT_LT(heavy, 9);
+}
+
+}  // namespace
+}  // namespace gyrolog
