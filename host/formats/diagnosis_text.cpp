@@ -33,6 +33,17 @@ std::string cause_name(const Cause& cause) {
     return axes.empty() ? cause.finding.effect : cause.finding.effect + " on " + axes;
 }
 
+// Each once, in their order: "2 × tone on y".
+std::vector<std::string> each_once(const std::vector<std::string>& names) {
+    std::vector<std::string> once;
+    for (auto name = names.begin(); name != names.end(); ++name) {
+        if (std::find(names.begin(), name, *name) != name) { continue; }
+        const auto count = std::count(name, names.end(), *name);
+        once.push_back(count == 1 ? *name : fmt::format("{} × {}", count, *name));
+    }
+    return once;
+}
+
 // "temp_lag on x and tone on y", "temp_lag and tone on x", "temp_lag on x, tone on y and 3 more".
 std::string causes_text(const Diagnosis& diagnosis) {
     std::vector<std::string> names;
@@ -43,14 +54,16 @@ std::string causes_text(const Diagnosis& diagnosis) {
         effects.push_back(cause.finding.effect);
         alike = alike && cause.finding.where.axes == diagnosis.causes.front().finding.where.axes;
     }
+    const bool of_sensor = !names.empty() && names.front() == effects.front();
+    names = each_once(names);
     if (names.size() > causes_in_verdict_most) {
         const std::size_t more = names.size() - causes_in_verdict_most + 1;
         names.resize(causes_in_verdict_most - 1);
         names.push_back(fmt::format("{} more", more));
         return listed(names);
     }
-    if (names.size() < 2 || !alike || names.front() == effects.front()) { return listed(names); }
-    return listed(effects) + " on " + axes_text(diagnosis.causes.front().finding.where.axes);
+    if (names.size() < 2 || !alike || of_sensor) { return listed(names); }
+    return listed(each_once(effects)) + " on " + axes_text(diagnosis.causes.front().finding.where.axes);
 }
 
 // How often a recording of the very model differs as much.

@@ -222,13 +222,36 @@ std::string quantity_text(std::string_view name, double value, double sd, const 
     return with_uncertainty(value / unit->per, sd / unit->per) + std::string(unit->name);
 }
 
-std::string filled_words(std::string_view words, const Finding& finding) {
+namespace {
+
+// What stands in brackets is said where the finding has the values in it.
+std::string without_brackets(std::string_view words, const Finding& finding) {
+    std::string text;
+    for (std::size_t at = 0; at < words.size();) {
+        const std::size_t open = std::min(words.find('[', at), words.size());
+        text += words.substr(at, open - at);
+        const std::size_t close = words.find(']', open);
+        if (close == std::string_view::npos) { return text.append(words.substr(open)); }
+        const std::string_view part = words.substr(open + 1, close - open - 1);
+        const std::vector<std::string> names = params_in(part);
+        if (std::ranges::all_of(names, [&](const auto& name) { return has_value(finding, name); })) {
+            text += part;
+        }
+        at = close + 1;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string filled_words(std::string_view template_words, const Finding& finding) {
+    const std::string words = without_brackets(template_words, finding);
     std::string text;
     for (std::size_t at = 0; at < words.size();) {
         const std::size_t open = std::min(words.find('{', at), words.size());
         text += words.substr(at, open - at);
         const std::size_t close = words.find('}', open);
-        if (close == std::string_view::npos) { return text.append(words.substr(open)); }
+        if (close == std::string::npos) { return text.append(words.substr(std::min(open, words.size()))); }
         text += value_text(finding, words.substr(open + 1, close - open - 1));
         at = close + 1;
     }

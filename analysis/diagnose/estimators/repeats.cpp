@@ -76,6 +76,51 @@ struct Excess {
 
 double eps_sd(double eps, double rows) { return std::sqrt(std::max(eps, 1.0 / rows) / rows); }
 
+// Rows that repeat the one before in every quantity of a set, by the number of rows since the last such one.
+std::vector<double> distances_of(const Recording& recording, const Quantities& moving, std::size_t set) {
+    std::vector<double> distances;
+    for (const Segment& segment : recording.segments) {
+        std::optional<std::size_t> last;
+        for (std::size_t row = segment.first + 1; row < segment.first + segment.count; ++row) {
+            bool repeats = true;
+            for (std::size_t c = 0; repeats && c < moving.columns.size(); ++c) {
+                if ((set >> c & 1U) == 0U) { continue; }
+                repeats = std::visit([row](const auto& data) { return data[row] == data[row - 1]; },
+                                     moving.columns[c]->data);
+            }
+            if (!repeats) { continue; }
+            if (last) { distances.push_back(static_cast<double>(row - *last)); }
+            last = row;
+        }
+    }
+    return distances;
+}
+
+struct Runs {
+    double length = 0.0;
+    double length_sd = 0.0;
+};
+
+// Empty for a beat: its repeats are 1 / eps rows apart, as nearly as whole numbers can be and eps is known.
+// At random that is rare.
+std::optional<Runs> random_runs(const std::vector<double>& distances, const Excess& excess) {
+    const auto count = static_cast<double>(distances.size());
+    if (count < decisions.repetitions_least) { return std::nullopt; }
+    const double period = 1.0 / excess.eps;
+    const double near = 1.0 + decisions.seen_sigma * period * excess.eps_sd / excess.eps;
+    double in_beat = 0.0;
+    double runs = 1.0;
+    for (const double distance : distances) {
+        in_beat += std::fabs(distance - period) <= near ? 1.0 / count : 0.0;
+        runs += distance > 1.0 ? 1.0 : 0.0;
+    }
+    const double by_chance =
+        std::exp(-std::max(0.0, period - near) * excess.eps) - std::exp(-(period + near) * excess.eps);
+    if (in_beat > 0.5 * (1.0 + by_chance)) { return std::nullopt; }
+    const double length = (count + 1.0) / runs;
+    return Runs{length, std::sqrt(std::max(length * (length - 1.0), 1.0 / runs) / runs)};
+}
+
 class RepeatEstimator final : public Estimator {
 public:
     RepeatEstimator(const EffectDefinition& effect, std::shared_ptr<const Prediction> prediction)
@@ -100,7 +145,15 @@ public:
         Excess excess = *best;
         if (std::popcount(excess.set) > 1) { excess = together(near, apart, moving, excess.set); }
         if (excess.gain_nats < resolution::worth_refining_nats) { return std::nullopt; }
-        return finding_of(moving, excess, static_cast<double>(looked_at));
+        Finding finding = finding_of(moving, excess, static_cast<double>(looked_at));
+        // Of a single quantity some repeat by chance, which is at random in any case.
+        if (std::popcount(excess.set) > 1) {
+            if (const auto runs = random_runs(distances_of(recording, moving, excess.set), excess)) {
+                finding.entries.front().params["run_length"] = runs->length;
+                finding.sd.front()["run_length"] = runs->length_sd;
+            }
+        }
+        return finding;
     }
 
 private:

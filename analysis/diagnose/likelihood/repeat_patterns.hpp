@@ -38,7 +38,8 @@ private:
 };
 
 // The function counts the rows whose `lag`-th before belongs to the same segment, by pattern, in `blocks`
-// equal blocks of rows. A quantity's lowest and highest value count as no repeats.
+// equal blocks of rows. A quantity's lowest and highest value count as no repeats, nor, of a lag above 1, do
+// rows within a run that repeats in all quantities.
 std::vector<PatternCounts> count_patterns(const Recording& recording,
                                           const std::vector<const Column*>& quantities, std::size_t lag,
                                           std::size_t blocks);

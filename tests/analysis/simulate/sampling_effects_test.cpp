@@ -229,6 +229,32 @@ TEST(Stale, ItsShareOfTheSamplesRepeatsAtAnEvenBeatInAllThatTheSensorShows) {
     EXPECT_EQ(repeats_of(run.temperature_C), repeats);
 }
 
+// The number of runs in n samples is n eps / L, within some standard deviations of a Markov chain's count,
+// which is below that of a Poisson variable.
+TEST(Stale, RepeatsAtRandomInRunsOfTheirLength) {
+    constexpr std::size_t blocks = 400;
+    const auto n = static_cast<double>(blocks * block_samples);
+    for (const auto& [eps, length] : {std::pair{0.05, 1.0}, std::pair{0.05, 3.0}, std::pair{0.4, 2.0}}) {
+        const Simulated run =
+            simulate(with_effect(white_model(0.01), "stale", {{"eps", eps}, {"run_length", length}}), rate_hz,
+                     5, blocks);
+        const std::vector<std::size_t> repeats = repeats_of(run.rate_rad_s[0]);
+        double runs = 1.0;
+        double next_but_one = 0.0;
+        for (std::size_t i = 1; i < repeats.size(); ++i) {
+            runs += repeats[i] - repeats[i - 1] > 1 ? 1.0 : 0.0;
+            next_but_one += repeats[i] - repeats[i - 1] == 2 ? 1.0 : 0.0;
+        }
+        const double expected = n * eps / length;
+        EXPECT_NEAR(runs, expected, 4.5 * std::sqrt(expected)) << eps << ' ' << length;
+        EXPECT_NEAR(static_cast<double>(repeats.size()), n * eps, 4.5 * std::sqrt(2.0 * n * eps * length));
+        // After a run, one fresh sample and a run again: as often as one begins.
+        const double begins = eps / length / (1.0 - eps);
+        EXPECT_NEAR(next_but_one, expected * begins, 4.5 * std::sqrt(expected * begins) + 1.0);
+        EXPECT_EQ(repeats_of(run.temperature_C), repeats);
+    }
+}
+
 TEST(Stale, ItsPhaseIsAnyFromSeedToSeed) {
     constexpr double eps = 0.1;
     std::vector<std::size_t> first_at(10);

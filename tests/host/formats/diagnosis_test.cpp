@@ -52,10 +52,14 @@ TEST(DiagnosisText, OfManyCausesNamesTheFirstInItsFirstLine) {
     many.causes.assign(6, many.causes[0]);
     many.causes[1].finding.effect = "tone";
     many.causes[1].finding.where.axes = {1, 2};
-    EXPECT_EQ(verdict_sentence(many), "known: temp_lag on x, tone on y and z and 4 more explain the gap");
+    EXPECT_EQ(verdict_sentence(many), "known: 5 × temp_lag on x and tone on y and z explain the gap");
     many.causes.resize(3);
-    EXPECT_EQ(verdict_sentence(many),
-              "known: temp_lag on x, tone on y and z and temp_lag on x explain the gap");
+    EXPECT_EQ(verdict_sentence(many), "known: 2 × temp_lag on x and tone on y and z explain the gap");
+    many.causes[2].finding.effect = "rtn";
+    EXPECT_EQ(verdict_sentence(many), "known: temp_lag on x, tone on y and z and rtn on x explain the gap");
+    many.causes.resize(6, many.causes[2]);
+    many.causes[5].finding.effect = "spikes";
+    EXPECT_EQ(verdict_sentence(many), "known: temp_lag on x, tone on y and z and 2 more explain the gap");
 }
 
 std::string joined(const std::string& text) {

@@ -51,6 +51,9 @@ TEST(EffectWords, PutValuesInTheirPlaces) {
     EXPECT_EQ(filled_words("a loop of {play_C}", late_temperature()), "a loop of 0 degC")
         << "the effect's own value of what was not fitted";
     EXPECT_EQ(filled_words("no values", late_temperature()), "no values");
+    EXPECT_EQ(filled_words("It lags[, by {tau_s}][, in runs of {run_length}].", late_temperature()),
+              "It lags, by 6.8 ± 1.0 min.")
+        << "brackets hold what is said of what was fitted only";
 }
 
 Cause of_model(const std::string& name, const std::string& effect, std::map<std::string, double> params) {

@@ -37,6 +37,34 @@ TEST(Repeats, AreFoundWithTheirShareOnAllAxes) {
     }
 }
 
+TEST(Repeats, AtRandomHaveTheLengthOfTheirRuns) {
+    const SensorModel model = typical_mpu9250();
+    for (const auto& [eps, length] : {std::pair{0.01, 1.0}, std::pair{0.05, 2.5}, std::pair{0.3, 1.5}}) {
+        const auto recording =
+            recorded(with_effect(model, "stale", {{"eps", eps}, {"run_length", length}}), ten_minutes, 4);
+        const auto finding = repeats(recording, model);
+        ASSERT_TRUE(finding) << eps;
+        const EffectModel& entry = finding->entries.front();
+        EXPECT_NEAR(entry.params.at("eps"), eps, 4.0 * length * finding->sd.front().at("eps"));
+        ASSERT_TRUE(entry.params.contains("run_length")) << eps;
+        EXPECT_NEAR(entry.params.at("run_length"), length, 4.0 * finding->sd.front().at("run_length"));
+        EXPECT_FALSE(effect_refusal(entry));
+    }
+}
+
+// A beat may be as slow as one in a thousand, and as fast as four in ten.
+TEST(Repeats, InABeatHaveNoRuns) {
+    const SensorModel model = typical_mpu9250();
+    for (const double eps : {0.001, 0.0137, 0.0987, 0.4}) {
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            const auto finding =
+                repeats(recorded(with_effect(model, "stale", {{"eps", eps}}), ten_minutes, seed), model);
+            ASSERT_TRUE(finding) << eps;
+            EXPECT_FALSE(finding->entries.front().params.contains("run_length")) << eps << ' ' << seed;
+        }
+    }
+}
+
 // Sixty repeats among sixty thousand samples, without the temperature's word: the axes' own chance repeats
 // are 0.4 in a thousand for three axes together.
 TEST(Repeats, AreFoundByTheAxesAlone) {
