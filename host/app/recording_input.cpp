@@ -14,7 +14,8 @@ namespace {
 
 Result<TimedRecording> read_capture(const RecordingInput& input) {
     GYROLOG_TRY(LoadedCapture capture,
-                load_capture(input.path, true, input.on_stage, {input.samples_most, input.samples_per_row}));
+                load_capture(input.path, true, input.on_stage,
+                             {input.samples_most, input.samples_per_row, input.with_accelerometer}));
     input.on_stage("place");
     auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
@@ -53,6 +54,9 @@ Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
     options.allow_unscaled_counts = true;
     options.rows_most = input.samples_most;
     options.samples_per_row = input.samples_per_row;
+    options.lsb_g = input.lsb_g;
+    options.with_accelerometer = input.with_accelerometer;
+    options.needs_gyro = input.needs_gyro;
     GYROLOG_TRY(Recording recording, read_recording_csv(input.path, options));
     return TimedRecording{std::move(recording), std::nullopt};
 }

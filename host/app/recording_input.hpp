@@ -21,6 +21,9 @@ struct RecordingInput {
     std::size_t samples_most = std::numeric_limits<std::size_t>::max() - 1;
     // More: means of so many, as means_of() has them but for samples that are missing; no more is ever held.
     std::size_t samples_per_row = 1;
+    std::optional<double> lsb_g{};   // scale of accelerometer columns in counts
+    bool with_accelerometer = true;  // without it, its columns are not read
+    bool needs_gyro = true;          // else text with an accelerometer alone is a recording, too
 };
 
 Result<Recording> read_recording(const RecordingInput& input);

@@ -28,6 +28,9 @@ void append_field(std::vector<std::int16_t>& column, const std::uint8_t* bytes, 
     for (std::size_t i = 0; i < count; ++i, bytes += stride) { out[i] = number_at(bytes); }
 }
 
+// Of a sample; the accelerometer's follow the gyro's.
+constexpr std::size_t fields_of_sensor = 3;
+
 struct Quantity {
     const char* name;
     const char* unit;
@@ -119,15 +122,24 @@ void RecordingBuilder::take_samples(const SamplePlace& place, const glp_samples&
     }
 }
 
+bool RecordingBuilder::keeps(std::uint8_t layout, std::size_t field) const {
+    if (with_accelerometer_ || (layout & glp_layout_accel) == 0) { return true; }
+    const std::size_t first = (layout & glp_layout_gyro) != 0 ? fields_of_sensor : 0;
+    return field < first || field >= first + fields_of_sensor;
+}
+
 void RecordingBuilder::append(const SamplePlace& place, const glp_samples& samples) {
     const std::size_t stride = glp_sample_bytes(samples.layout);
     const std::size_t fields = stride / 2;
     if (current_.rows == 0) {
         const auto rows = std::min<std::uint64_t>(bytes_to_come_ / stride, most_rows_ahead);
-        for (auto& column : current_.fields) { column.reserve(rows); }
+        for (std::size_t field = 0; field < fields_max; ++field) {
+            if (keeps(samples.layout, field)) { current_.fields[field].reserve(rows); }
+        }
     }
     bytes_to_come_ -= std::min<std::uint64_t>(bytes_to_come_, samples.count * stride);
     for (std::size_t field = 0; field < fields; ++field) {
+        if (!keeps(samples.layout, field)) { continue; }
         append_field(current_.fields[field], samples.samples + 2 * field, samples.count, stride);
     }
     if ((samples.layout & glp_layout_temperature) == 0) {
@@ -168,6 +180,7 @@ void RecordingBuilder::append_means(const SamplePlace& place, const glp_samples&
         // Of a row whose beginning is missing the rest counts for nothing.
         if (++row.samples != before + 1 || row.samples != samples_per_row_) { continue; }
         for (std::size_t column = 0; column < columns; ++column) {
+            if (!keeps(samples.layout, column)) { continue; }
             current_.means[column].push_back(row.sums[column] / static_cast<double>(samples_per_row_));
         }
         enter_rows(place, index + 1 - samples_per_row_, 1);
@@ -308,7 +321,7 @@ void RecordingBuilder::set_rate(const Stretch& stretch, const SampleTimeline& ti
 Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimeline& timeline,
                                            const LinkReport& link) {
     close();
-    RecordingBuilder taken = std::exchange(*this, RecordingBuilder(0, samples_per_row_));
+    RecordingBuilder taken = std::exchange(*this, RecordingBuilder(0, samples_per_row_, with_accelerometer_));
     Stretch& stretch = taken.longest_;
     if (stretch.rows == 0) {
         return Error{ErrorCode::malformed, taken.without_config_ > 0
@@ -325,8 +338,10 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
     const auto device_s = timeline.device_time_s(first.run, first.first_index, recording.rate_hz);
     const auto clock = timeline.host_clock();
     if (device_s && clock) { host_start_s_ = clock->offset_s + clock->ratio * *device_s; }
-    std::size_t field = 0;
+    std::size_t next_field = 0;
     for (const Quantity& quantity : quantities(stretch.layout, *stretch.config)) {
+        const std::size_t field = next_field++;
+        if (!keeps(stretch.layout, field)) { continue; }
         Column column{quantity.name, quantity.unit, {}, quantity.scale, quantity.offset};
         if (samples_per_row_ > 1) {
             column.data = std::move(stretch.means[field]);
@@ -334,7 +349,6 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
             column.data = std::move(stretch.fields[field]);
         }
         recording.columns.push_back(std::move(column));
-        ++field;
     }
     count_in_rows(recording);
     if (stretch.config->decimation > 1) {

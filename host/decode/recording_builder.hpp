@@ -37,8 +37,13 @@ public:
     // With more than one sample per row a row is their mean, as in means_of(), but counted from the first of
     // each run: after a restart, up to half a row beside its place. A row that lacks a sample is missing.
     // Only rows take memory.
-    explicit RecordingBuilder(std::uint64_t stream_bytes = 0, std::size_t samples_per_row = 1)
-        : samples_per_row_(samples_per_row), bytes_to_come_(stream_bytes) {}
+    //
+    // Without the accelerometer its columns are left out.
+    explicit RecordingBuilder(std::uint64_t stream_bytes = 0, std::size_t samples_per_row = 1,
+                              bool with_accelerometer = true)
+        : samples_per_row_(samples_per_row),
+          with_accelerometer_(with_accelerometer),
+          bytes_to_come_(stream_bytes) {}
 
     // `boot` is LinkAccounts::boot() at this frame.
     void take_config(std::uint32_t boot, const glp_config& config);
@@ -112,7 +117,10 @@ private:
     static void enter_dropouts(const LinkReport& link, const std::vector<RunOrigin>& origins,
                                Recording& recording);
 
+    bool keeps(std::uint8_t layout, std::size_t field) const;
+
     std::size_t samples_per_row_;
+    bool with_accelerometer_;
     std::optional<glp_config> config_;  // as last told
     std::uint32_t config_boot_ = 0;
     std::uint64_t bytes_to_come_ = 0;

@@ -42,7 +42,7 @@ bool StreamDecoder::take(const Transfer& transfer) {
     restarts_ = {};
     timeline_ = {};
     liveness_ = SampleLiveness();
-    builder_ = RecordingBuilder(options_.stream_bytes, options_.samples_per_row);
+    builder_ = RecordingBuilder(options_.stream_bytes, options_.samples_per_row, options_.with_accelerometer);
     hello_.reset();
     config_.reset();
     status_.reset();

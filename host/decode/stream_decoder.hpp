@@ -29,12 +29,14 @@ struct StreamDecoderOptions {
     MessageHandler* observer = nullptr;  // gets every message but the duplicates; may be null
     std::uint64_t stream_bytes = 0;      // expected, for making room; 0: not known
     std::size_t samples_per_row = 1;     // of what is kept, more: their means (RecordingBuilder)
+    bool with_accelerometer = true;      // of what is kept
 };
 
 class StreamDecoder : private MessageHandler {
 public:
     explicit StreamDecoder(StreamDecoderOptions options = {})
-        : options_(options), builder_(options.stream_bytes, options.samples_per_row) {}
+        : options_(options),
+          builder_(options.stream_bytes, options.samples_per_row, options.with_accelerometer) {}
 
     // Feeds what a transfer carries of the stream. The transfer by which the host first raises DTR begins the
     // accounts anew: what a board still had from an earlier listener is in the bytes, but its gaps are not

@@ -23,6 +23,7 @@ struct InputColumn {
 
     bool is(CsvColumn::Kind kind) const { return meaning && meaning->kind == kind; }
     bool is_gyro() const { return meaning && meaning->is_gyro(); }
+    bool is_accelerometer() const { return is(CsvColumn::Kind::force); }
 };
 
 // Beyond any gyro in any unit; squares of squares of it are still numbers.
@@ -31,25 +32,31 @@ constexpr double most_rate = 1e15;
 // Without a given rate an empty field of t_s is an error.
 CsvTable recording_table(const CsvReadOptions& options) {
     const bool needs_stamps = !options.rate_hz;
-    const auto rule = [needs_stamps](std::vector<CsvTableColumn>& columns) -> Status {
-        bool any_gyro = false;
+    const bool with_accelerometer = options.with_accelerometer;
+    const bool needs_gyro = options.needs_gyro;
+    const auto rule = [=](std::vector<CsvTableColumn>& columns) -> Status {
+        bool any_sensor = false;
         for (CsvTableColumn& column : columns) {
             const auto meaning = csv_column(column.header);
-            column.used = meaning.has_value();
+            const bool is_force = meaning && meaning->kind == CsvColumn::Kind::force;
+            column.used = meaning.has_value() && (with_accelerometer || !is_force);
+            any_sensor = any_sensor || (column.used && is_force && !needs_gyro);
             if (meaning && meaning->is_gyro()) {
                 column.lowest = -most_rate;
                 column.highest = most_rate;
                 column.needs_half = true;
             }
-            any_gyro = any_gyro || (meaning && meaning->is_gyro());
+            any_sensor = any_sensor || (meaning && meaning->is_gyro());
             if (needs_stamps && meaning && meaning->kind == CsvColumn::Kind::time_stamp) {
                 column.mend_if_empty = "no time stamp; give the sampling rate with --rate";
             }
         }
-        if (any_gyro) { return {}; }
+        if (any_sensor) { return {}; }
         return malformed(
-            "line 1: no gyro column; it must name the columns with their units, such as "
-            "t_s,gx_dps,gy_dps,gz_dps (or _rad_s, _lsb, _deg, _rad)");
+            std::string("line 1: no gyro column") + (needs_gyro ? "" : " and none of an accelerometer") +
+            "; it must name the columns with their units, such as t_s,gx_dps,gy_dps,gz_dps (or _rad_s, _lsb, "
+            "_deg, _rad)" +
+            (needs_gyro ? "" : " or ax_g,ay_g,az_g (or _m_s2, _lsb)"));
     };
     return {"t_s,gx_dps,gy_dps,gz_dps", rule, options.samples_per_row};
 }
@@ -57,7 +64,9 @@ CsvTable recording_table(const CsvReadOptions& options) {
 std::vector<InputColumn> input_columns(CsvTable& table) {
     std::vector<InputColumn> columns;
     for (CsvTableColumn& column : table.columns()) {
-        columns.push_back({column.header, csv_column(column.header), std::move(column.values)});
+        auto meaning = csv_column(column.header);
+        if (meaning && !column.used) { continue; }
+        columns.push_back({column.header, std::move(meaning), std::move(column.values)});
     }
     return columns;
 }
@@ -142,8 +151,9 @@ Result<Gridded> on_grid(std::vector<InputColumn> columns, const CsvReadOptions& 
 
 void drop_missing_samples(Gridded& gridded) {
     std::vector<bool> present(gridded.columns.front().values.size(), true);
+    const bool has_gyro = std::ranges::any_of(gridded.columns, &InputColumn::is_gyro);
     for (const InputColumn& column : gridded.columns) {
-        if (!column.is_gyro()) { continue; }
+        if (has_gyro ? !column.is_gyro() : !column.is_accelerometer()) { continue; }
         for (std::size_t i = 0; i < present.size(); ++i) {
             if (std::isnan(column.values[i])) { present[i] = false; }
         }

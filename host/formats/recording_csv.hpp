@@ -28,6 +28,8 @@ struct CsvReadOptions {
     // all; a row is missing where fewer than half have. Otherwise as means_of() has them. Only rows take
     // memory.
     std::size_t samples_per_row = 1;
+    bool with_accelerometer = true;  // without it, its columns are not read
+    bool needs_gyro = true;          // text without a gyro column is an error, even with an accelerometer
 };
 
 // Numbers keep the unit and the digits that the text has (Column::source_unit). Counts that are whole numbers
@@ -35,6 +37,7 @@ struct CsvReadOptions {
 // so does an increment. The first sample after a hole then has no rate and counts as missing.
 //
 // A row where any gyro field is empty or NaN is a missing sample; in other columns such a field stays NaN.
+// Without a gyro column the accelerometer's fields decide.
 // Columns of unknown name are ignored, with one warning that lists them.
 //
 // A hole is a loss, unless a column stopped_s says behind it, in its first sample, that the user had stopped

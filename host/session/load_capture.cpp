@@ -108,7 +108,8 @@ Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples, c
         std::make_unique<StreamDecoder>(StreamDecoderOptions{.keep_samples = keep_samples,
                                                              .observer = nullptr,
                                                              .stream_bytes = stream_bytes,
-                                                             .samples_per_row = kept.samples_per_row});
+                                                             .samples_per_row = kept.samples_per_row,
+                                                             .with_accelerometer = kept.with_accelerometer});
     Loading loading(loaded, on_stage, kept.samples_most);
     for (const std::string& file : loaded.files) {
         GYROLOG_CHECK(loading.read(file));

@@ -31,6 +31,7 @@ struct LoadedCapture {
 struct KeptRows {
     std::size_t samples_most = std::numeric_limits<std::size_t>::max();  // reading ends soon after so many
     std::size_t samples_per_row = 1;                                     // more: means of so many
+    bool with_accelerometer = true;
 };
 
 // Errors: those of CaptureReader. A capture without one good frame is no error.

@@ -204,6 +204,23 @@ TEST(RecordingCsv, AMalformedLineIsNamedWithItsColumn) {
     EXPECT_THAT(refusal("t_s,gx_dps\n0,1\n,1\n"), HasSubstr("line 3, column 't_s': no time stamp"));
 }
 
+TEST(RecordingCsv, AnAccelerometerAloneIsARecordingWhereNoGyroIsNeeded) {
+    const std::string text = "t_s,ax_g,az_g\n0,0.1,1\n1,0.2,1\n2,,1\n3,0.4,1\n";
+    EXPECT_THAT(refusal(text), HasSubstr("line 1: no gyro column;"));
+    const Recording recording = parsed(text, {.needs_gyro = false});
+    EXPECT_THAT(reals(recording, "ax"), ElementsAre(0.1, 0.2, 0.4));
+    EXPECT_EQ(recording.missing_samples(), 1);
+    EXPECT_THAT(refusal("t_s,ax_m\n0,1\n", {.needs_gyro = false}),
+                HasSubstr("line 1: no gyro column and none of an accelerometer"));
+}
+
+TEST(RecordingCsv, AnAccelerometerThatIsNotWantedIsNotReadAtAll) {
+    const Recording recording =
+        parsed("t_s,gx_dps,ax_g,note\n0,1,unreadable,1\n1,2,0.5,2\n", {.with_accelerometer = false});
+    EXPECT_EQ(recording.columns.size(), 1U);
+    EXPECT_THAT(recording.warnings, ElementsAre("ignored columns of unknown name: note"));
+}
+
 TEST(RecordingCsv, SaysWhatIsMissingAndWhatGivesIt) {
     EXPECT_THAT(refusal(""), HasSubstr("empty"));
     EXPECT_THAT(refusal("0,1\n1,2\n"), HasSubstr("line 1: no gyro column"));
