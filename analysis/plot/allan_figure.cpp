@@ -8,11 +8,13 @@
 #include "analysis/plot/number_text.hpp"
 #include "analysis/plot/spectrum_panel.hpp"
 #include "analysis/plot/trace_look.hpp"
+#include "analysis/recording/standard_gravity.hpp"
 
 namespace gyrolog {
 namespace {
 
 constexpr double s_per_h = 3600.0;
+constexpr double root_s_per_root_h = 60.0;
 
 // sqrt(2 ln 2 / pi): the level of the flat part over B. IEEE Std 952-1997 C.1.3.
 const double flat_level = std::sqrt(2.0 * std::log(2.0) / pi);
@@ -154,10 +156,11 @@ std::vector<LegendColumn> columns_of(const AllanFigure& allan) {
     const DeviationUnit& unit = allan.unit;
     const double to_paper = unit.per_unit_of_data;
     std::vector<LegendColumn> columns{{"N  (" + unit.name + ")/√Hz", &AllanTrace::N, to_paper}};
-    if (unit.deg_per_h > 0.0) {
-        // 1 °/√h = 1 °/h √h, and √h = 60 √s.
-        columns.push_back({"N  °/√h", &AllanTrace::N, to_paper * unit.deg_per_h / std::sqrt(s_per_h)});
-        columns.push_back({"B  °/h", &AllanTrace::B, to_paper * unit.deg_per_h});
+    if (!unit.density.name.empty()) {
+        columns.push_back({"N  " + unit.density.name, &AllanTrace::N, to_paper * unit.density.factor});
+    }
+    if (unit.has_second_B) {
+        columns.push_back({"B  " + unit.deviation.name, &AllanTrace::B, to_paper * unit.deviation.factor});
     } else {
         columns.push_back({"B  " + unit.name, &AllanTrace::B, to_paper});
     }
@@ -255,7 +258,9 @@ Panel allan_panel(const AllanFigure& allan) {
     Panel panel;
     panel.x = {"averaging time τ (s)", ScaleKind::logarithmic, {}};
     panel.y = {allan.deviation + " σ(τ) (" + allan.unit.name + ")", ScaleKind::logarithmic, {}};
-    if (allan.unit.deg_per_h > 0.0) { panel.right = SecondUnit{"σ(τ) (°/h)", allan.unit.deg_per_h}; }
+    if (const DeviationUnit::Second& second = allan.unit.deviation; !second.name.empty()) {
+        panel.right = SecondUnit{"σ(τ) (" + second.name + ")", second.factor};
+    }
 
     const std::vector<LegendColumn> columns = columns_of(allan);
     if (!columns.empty()) {
@@ -295,8 +300,22 @@ Panel allan_panel(const AllanFigure& allan) {
 
 }  // namespace
 
-DeviationUnit DeviationUnit::rad_per_s_as_deg_per_s() { return {"°/s", deg_per_rad, s_per_h}; }
-DeviationUnit DeviationUnit::rad_per_s() { return {"rad/s", 1.0, deg_per_rad * s_per_h}; }
+// 1 °/√h = 1 °/h √h, and √h = 60 √s; likewise 1 m/s/√h = 1 (m/s²)/√Hz √h / s.
+DeviationUnit DeviationUnit::rad_per_s_as_deg_per_s() {
+    return {"°/s", deg_per_rad, {"°/h", s_per_h}, {"°/√h", s_per_h / root_s_per_root_h}, true};
+}
+DeviationUnit DeviationUnit::rad_per_s() {
+    constexpr double deg_per_h = deg_per_rad * s_per_h;
+    return {"rad/s", 1.0, {"°/h", deg_per_h}, {"°/√h", deg_per_h / root_s_per_root_h}, true};
+}
+DeviationUnit DeviationUnit::m_per_s2_as_micro_g() {
+    constexpr double micro_g_m_s2 = 1e-6 * standard_gravity_m_s2;
+    return {"µg",
+            1.0 / micro_g_m_s2,
+            {"m/s²", micro_g_m_s2},
+            {"m/s/√h", micro_g_m_s2 * root_s_per_root_h},
+            false};
+}
 
 Figure figure_of(const AllanFigure& allan) {
     Figure figure;

@@ -21,11 +21,19 @@ namespace gyrolog {
 struct DeviationUnit {
     std::string name;  // of the left-hand axis
     double per_unit_of_data = 1.0;
-    double deg_per_h = 0.0;  // what one unit of `name` is; 0: no angular rate, so no right-hand axis, no °/√h
+    // What one unit of `name` is on the right-hand axis, and one of `name`/√Hz; no name: no such axis.
+    struct Second {
+        std::string name;
+        double factor = 0.0;
+    };
+    Second deviation{};        // "°/h"
+    Second density{};          // "°/√h"
+    bool has_second_B = true;  // B in the table in `deviation`, too
 
     static DeviationUnit rad_per_s_as_deg_per_s();  // data in rad/s, drawn in °/s
     static DeviationUnit rad_per_s();               // data in rad/s, drawn as they are
-    static DeviationUnit as_given(std::string name) { return {std::move(name), 1.0, 0.0}; }
+    static DeviationUnit m_per_s2_as_micro_g();     // data in m/s^2, drawn in µg
+    static DeviationUnit as_given(std::string name) { return {std::move(name), 1.0, {}, {}, false}; }
 };
 
 struct PlottedCoefficient {

@@ -34,8 +34,9 @@ std::vector<std::string> notes_of(const HistogramTrace& trace, const HistogramFi
     const std::string unit = " " + figure.unit_name;
     std::vector<std::string> notes;
     notes.push_back(
-        "bias " + with_expanded_uncertainty(on_paper(histogram.mean), on_paper(trace.expanded_uncertainty)) +
-        unit + " (k = " + coverage_text(trace.coverage_factor) + ")");
+        figure.mean_name + " " +
+        with_expanded_uncertainty(on_paper(histogram.mean), on_paper(trace.expanded_uncertainty)) + unit +
+        " (k = " + coverage_text(trace.coverage_factor) + ")");
     notes.push_back("standard deviation " + rounded_number(on_paper(histogram.standard_deviation), 4) + unit);
     notes.push_back("excess kurtosis " + fixed_decimal(histogram.excess_kurtosis, 3) + ", skewness " +
                     fixed_decimal(histogram.skewness, 3));
@@ -56,7 +57,7 @@ Panel panel_of(const HistogramTrace& trace, const HistogramFigure& figure, Colou
     const AmplitudeHistogram& histogram = trace.histogram;
     const auto about_bias = [&](double value) { return (value - histogram.mean) * figure.per_unit_of_data; };
     Panel panel;
-    panel.x = {trace.name + " − bias (" + figure.unit_name + ")", ScaleKind::linear, {}};
+    panel.x = {trace.name + " − " + figure.mean_name + " (" + figure.unit_name + ")", ScaleKind::linear, {}};
     panel.y = {"samples in a bin", ScaleKind::logarithmic, {}};
     if (histogram.counts.empty()) { return panel; }
 

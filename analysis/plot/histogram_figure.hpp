@@ -23,6 +23,7 @@ struct HistogramFigure {
     std::vector<std::string> facts;
     std::string unit_name = "°/s";
     double per_unit_of_data = 1.0;
+    std::string mean_name = "bias";
     std::vector<HistogramTrace> traces;
     int width_px = 1600;
     double scale = 1.0;

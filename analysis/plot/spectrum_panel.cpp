@@ -72,9 +72,8 @@ Panel spectrum_panel(const AllanFigure& allan) {
     Panel panel;
     panel.x = {"frequency f (Hz)", ScaleKind::logarithmic, {}};
     panel.y = {"√S(f), two-sided ((" + allan.unit.name + ")/√Hz)", ScaleKind::logarithmic, {}};
-    if (allan.unit.deg_per_h > 0.0) {
-        // 1 °/√h = 1 °/h √h, and √h = 60 √s.
-        panel.right = SecondUnit{"√S(f) (°/√h)", allan.unit.deg_per_h / 60.0};
+    if (const DeviationUnit::Second& second = allan.unit.density; !second.name.empty()) {
+        panel.right = SecondUnit{"√S(f) (" + second.name + ")", second.factor};
     }
     const std::vector<TraceLook> looks = passes_of(allan.traces);
     for (std::size_t i = 0; i < looks.size(); ++i) {
