@@ -331,6 +331,7 @@ double AxisDenoising::unit_variance() const {
 std::vector<AxisKnowledge> learn_units(const Recording& still, std::optional<double> saturation) {
     AnalysisOptions options;
     options.threads = 0;
+    options.sensors = Sensors::gyro;
     const AnalysisReport report = analyze(still, options);
     std::vector<AxisKnowledge> axes;
     for (const ArrayAxis& axis : array_axes(still)) {

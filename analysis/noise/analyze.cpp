@@ -4,7 +4,9 @@
 #include <cmath>
 #include <iomanip>
 #include <iterator>
+#include <list>
 #include <sstream>
+#include <string_view>
 
 #include "analysis/noise/axis_warnings.hpp"
 #include "analysis/noise/clipping.hpp"
@@ -15,23 +17,32 @@
 namespace gyrolog {
 namespace {
 
-bool is_gyro(const Column& column) { return column.name.size() >= 2 && column.name[0] == 'g'; }
+bool is_of(SensorKind sensor, const Column& column) {
+    if (column.name.size() < 2) { return false; }
+    if (sensor == SensorKind::gyro) { return column.name[0] == 'g'; }
+    return column.name[0] == 'a' && column.name[1] >= 'x' && column.name[1] <= 'z';
+}
 
-RateUnit unit_of(const Column& column) {
-    if (column.unit == "lsb") { return {"lsb", 1.0}; }
-    if (column.source_unit == "rad_s") { return {"rad/s", 1.0}; }
-    return {"dps", deg_per_rad};
+SensorUnit unit_of(SensorKind sensor, const Column& column) {
+    if (column.unit == "lsb") { return SensorUnit::counts_of(sensor); }
+    if (sensor == SensorKind::gyro) {
+        return column.source_unit == "rad_s" ? SensorUnit::rad_per_s() : SensorUnit::dps();
+    }
+    return column.source_unit == "m_s2" ? SensorUnit::m_per_s2() : SensorUnit::g();
 }
 
 // An axis on its way: what its column is analysed as, and the curve that the fit starts from.
 struct Work {
+    SensorKind sensor = SensorKind::gyro;
+    const Recording* recording = nullptr;
     const Column* column = nullptr;
-    Column without_outliers;  // empty unless robust
-    AllanCurve whole;         // overlapping, at the usual averaging factors
-    AxisReport report;
+    Column without_outliers{};  // empty unless robust
+    AllanCurve whole{};         // overlapping, at the usual averaging factors
+    AxisReport report{};
 };
 
-void find_curves(Work& work, const Recording& recording, const AnalysisOptions& options) {
+void find_curves(Work& work, const AnalysisOptions& options) {
+    const Recording& recording = *work.recording;
     if (options.robust) {
         work.without_outliers = *work.column;
         work.report.outliers = replace_outliers(work.without_outliers, recording.segments);
@@ -49,13 +60,15 @@ void find_curves(Work& work, const Recording& recording, const AnalysisOptions& 
     axis.slopes = read_slopes(work.whole);
 }
 
-void find_spectrum(Work& work, const Recording& recording, const AnalysisOptions& options) {
+void find_spectrum(Work& work, const AnalysisOptions& options) {
+    const Recording& recording = *work.recording;
     const auto periodograms = averaged_periodograms(*work.column, recording.segments, recording.rate_hz);
     work.report.spectrum = power_spectrum(periodograms, {.confidence = options.confidence});
     work.report.lines = find_lines(periodograms, *work.column, recording.segments, recording.rate_hz);
 }
 
-void find_coefficients(Work& work, const Recording& recording, const AnalysisOptions& options) {
+void find_coefficients(Work& work, const AnalysisOptions& options) {
+    const Recording& recording = *work.recording;
     const Column& column = *work.column;
     AxisReport& axis = work.report;
     axis.fit = fit_noise(work.whole, options.confidence);
@@ -141,6 +154,124 @@ void warn_of_rate(const AnalysisReport& report, std::vector<std::string>& warnin
     warnings.push_back(text.str());
 }
 
+bool is_missing(const Column& column, std::size_t row) {
+    const auto* reals = std::get_if<std::vector<double>>(&column.data);
+    return reals != nullptr && std::isnan((*reals)[row]);
+}
+
+// The rows in which the accelerometer has values; nothing where it has all.
+std::optional<Recording> with_accelerometer(const Recording& recording) {
+    std::vector<const Column*> columns;
+    for (const Column& column : recording.columns) {
+        if (is_of(SensorKind::accelerometer, column) && !column.is_counts()) { columns.push_back(&column); }
+    }
+    const auto is_complete = [&](std::size_t row) {
+        return std::ranges::none_of(columns, [&](const Column* c) { return is_missing(*c, row); });
+    };
+    std::size_t row = 0;
+    while (row < recording.rows() && is_complete(row)) { ++row; }
+    if (row == recording.rows()) { return std::nullopt; }
+    return rows_of(recording, segments_where(recording.segments, is_complete));
+}
+
+// The accelerometer's rows, where they are not the recording's, go to `complete`.
+const Recording* recording_of(SensorKind sensor, const Recording& recording,
+                              std::optional<Recording>& complete, AnalysisReport& report) {
+    if (sensor == SensorKind::gyro) { return &recording; }
+    complete = with_accelerometer(recording);
+    if (!complete) { return &recording; }
+    report.warnings.push_back("accelerometer: " + std::to_string(recording.rows() - complete->rows()) +
+                              " of the rows have no value of it and are missing to it");
+    return complete->rows() < 2 ? nullptr : &*complete;
+}
+
+// A list, because what is at work refers to its own columns.
+std::list<Work> axes_of(const Recording& recording, const AnalysisOptions& options,
+                        std::optional<Recording>& complete, AnalysisReport& report) {
+    std::list<Work> axes;
+    for (const SensorKind sensor : {SensorKind::gyro, SensorKind::accelerometer}) {
+        const auto is_its = [&](const Column& column) { return is_of(sensor, column); };
+        const auto first = std::ranges::find_if(recording.columns, is_its);
+        if (!includes(options.sensors, sensor) || first == recording.columns.end()) { continue; }
+        const Recording* rows = recording_of(sensor, recording, complete, report);
+        if (rows == nullptr) { continue; }
+        const SensorUnit unit = unit_of(sensor, *first);
+        if (sensor == SensorKind::gyro) {
+            report.unit = unit;
+        } else {
+            report.accelerometer = AccelerometerReport{unit, {}, {}};
+        }
+        for (const Column& column : rows->columns) {
+            if (is_its(column)) { axes.push_back({sensor, rows, &column}); }
+        }
+    }
+    return axes;
+}
+
+template <typename Do>
+void for_each_axis(std::list<Work>& axes, unsigned threads, Do what) {
+    std::vector<Work*> all;
+    for (Work& axis : axes) { all.push_back(&axis); }
+    parallel_for(all.size(), threads, [&](std::size_t i) { what(*all[i]); });
+}
+
+void warn_of_axes(SensorKind sensor, const std::list<Work>& axes, std::vector<std::string>& to) {
+    AxisWarnings warnings;
+    for (const Work& axis : axes) {
+        if (axis.sensor != sensor) { continue; }
+        warn_of_misfit(axis.report, warnings);
+        if (is_clipped(*axis.column)) {
+            warnings.add(axis.report.axis,
+                         "the samples are clipped: more lie at their limit than next to it, and "
+                         "the noise is larger than these coefficients say");
+        }
+    }
+    for (const std::string& line : warnings.lines()) {
+        to.push_back(sensor == SensorKind::accelerometer ? "accelerometer " + line : line);
+    }
+}
+
+std::optional<AxisMean> mean_of(const AccelerometerReport& report, const std::string& axis) {
+    const auto found = std::ranges::find(report.axes, axis, &AxisReport::axis);
+    if (found == report.axes.end()) { return std::nullopt; }
+    return AxisMean{found->bias, found->fit.mean_dof};
+}
+
+void warn_of_gravity(const AccelerometerReport& report, const AccelerometerReport::UnitGravity& unit,
+                     std::vector<std::string>& warnings) {
+    constexpr double allowed = 0.2;  // three axes of the worst kind: 80 mg and 3 % (PS-MPU-9250A-01, table 2)
+    const double size = unit.gravity.size.value / standard_gravity_m_s2;
+    if (report.unit.is_counts() || std::abs(size - 1.0) < allowed) { return; }
+    warnings.push_back("accelerometer" + (unit.unit.empty() ? unit.unit : " " + unit.unit) +
+                       ": the mean over the record is " + rounded(size) +
+                       " g, which is not gravity: it moved or was turned, or its scale is wrong");
+}
+
+void find_gravity(AccelerometerReport& report, std::vector<std::string>& warnings) {
+    for (const AxisReport& axis : report.axes) {
+        if (axis.axis[0] != 'x') { continue; }
+        const std::string unit = axis.axis.substr(1);
+        const auto x = mean_of(report, axis.axis);
+        const auto y = mean_of(report, "y" + unit);
+        const auto z = mean_of(report, "z" + unit);
+        if (!y || !z) { continue; }
+        report.gravity.push_back({unit, gravity_of({*x, *y, *z})});
+        warn_of_gravity(report, report.gravity.back(), warnings);
+    }
+}
+
+const char* sensors_text(Sensors sensors) {
+    switch (sensors) {
+        case Sensors::gyro:
+            return "gyro";
+        case Sensors::accelerometer:
+            return "accelerometer";
+        case Sensors::all:
+            break;
+    }
+    return "gyro or accelerometer";
+}
+
 void count_holes(const Recording& recording, AnalysisReport& report) {
     const Stops stops = recording.stops();
     report.stops = stops.events;
@@ -171,35 +302,27 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
         return report;
     }
     warn_of_rate(report, report.warnings);
-    std::vector<Work> axes;
-    for (const Column& column : recording.columns) {
-        if (!is_gyro(column)) { continue; }
-        if (axes.empty()) { report.unit = unit_of(column); }
-        axes.push_back({&column, {}, {}, {}});
-    }
-    for (Work& axis : axes) { find_curves(axis, recording, options); }
+    std::optional<Recording> complete;
+    std::list<Work> axes = axes_of(recording, options, complete, report);
+    for (Work& axis : axes) { find_curves(axis, options); }
     options.on_stage("spectrum");
-    parallel_for(axes.size(), options.threads,
-                 [&](std::size_t i) { find_spectrum(axes[i], recording, options); });
+    for_each_axis(axes, options.threads, [&](Work& axis) { find_spectrum(axis, options); });
     options.on_stage("fit");
-    parallel_for(axes.size(), options.threads,
-                 [&](std::size_t i) { find_coefficients(axes[i], recording, options); });
-    AxisWarnings warnings;
+    for_each_axis(axes, options.threads, [&](Work& axis) { find_coefficients(axis, options); });
+    for (const SensorKind sensor : {SensorKind::gyro, SensorKind::accelerometer}) {
+        warn_of_axes(sensor, axes, report.warnings);
+    }
+    const std::vector<std::string> refused =
+        axes.empty() ? std::vector<std::string>{} : refused_factors(options, axes.front().report.curve);
     for (Work& axis : axes) {
-        warn_of_misfit(axis.report, warnings);
-        if (is_clipped(*axis.column)) {
-            warnings.add(axis.report.axis,
-                         "the samples are clipped: more lie at their limit than next to it, and "
-                         "the noise is larger than these coefficients say");
-        }
-        report.axes.push_back(std::move(axis.report));
+        const bool is_gyro = axis.sensor == SensorKind::gyro;
+        (is_gyro ? report.axes : report.accelerometer->axes).push_back(std::move(axis.report));
     }
-    std::ranges::copy(warnings.lines(), std::back_inserter(report.warnings));
-    if (report.axes.empty()) {
-        report.warnings.emplace_back("no gyro column: nothing to analyse");
-        return report;
+    if (report.accelerometer) { find_gravity(*report.accelerometer, report.warnings); }
+    if (!report.has_axes()) {
+        report.warnings.push_back(std::string("no ") + sensors_text(options.sensors) +
+                                  " column: nothing to analyse");
     }
-    const auto refused = refused_factors(options, report.axes.front().curve);
     report.warnings.insert(report.warnings.end(), refused.begin(), refused.end());
     return report;
 }

@@ -1,4 +1,5 @@
-// The whole Allan analysis of a recording: every gyro axis, from samples to coefficients.
+// The whole Allan analysis of a recording: every axis of its gyro and of its accelerometer, from samples to
+// coefficients.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +9,10 @@
 #include <vector>
 
 #include "analysis/allan/allan_deviation.hpp"
+#include "analysis/noise/gravity.hpp"
 #include "analysis/noise/noise_fit.hpp"
 #include "analysis/noise/outliers.hpp"
+#include "analysis/noise/sensor_unit.hpp"
 #include "analysis/noise/slope_reading.hpp"
 #include "analysis/noise/static_bias.hpp"
 #include "analysis/recording/recording.hpp"
@@ -18,22 +21,25 @@
 
 namespace gyrolog {
 
-// The unit in which a rate is shown; everything in the report is in the columns' own (rad/s, or lsb without a
-// scale).
-struct RateUnit {
-    std::string name = "dps";
-    double per_column_unit = 1.0;
-};
-
 struct AxisReport {
     std::string axis;  // "x", or "x2" of an array's second gyro
-    StaticBias bias;
+    StaticBias bias;   // an accelerometer's has gravity in it
     AllanCurve curve;
     NoiseFit fit;
     SlopeReading slopes;
     PowerSpectrum spectrum;
     std::vector<SpectralLine> lines;  // strongest first
     OutlierCount outliers;            // with AnalysisOptions::robust
+};
+
+struct AccelerometerReport {
+    SensorUnit unit = SensorUnit::g();  // g, unless the recording's text was in m/s^2 or in counts
+    std::vector<AxisReport> axes;
+    struct UnitGravity {
+        std::string unit;  // "", or "2" of an array's second accelerometer
+        Gravity gravity;
+    };
+    std::vector<UnitGravity> gravity;  // of each unit that has three axes
 };
 
 struct AnalysisReport {
@@ -53,11 +59,15 @@ struct AnalysisReport {
     PhaseConvention convention = PhaseConvention::sp1065;
     double confidence = 0.683;
     RateUnit unit;  // dps, unless the recording's text was in rad/s or in counts without a scale
-    std::vector<AxisReport> axes;
+    std::vector<AxisReport> axes;  // the gyro's
+    std::optional<AccelerometerReport> accelerometer;
     std::vector<std::string> warnings;
+
+    bool has_axes() const { return !axes.empty() || accelerometer.has_value(); }
 };
 
 struct AnalysisOptions : AllanOptions {
+    Sensors sensors = Sensors::all;
     bool robust = false;  // replace outliers first (outliers.hpp); a warning says how many
 };
 
@@ -65,8 +75,8 @@ struct AnalysisOptions : AllanOptions {
 // the samples by likelihood (likelihood_fit.hpp), slopes and starting values from the overlapping curve at
 // the usual factors.
 //
-// A recording without a gyro column, or with fewer than two samples, gives a report without axes and a
-// warning.
+// Rows in which an accelerometer column has no value are missing to the accelerometer. A recording without a
+// column of the sensors wanted, or with fewer than two samples, gives a report without axes and a warning.
 AnalysisReport analyze(const Recording& recording, const AnalysisOptions& options = {});
 
 }  // namespace gyrolog

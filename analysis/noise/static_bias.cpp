@@ -11,13 +11,13 @@ namespace {
 
 constexpr double least_dof = 1.0;
 
+}  // namespace
+
 double coverage_factor(double dof) {
     constexpr double upper_tail = 0.02275;  // beyond 2 of a normal distribution
     if (!(dof > 0.0)) { return 2.0; }
     return students_t_upper_quantile(std::clamp(dof, least_dof, 1e9), upper_tail);
 }
-
-}  // namespace
 
 StaticBias static_bias(const Column& column, double rate_hz, const NoiseFit& fit) {
     StaticBias bias;

@@ -15,6 +15,9 @@ struct StaticBias {
     double effective_samples = 0.0;     // as many independent samples would give this uncertainty
 };
 
+// For a coverage of 95.45 % with an uncertainty that is known with so many degrees of freedom; 0: well known.
+double coverage_factor(double dof);
+
 // Standard uncertainty: the Allan deviation of the fit's sparse model at an averaging time of the whole
 // record, that is the root of half the mean square difference between the mean of this record and that of one
 // like it right after. For white noise it is the standard deviation over sqrt(n); for flicker and random walk

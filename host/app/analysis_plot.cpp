@@ -77,30 +77,54 @@ std::vector<std::string> facts_of(const AnalysisReport& report) {
     return facts;
 }
 
-AllanFigure figure_of(const AnalysisReport& report) {
+// What of a report a figure shows.
+struct DrawnSensor {
+    SensorKind sensor;
+    const std::vector<AxisReport>& axes;
+    const SensorUnit& unit;
+};
+
+DrawnSensor drawn_sensor(const AnalysisReport& report, SensorKind sensor) {
+    if (sensor == SensorKind::gyro) { return {sensor, report.axes, report.unit}; }
+    return {sensor, report.accelerometer->axes, report.accelerometer->unit};
+}
+
+DeviationUnit deviation_unit(const DrawnSensor& drawn) {
+    if (drawn.unit.is_counts()) { return DeviationUnit::as_given("lsb"); }
+    return drawn.sensor == SensorKind::gyro ? DeviationUnit::rad_per_s_as_deg_per_s()
+                                            : DeviationUnit::m_per_s2_as_micro_g();
+}
+
+AllanFigure figure_of(const AnalysisReport& report, SensorKind sensor) {
+    const DrawnSensor drawn = drawn_sensor(report, sensor);
     AllanFigure figure;
     const DrawnDeviation deviation = drawn_deviation(report.kind);
     figure.title = deviation.name + " and noise density";
+    if (sensor == SensorKind::accelerometer) { figure.title += " of the accelerometer"; }
     figure.deviation = deviation.name;
     figure.slope_lines = deviation.is_allan;
     figure.source = report.name;
     figure.facts = facts_of(report);
-    if (report.unit.name == "lsb") { figure.unit = DeviationUnit::as_given("lsb"); }
-    for (const AxisReport& axis : report.axes) {
-        figure.traces.push_back(trace_of(axis, deviation.is_allan));
-    }
+    figure.unit = deviation_unit(drawn);
+    for (const AxisReport& axis : drawn.axes) { figure.traces.push_back(trace_of(axis, deviation.is_allan)); }
     return figure;
 }
 
-HistogramFigure histograms_of(const AnalysisReport& report, const Recording& recording) {
+HistogramFigure histograms_of(const AnalysisReport& report, const Recording& recording, SensorKind sensor) {
+    const DrawnSensor drawn = drawn_sensor(report, sensor);
+    const bool is_gyro = sensor == SensorKind::gyro;
     HistogramFigure figure;
+    if (!is_gyro) {
+        figure.mean_name = "mean";
+        figure.title = "Samples of the accelerometer about the mean";
+    }
     figure.source = report.name;
     figure.facts = facts_of(report);
-    const bool is_lsb = report.unit.name == "lsb";
-    figure.unit_name = is_lsb ? "lsb" : "°/s";
-    figure.per_unit_of_data = is_lsb ? 1.0 : deg_per_rad;
-    for (const AxisReport& axis : report.axes) {
-        const Column* column = recording.find("g" + axis.axis);
+    const bool is_lsb = drawn.unit.is_counts();
+    figure.unit_name = is_lsb ? "lsb" : is_gyro ? "°/s" : "g";
+    figure.per_unit_of_data = is_lsb ? 1.0 : is_gyro ? deg_per_rad : SensorUnit::g().per_column_unit;
+    for (const AxisReport& axis : drawn.axes) {
+        const Column* column = recording.find((is_gyro ? "g" : "a") + axis.axis);
         if (column == nullptr) { continue; }
         figure.traces.push_back({axis.axis, amplitude_histogram(*column), axis.bias.expanded_uncertainty,
                                  axis.bias.coverage_factor});
@@ -121,13 +145,13 @@ std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, Noise
     return PlottedCoefficient{coefficient.value, coefficient.sd};
 }
 
-Status write_analysis_plot(const AnalysisReport& report, const std::string& path) {
-    return write_png(render(figure_of(report)), path);
+Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const std::string& path) {
+    return write_png(render(figure_of(report, sensor)), path);
 }
 
-Status write_histogram_plot(const AnalysisReport& report, const Recording& recording,
+Status write_histogram_plot(const AnalysisReport& report, const Recording& recording, SensorKind sensor,
                             const std::string& path) {
-    return write_png(render(histograms_of(report, recording)), path);
+    return write_png(render(histograms_of(report, recording, sensor)), path);
 }
 
 }  // namespace gyrolog

@@ -10,11 +10,11 @@
 
 namespace gyrolog {
 
-// Draws the report's curves and spectra into a PNG file.
-Status write_analysis_plot(const AnalysisReport& report, const std::string& path);
+// Draws the curves and spectra of one sensor of the report, which has it, into a PNG file.
+Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const std::string& path);
 
-// Draws how the samples of the axes that the report is about lie around their bias.
-Status write_histogram_plot(const AnalysisReport& report, const Recording& recording,
+// Draws how the samples of its axes lie around their bias, an accelerometer's around their mean.
+Status write_histogram_plot(const AnalysisReport& report, const Recording& recording, SensorKind sensor,
                             const std::string& path);
 
 // For a curve's marks: none where the fit did not identify it.

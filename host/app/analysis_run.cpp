@@ -1,6 +1,8 @@
 #include "host/app/analysis_run.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <string_view>
 #include <thread>
 
 #include "analysis/noise/analyze.hpp"
@@ -18,6 +20,32 @@
 namespace gyrolog {
 namespace {
 
+Sensors sensors_of(const AnalysisRequest& request) {
+    if (request.sensor == "gyro") { return Sensors::gyro; }
+    return request.sensor == "accelerometer" ? Sensors::accelerometer : Sensors::all;
+}
+
+RecordingInput input_of(const AnalysisRequest& request) {
+    RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps, request.on_stage};
+    input.lsb_g = request.lsb_g;
+    input.with_accelerometer = sensors_of(request) != Sensors::gyro;
+    input.needs_gyro = sensors_of(request) == Sensors::gyro;
+    return input;
+}
+
+std::string what_lacks(const AnalysisRequest& request) {
+    switch (sensors_of(request)) {
+        case Sensors::gyro:
+            return "there is no angular rate to analyse";
+        case Sensors::accelerometer:
+            return "there is no accelerometer in it: a capture has one if its board sends it, and text if it "
+                   "has columns such as ax_g, ay_g, az_g (or _m_s2, _lsb)";
+        case Sensors::all:
+            break;
+    }
+    return "there is no angular rate and no specific force to analyse";
+}
+
 Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
     AnalysisOptions options;
     options.confidence = request.confidence;
@@ -31,12 +59,18 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
     }
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     options.robust = request.robust;
+    options.sensors = sensors_of(request);
     options.on_stage = request.on_stage;
     return options;
 }
 
 Status write_fitted_model(const AnalysisRequest& request, const Recording& recording,
                           const AnalysisReport& report) {
+    if (report.axes.empty()) {
+        return Error{
+            ErrorCode::invalid_argument,
+            "a model is of a gyro, with its accelerometer beside it: without the gyro there is none"};
+    }
     if (report.unit.name == "lsb") {
         return Error{ErrorCode::invalid_argument,
                      "a model needs rates, and this recording has counts: give their scale with --lsb-dps"};
@@ -50,18 +84,42 @@ Status write_fitted_model(const AnalysisRequest& request, const Recording& recor
     return write_model(fitted_model(report, recording), request.model_path);
 }
 
-Status write_results(Console& console, const AnalysisRequest& request, const Recording& recording,
-                     const AnalysisReport& report) {
+// A figure for each sensor: an accelerometer beside a gyro has a file of its own, NAME.accelerometer.png.
+void write_figures(ResultOutput& results, const AnalysisReport& report, const std::string& path,
+                   const std::function<Status(SensorKind, const std::string&)>& write) {
+    if (!report.axes.empty()) {
+        results.file(path, [&] { return write(SensorKind::gyro, path); });
+    }
+    if (!report.accelerometer) { return; }
+    constexpr std::string_view ending = ".png";
+    std::string own = path;
+    if (!report.axes.empty()) {
+        if (!path.ends_with(ending)) { return; }  // a pipe takes one figure
+        own.insert(path.size() - ending.size(), ".accelerometer");
+    }
+    results.file(own, [&] { return write(SensorKind::accelerometer, own); });
+}
+
+Status write_results(Console& console, const char* command, const AnalysisRequest& request,
+                     const Recording& recording, const AnalysisReport& report) {
     ResultOutput results(console);
     request.on_stage("report");
     if (request.json_path != "-") { results.show(analysis_text(report)); }
     request.on_stage("json");
     results.text(request.json_path, [&] { return analysis_json(report); });
     request.on_stage("plot");
-    results.file(request.plot_path, [&] { return write_analysis_plot(report, request.plot_path); });
-    results.file(request.histogram_path,
-                 [&] { return write_histogram_plot(report, recording, request.histogram_path); });
+    write_figures(results, report, request.plot_path, [&](SensorKind sensor, const std::string& path) {
+        return write_analysis_plot(report, sensor, path);
+    });
+    write_figures(results, report, request.histogram_path, [&](SensorKind sensor, const std::string& path) {
+        return write_histogram_plot(report, recording, sensor, path);
+    });
     request.on_stage("model");
+    if (!request.model_path.empty() && report.accelerometer && report.accelerometer->unit.is_counts()) {
+        console.err << program_and(command)
+                    << ": warning: the model is without the accelerometer, which has counts: give their "
+                       "scale with --lsb-g\n";
+    }
     results.file(request.model_path, [&] { return write_fitted_model(request, recording, report); });
     return results.finish();
 }
@@ -79,8 +137,7 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
     }
     const auto options = options_of(request);
     if (!options.ok()) { return report_error(console, command, options.error()); }
-    const auto recording =
-        read_recording({request.recording_path, request.rate_hz, request.lsb_dps, request.on_stage});
+    const auto recording = read_recording(input_of(request));
     if (!recording.ok()) {
         report_error(console, command, recording.error());
         return recording.error().code == ErrorCode::invalid_argument ? ExitCode::usage : ExitCode::failed;
@@ -91,12 +148,11 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
             console.err << "gyrolog " << command << ": warning: " << warning << '\n';
         }
     }
-    if (report.axes.empty()) {
-        return report_error(
-            console, command,
-            {ErrorCode::failed, request.recording_path + ": there is no angular rate to analyse"});
+    if (!report.has_axes()) {
+        return report_error(console, command,
+                            {ErrorCode::failed, request.recording_path + ": " + what_lacks(request)});
     }
-    const Status written = write_results(console, request, *recording, report);
+    const Status written = write_results(console, command, request, *recording, report);
     return written.ok() ? ExitCode::ok : report_error(console, command, written.error());
 }
 

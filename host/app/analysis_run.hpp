@@ -23,6 +23,8 @@ struct AnalysisRequest {
     std::string factors;  // "1,10,100", or "all"; empty: the default list
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
+    std::optional<double> lsb_g{};
+    std::string sensor = "all";  // or "gyro", "accelerometer"
     double confidence = 0.683;
     bool robust = false;
     StageObserver on_stage{};  // of those of reading and analysing, then "json", "plot", "model", "report"

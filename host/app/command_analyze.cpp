@@ -32,8 +32,9 @@ Action setup_analyze(CLI::App& app) {
     app.add_option("RECORDING", request->recording_path,
                    "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
     CLI::Option* curve =
-        app.add_option("--curve", *curve_path,
-                       "Instead of a recording: an Allan curve from print (tau_s,x_dps or x_deg_per_h, ...)")
+        app.add_option(
+               "--curve", *curve_path,
+               "Instead of a recording: an Allan curve from print (tau_s,x_dps or x_deg_per_h, x_ug, ...)")
             ->type_name("FILE.csv");
     app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")
         ->type_name("FILE");
@@ -67,6 +68,13 @@ Action setup_analyze(CLI::App& app) {
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());
+    app.add_option("--lsb-g", request->lsb_g, "Scale of accelerometer columns that are counts (_lsb)")
+        ->type_name("G")
+        ->check(positive_number());
+    app.add_option("--sensor", request->sensor, "Which sensor: gyro, accelerometer, or all that there are")
+        ->check(CLI::IsMember({"gyro", "accelerometer", "all"}))
+        ->type_name("NAME")
+        ->capture_default_str();
     app.add_flag("--robust", request->robust,
                  "First replace single samples that lie more than 6 robust standard deviations off their "
                  "neighbours");
@@ -76,8 +84,8 @@ Action setup_analyze(CLI::App& app) {
         ->capture_default_str();
     auto timing = std::make_shared<bool>(false);
     app.add_flag("--timing", *timing, "Print on standard error where the time went");
-    for (const char* of_samples :
-         {"--deviation", "--convention", "--m", "--robust", "--histogram", "--lsb-dps"}) {
+    for (const char* of_samples : {"--deviation", "--convention", "--m", "--robust", "--histogram",
+                                   "--lsb-dps", "--lsb-g", "--sensor"}) {
         curve->excludes(app.get_option(of_samples));
     }
     return [request, curve_path, timing](Console& console) {

@@ -20,7 +20,7 @@ Json recording_json(const AnalysisReport& report) {
     return json;
 }
 
-Json point_json(const AllanPoint& point, const RateUnit& unit) {
+Json point_json(const AllanPoint& point, const SensorUnit& unit) {
     return {{"m", point.m},
             {"tau_s", point.tau_s},
             {"value", point.deviation * unit.per_column_unit},
@@ -42,7 +42,7 @@ Json fit_json(const NoiseFit& fit) {
     return json;
 }
 
-Json lines_json(const std::vector<SpectralLine>& lines, const RateUnit& unit) {
+Json lines_json(const std::vector<SpectralLine>& lines, const SensorUnit& unit) {
     Json list = Json::array();
     for (const SpectralLine& line : lines) {
         Json one = {{"frequency_hz", line.f_hz},
@@ -58,12 +58,19 @@ Json lines_json(const std::vector<SpectralLine>& lines, const RateUnit& unit) {
     return list;
 }
 
-Json axis_json(const AxisReport& axis, const RateUnit& unit) {
+Json expanded_json(const ExpandedNumber& number, double scale, const std::string& unit) {
+    return {{"value", number.value * scale},
+            {"expanded_uncertainty", number.expanded_uncertainty * scale},
+            {"coverage_factor", number.coverage_factor},
+            {"unit", unit}};
+}
+
+Json axis_json(const AxisReport& axis, const SensorUnit& unit) {
     Json json;
-    json["bias"] = {{"value", axis.bias.value * unit.per_column_unit},
-                    {"expanded_uncertainty", axis.bias.expanded_uncertainty * unit.per_column_unit},
-                    {"coverage_factor", axis.bias.coverage_factor},
-                    {"unit", unit.name}};
+    // An accelerometer's mean is gravity and bias together.
+    const char* mean = unit.sensor == SensorKind::gyro ? "bias" : "mean";
+    json[mean] = expanded_json({axis.bias.value, axis.bias.expanded_uncertainty, axis.bias.coverage_factor},
+                               unit.per_column_unit, unit.name);
     json["allan"] = Json::array();
     for (const AllanPoint& point : axis.curve.points) { json["allan"].push_back(point_json(point, unit)); }
     put_noise_fit(json, axis.fit, unit);
@@ -78,6 +85,36 @@ Json axis_json(const AxisReport& axis, const RateUnit& unit) {
     return json;
 }
 
+Json axes_json(const std::vector<AxisReport>& axes, const SensorUnit& unit) {
+    Json json = Json::object();
+    for (const AxisReport& axis : axes) { json[axis.axis] = axis_json(axis, unit); }
+    return json;
+}
+
+Json gravity_json(const Gravity& gravity, const SensorUnit& unit) {
+    Json json;
+    json["size"] = expanded_json(gravity.size, unit.per_column_unit, unit.name);
+    json["tilt"] = expanded_json(gravity.tilt_rad, deg_per_rad, "deg");
+    json["up"] = gravity.up_name();
+    json["direction"] = gravity.direction;
+    return json;
+}
+
+// Of an array, by the units' numbers.
+Json accelerometer_json(const AccelerometerReport& report) {
+    Json json;
+    json["axes"] = axes_json(report.axes, report.unit);
+    for (const AccelerometerReport::UnitGravity& of : report.gravity) {
+        Json gravity = gravity_json(of.gravity, report.unit);
+        if (of.unit.empty()) {
+            json["gravity"].update(gravity);
+        } else {
+            json["gravity"][of.unit] = std::move(gravity);
+        }
+    }
+    return json;
+}
+
 }  // namespace
 
 std::string analysis_json(const AnalysisReport& report) {
@@ -87,8 +124,8 @@ std::string analysis_json(const AnalysisReport& report) {
     json["deviation"] = name_of(report.kind);
     json["convention"] = name_of(report.convention);
     json["confidence"] = report.confidence;
-    json["axes"] = Json::object();
-    for (const AxisReport& axis : report.axes) { json["axes"][axis.axis] = axis_json(axis, report.unit); }
+    json["axes"] = axes_json(report.axes, report.unit);
+    if (report.accelerometer) { json["accelerometer"] = accelerometer_json(*report.accelerometer); }
     json["warnings"] = report.warnings;
     return json_text(json);
 }

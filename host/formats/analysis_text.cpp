@@ -14,21 +14,27 @@
 namespace gyrolog {
 namespace {
 
+// A sensor's axes, and the unit of their table.
+struct SensorTable {
+    const std::vector<AxisReport>& axes;
+    SensorUnit unit;
+};
+
 // The three strongest lines, where an axis has some and the fit does not name them already; JSON has them
 // all.
-std::vector<TextRow> line_rows(const AnalysisReport& report) {
+std::vector<TextRow> line_rows(const SensorTable& sensor) {
     constexpr std::size_t shown = 3;
     std::size_t most = 0;
-    for (const AxisReport& axis : report.axes) {
+    for (const AxisReport& axis : sensor.axes) {
         if (axis.fit.sinusoids.empty()) { most = std::max(most, axis.lines.size()); }
     }
     std::vector<TextRow> rows;
     for (std::size_t i = 0; i < std::min(most, shown); ++i) {
-        TextRow row{i == 0 ? "spectral lines" : "", report.unit.name, {}};
-        for (const AxisReport& axis : report.axes) {
+        TextRow row{i == 0 ? "spectral lines" : "", sensor.unit.name, {}};
+        for (const AxisReport& axis : sensor.axes) {
             row.cells.push_back(axis.fit.sinusoids.empty() && i < axis.lines.size()
                                     ? fmt::format("{:.3g} at {:.5g} Hz",
-                                                  axis.lines[i].amplitude * report.unit.per_column_unit,
+                                                  axis.lines[i].amplitude * sensor.unit.per_column_unit,
                                                   axis.lines[i].f_hz)
                                     : "-");
         }
@@ -37,24 +43,53 @@ std::vector<TextRow> line_rows(const AnalysisReport& report) {
     return rows;
 }
 
-std::vector<TextRow> rows_of(const AnalysisReport& report, std::span<const FitOfColumn> fits) {
-    const double scale = report.unit.per_column_unit;
-    TextRow bias{"bias", report.unit.name, {}};
-    TextRow lowest{"lowest deviation", report.unit.name, {}};
-    for (const AxisReport& axis : report.axes) {
-        bias.cells.push_back(
-            with_uncertainty(axis.bias.value * scale, axis.bias.expanded_uncertainty * scale));
+TextRow mean_row(const SensorTable& sensor) {
+    // Micro-g are for noise.
+    const bool is_gyro = sensor.unit.sensor == SensorKind::gyro;
+    const SensorUnit unit = is_gyro || sensor.unit.is_counts() ? sensor.unit : SensorUnit::g();
+    TextRow row{is_gyro ? "bias" : "mean, with gravity", unit.name, {}};
+    for (const AxisReport& axis : sensor.axes) {
+        row.cells.push_back(with_uncertainty(axis.bias.value * unit.per_column_unit,
+                                             axis.bias.expanded_uncertainty * unit.per_column_unit));
+    }
+    return row;
+}
+
+TextRow lowest_row(const SensorTable& sensor) {
+    TextRow lowest{"lowest deviation", sensor.unit.name, {}};
+    for (const AxisReport& axis : sensor.axes) {
         const auto& points = axis.curve.points;
         const auto least = std::ranges::min_element(points, {}, &AllanPoint::deviation);
-        lowest.cells.push_back(least == points.end() ? "-"
-                                                     : fmt::format("{:.3g} at {:.3g} s",
-                                                                   least->deviation * scale, least->tau_s));
+        lowest.cells.push_back(least == points.end()
+                                   ? "-"
+                                   : fmt::format("{:.3g} at {:.3g} s",
+                                                 least->deviation * sensor.unit.per_column_unit,
+                                                 least->tau_s));
     }
-    std::vector<TextRow> rows = {std::move(bias)};
-    for (TextRow& row : noise_rows(fits, report.unit)) { rows.push_back(std::move(row)); }
-    rows.push_back(std::move(lowest));
-    for (TextRow& row : line_rows(report)) { rows.push_back(std::move(row)); }
+    return lowest;
+}
+
+std::vector<TextRow> rows_of(const SensorTable& sensor, std::span<const FitOfColumn> fits) {
+    std::vector<TextRow> rows = {mean_row(sensor)};
+    for (TextRow& row : noise_rows(fits, sensor.unit)) { rows.push_back(std::move(row)); }
+    rows.push_back(lowest_row(sensor));
+    for (TextRow& row : line_rows(sensor)) { rows.push_back(std::move(row)); }
     return rows;
+}
+
+std::string gravity_text(const AccelerometerReport& report) {
+    const SensorUnit& unit = report.unit.is_counts() ? report.unit : SensorUnit::g();
+    std::string text;
+    for (const AccelerometerReport::UnitGravity& of : report.gravity) {
+        const auto number = [](const ExpandedNumber& n, double scale) {
+            return with_uncertainty(n.value * scale, n.expanded_uncertainty * scale);
+        };
+        text += fmt::format("  gravity{}: {} {}; {} is up, tilted by {} deg\n",
+                            of.unit.empty() ? "" : " of unit " + of.unit,
+                            number(of.gravity.size, unit.per_column_unit), unit.name, of.gravity.up_name(),
+                            number(of.gravity.tilt_rad, deg_per_rad));
+    }
+    return text;
 }
 
 std::string head_of(const AnalysisReport& report) {
@@ -80,26 +115,48 @@ std::string head_of(const AnalysisReport& report) {
     return text;
 }
 
+// What the signs in a table mean.
+std::string signs_text(const AnalysisReport& report, const char* expanded) {
+    return fmt::format(
+        "  ± one standard deviation ({}: expanded, 95.45 %); \"<\": not identifiable in this record, "
+        "upper "
+        "limit\n"
+        "  at {:.3g} %; \"± at best\": Cramer-Rao bound, below which no unbiased method gets\n",
+        expanded, report.confidence * 100.0);
+}
+
+// One in the trade's units with the text below it, and one in SI.
+std::string tables_of(const SensorTable& sensor, const std::string& below) {
+    std::vector<FitOfColumn> fits;
+    std::vector<std::string> heads;
+    for (const AxisReport& axis : sensor.axes) {
+        fits.push_back({&axis.fit, &axis.slopes});
+        heads.push_back(axis.axis);
+    }
+    std::string text = '\n' + text_table(heads, rows_of(sensor, fits)) + '\n' + below;
+    const std::vector<TextRow> si = si_rows(fits, sensor.unit);
+    if (!si.empty()) { text += '\n' + text_table(heads, si); }
+    return text;
+}
+
 }  // namespace
 
 std::string analysis_text(const AnalysisReport& report) {
     std::string text = head_of(report);
-    if (report.axes.empty()) { return text; }
-    std::vector<FitOfColumn> fits;
-    std::vector<std::string> heads;
-    for (const AxisReport& axis : report.axes) {
-        fits.push_back({&axis.fit, &axis.slopes});
-        heads.push_back(axis.axis);
+    if (!report.axes.empty()) {
+        if (report.accelerometer) { text += "\ngyro\n"; }
+        text += tables_of({report.axes, report.unit}, signs_text(report, "bias"));
     }
-    text += '\n' + text_table(heads, rows_of(report, fits));
-    text += fmt::format(
-        "\n  ± one standard deviation (bias: expanded, 95.45 %); \"<\": not identifiable in this record, "
-        "upper "
-        "limit\n"
-        "  at {:.3g} %; \"± at best\": Cramer-Rao bound, below which no unbiased method gets\n",
-        report.confidence * 100.0);
-    const std::vector<TextRow> si = si_rows(fits, report.unit);
-    if (!si.empty()) { text += '\n' + text_table(heads, si); }
+    if (report.accelerometer) {
+        const AccelerometerReport& of = *report.accelerometer;
+        const std::string signs =
+            gravity_text(of) + (report.axes.empty() ? signs_text(report, "mean, gravity, tilt") : "") +
+            "  mean, gravity and tilt: ± expanded, 95.45 %, as far as this record's noise goes; the axes' "
+            "own biases\n"
+            "  and scale factors are in them\n";
+        text += "\naccelerometer\n" +
+                tables_of({of.axes, of.unit.is_counts() ? of.unit : SensorUnit::micro_g()}, signs);
+    }
     return text;
 }
 

@@ -7,7 +7,7 @@
 namespace gyrolog {
 namespace {
 
-Json coefficient_json(const FittedCoefficient& fitted, NoiseTerm term, const RateUnit& unit) {
+Json coefficient_json(const FittedCoefficient& fitted, NoiseTerm term, const SensorUnit& unit) {
     const double scale = unit.per_column_unit;
     if (fitted.state == FittedCoefficient::State::not_identifiable) {
         return {
@@ -37,7 +37,7 @@ Json correlation_json(const NoiseFit& fit) {
     return json;
 }
 
-Json gauss_markov_json(const NoiseFit& fit, const RateUnit& unit) {
+Json gauss_markov_json(const NoiseFit& fit, const SensorUnit& unit) {
     Json list = Json::array();
     for (const FittedGaussMarkov& noise : fit.gauss_markov) {
         list.push_back({{"sigma", noise.value.sigma_rad_per_s * unit.per_column_unit},
@@ -49,7 +49,7 @@ Json gauss_markov_json(const NoiseFit& fit, const RateUnit& unit) {
     return list;
 }
 
-Json sinusoids_json(const NoiseFit& fit, const RateUnit& unit) {
+Json sinusoids_json(const NoiseFit& fit, const SensorUnit& unit) {
     Json list = Json::array();
     for (const FittedSinusoid& line : fit.sinusoids) {
         list.push_back({{"amplitude", line.value.amplitude_rad_per_s * unit.per_column_unit},
@@ -63,7 +63,7 @@ Json sinusoids_json(const NoiseFit& fit, const RateUnit& unit) {
 
 }  // namespace
 
-void put_noise_fit(Json& json, const NoiseFit& fit, const RateUnit& unit) {
+void put_noise_fit(Json& json, const NoiseFit& fit, const SensorUnit& unit) {
     json["method"] = name_of(fit.method);
     for (const NoiseTerm term : all_noise_terms) {
         json["coefficients"][std::string(name_of(term))] = coefficient_json(fit[term], term, unit);
@@ -75,7 +75,7 @@ void put_noise_fit(Json& json, const NoiseFit& fit, const RateUnit& unit) {
     json["sinusoids"] = sinusoids_json(fit, unit);
 }
 
-Json slopes_json(const SlopeReading& slopes, const RateUnit& unit) {
+Json slopes_json(const SlopeReading& slopes, const SensorUnit& unit) {
     Json json = Json::object();
     if (slopes.N) { json["N"] = slopes.N->coefficient * unit.per_column_unit; }
     if (slopes.B) { json["B"] = slopes.B->coefficient * unit.per_column_unit; }

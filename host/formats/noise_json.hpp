@@ -9,9 +9,9 @@ namespace gyrolog {
 
 // "method", "coefficients", "correlation" (of identified terms, where it is known), "gauss_markov",
 // "sinusoids". Sizes are in `unit`.
-void put_noise_fit(Json& json, const NoiseFit& fit, const RateUnit& unit);
+void put_noise_fit(Json& json, const NoiseFit& fit, const SensorUnit& unit);
 
-Json slopes_json(const SlopeReading& slopes, const RateUnit& unit);
+Json slopes_json(const SlopeReading& slopes, const SensorUnit& unit);
 
 // A report, pretty-printed, ending in a newline. It gains the key "reported_by", with program_name().
 std::string json_text(Json report);

@@ -14,10 +14,40 @@ namespace {
 
 using State = FittedCoefficient::State;
 
-// Degrees per second for each unit of the column; 0: no angular rate.
-double degrees_of(const RateUnit& unit) {
-    if (unit.name == "lsb") { return 0.0; }
-    return unit.name == "rad/s" ? deg_per_rad : unit.per_column_unit;
+constexpr double min_per_h = 60.0;  // the root of 3600 s/h
+constexpr double s_per_h = 3600.0;
+
+// What a sensor's coefficients are called, and their units of the trade and of SI. A factor of 0: counts.
+struct Trade {
+    const char* N;
+    const char* K;
+    const char* R;
+    const char* N_unit;
+    double N_factor;
+    const char* B_unit;  // null: none of its own
+    double B_factor;
+    const char* si;  // null: the rows above are in SI already
+    double si_factor;
+};
+
+Trade trade_of(const SensorUnit& unit) {
+    const bool counts = unit.is_counts();
+    if (unit.sensor == SensorKind::accelerometer) {
+        return {"N  velocity random walk",
+                "K  acceleration random walk",
+                "R  acceleration ramp",
+                "m/s/sqrt(h)",
+                counts ? 0.0 : min_per_h,
+                nullptr,
+                0.0,
+                "m/s^2",
+                counts ? 0.0 : 1.0};
+    }
+    const double degrees = counts ? 0.0 : unit.name == "rad/s" ? deg_per_rad : unit.per_column_unit;
+    const bool is_si = unit.name == "rad/s";
+    return {"N  angle random walk", "K  rate random walk",     "R  rate ramp",
+            "deg/sqrt(h)",          degrees * min_per_h,       "deg/h",
+            degrees * s_per_h,      is_si ? nullptr : "rad/s", degrees * rad_per_deg};
 }
 
 using Cell = std::function<std::string(const FitOfColumn&)>;
@@ -65,7 +95,8 @@ void add_optional_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> 
     }
 }
 
-void add_shaped_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> columns, const RateUnit& unit) {
+void add_shaped_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> columns,
+                     const SensorUnit& unit) {
     const double scale = unit.per_column_unit;
     const auto processes = [](const FitOfColumn& c) -> const auto& { return c.fit->gauss_markov; };
     const auto lines = [](const FitOfColumn& c) -> const auto& { return c.fit->sinusoids; };
@@ -86,25 +117,25 @@ void add_shaped_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> co
 
 }  // namespace
 
-std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const RateUnit& unit) {
+std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit) {
     const double scale = unit.per_column_unit;
-    const double degrees = degrees_of(unit);
+    const Trade trade = trade_of(unit);
     std::vector<TextRow> rows;
     const auto add = [&](const char* label, const std::string& unit_name, NoiseTerm term, double by) {
         rows.push_back(row_of(columns, label, unit_name, [=](const FitOfColumn& column) {
             return coefficient_text((*column.fit)[term], by);
         }));
     };
-    add("N  angle random walk", noise_unit(NoiseTerm::N, unit), NoiseTerm::N, scale);
+    add(trade.N, noise_unit(NoiseTerm::N, unit), NoiseTerm::N, scale);
     add_bound_row(rows, columns, NoiseTerm::N, scale);
-    if (degrees > 0.0) { add("", "deg/sqrt(h)", NoiseTerm::N, degrees * 60.0); }
+    if (trade.N_factor > 0.0) { add("", trade.N_unit, NoiseTerm::N, trade.N_factor); }
     add("B  bias instability", unit.name, NoiseTerm::B, scale);
     add_bound_row(rows, columns, NoiseTerm::B, scale);
-    if (degrees > 0.0) { add("", "deg/h", NoiseTerm::B, degrees * 3600.0); }
-    add("K  rate random walk", noise_unit(NoiseTerm::K, unit), NoiseTerm::K, scale);
+    if (trade.B_factor > 0.0) { add("", trade.B_unit, NoiseTerm::B, trade.B_factor); }
+    add(trade.K, noise_unit(NoiseTerm::K, unit), NoiseTerm::K, scale);
     add_bound_row(rows, columns, NoiseTerm::K, scale);
     add("Q  quantisation", noise_unit(NoiseTerm::Q, unit), NoiseTerm::Q, scale);
-    add("R  rate ramp", noise_unit(NoiseTerm::R, unit), NoiseTerm::R, scale);
+    add(trade.R, noise_unit(NoiseTerm::R, unit), NoiseTerm::R, scale);
     add_shaped_rows(rows, columns, unit);
     const auto add_slope = [&](const char* label, NoiseTerm term, auto member) {
         rows.push_back(row_of(columns, label, noise_unit(term, unit), [=](const FitOfColumn& column) {
@@ -117,25 +148,26 @@ std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const Rate
     return rows;
 }
 
-std::vector<TextRow> si_rows(std::span<const FitOfColumn> columns, const RateUnit& unit) {
+std::vector<TextRow> si_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit) {
     std::vector<TextRow> rows;
-    const double degrees = degrees_of(unit);
-    if (!(degrees > 0.0) || unit.name == "rad/s") { return rows; }
-    const double scale = degrees * rad_per_deg;
-    const auto add = [&](const char* label, const char* unit_name, NoiseTerm term) {
-        rows.push_back(row_of(columns, label, unit_name, [=](const FitOfColumn& column) {
+    const Trade trade = trade_of(unit);
+    if (trade.si == nullptr || !(trade.si_factor > 0.0)) { return rows; }
+    const double scale = trade.si_factor;
+    const SensorUnit si{trade.si, 1.0, unit.sensor};
+    const auto add = [&](const char* label, NoiseTerm term) {
+        rows.push_back(row_of(columns, label, noise_unit(term, si), [=](const FitOfColumn& column) {
             const FittedCoefficient& fitted = (*column.fit)[term];
             const bool known = fitted.state == State::identified;
             return fmt::format("{}{:.4g}", known ? "" : "< ", (known ? fitted.value : fitted.upper) * scale);
         }));
     };
-    add("N", "rad/s/sqrt(Hz)", NoiseTerm::N);
-    add("B", "rad/s", NoiseTerm::B);
-    add("K", "rad/s*sqrt(Hz)", NoiseTerm::K);
+    add("N", NoiseTerm::N);
+    add("B", NoiseTerm::B);
+    add("K", NoiseTerm::K);
     return rows;
 }
 
-std::string term_text(const CurveTerm& term, const RateUnit& unit) {
+std::string term_text(const CurveTerm& term, const SensorUnit& unit) {
     const double size = term.size * unit.per_column_unit;
     switch (term.kind) {
         case CurveTerm::Kind::gauss_markov:

@@ -17,14 +17,14 @@ struct FitOfColumn {
     const SlopeReading* slopes;
 };
 
-// N, B, K, Q, R in the unit given, N also per root hour and B per hour; the least uncertainty possible where
-// it is known; Gauss-Markov noise and sinusoids where a fit has some; the readings of slopes.
-std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const RateUnit& unit);
+// N, B, K, Q, R in the unit given, N also per root hour and a gyro's B per hour; the least uncertainty
+// possible where it is known; Gauss-Markov noise and sinusoids where a fit has some; the readings of slopes.
+std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);
 
-// N, B and K in rad and s, the units of simulators and filters; no row for a unit that is none of angle.
-std::vector<TextRow> si_rows(std::span<const FitOfColumn> columns, const RateUnit& unit);
+// N, B and K in SI, the units of simulators and filters; no row for counts, and for rad/s, which is SI.
+std::vector<TextRow> si_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);
 
 // "N 0.0178 dps/sqrt(Hz)", "Gauss-Markov 0.0026 dps, T 7.1 s", "sinusoid 0.0065 dps, period 5.7 h"
-std::string term_text(const CurveTerm& term, const RateUnit& unit);
+std::string term_text(const CurveTerm& term, const SensorUnit& unit);
 
 }  // namespace gyrolog

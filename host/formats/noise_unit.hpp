@@ -1,14 +1,15 @@
-// Units of the noise coefficients, written for a unit of rate.
+// Units of the noise coefficients, written for the unit of what is sensed.
 #pragma once
 
 #include <string>
 
-#include "analysis/noise/analyze.hpp"
+#include "analysis/noise/noise_fit.hpp"
+#include "analysis/noise/sensor_unit.hpp"
 
 namespace gyrolog {
 
 // "dps*s", "dps/sqrt(Hz)", "dps", "dps*sqrt(Hz)", "dps/s"
-inline std::string noise_unit(NoiseTerm term, const RateUnit& unit) {
+inline std::string noise_unit(NoiseTerm term, const SensorUnit& unit) {
     switch (term) {
         case NoiseTerm::Q:
             return unit.name + "*s";

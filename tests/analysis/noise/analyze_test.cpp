@@ -32,6 +32,103 @@ TEST(Analyze, ReportsEveryGyroAxisAndOnlyThose) {
     EXPECT_EQ(report.unit.name, "rad/s");
 }
 
+// Three axes of noise as a gyro's and, the same numbers, as an accelerometer's.
+Recording twice_the_same(std::size_t samples) {
+    std::vector<std::vector<double>> axes;
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        axes.push_back(test::sensor_noise({0.0, 0.01, 0.002, 1e-4, 0.0}, samples, 10.0, seed));
+    }
+    // A line and an offset, so that these are compared, too.
+    for (std::size_t i = 0; i < samples; ++i) {
+        axes[1][i] += 9.8;
+        axes[2][i] += 0.02 * std::sin(2.0 * pi * 2.5 * static_cast<double>(i) / 10.0);
+    }
+    Recording recording = test::recording_of(axes, 10.0);
+    for (std::size_t i = 0; i < 3; ++i) {
+        Column column = recording.columns[i];
+        column.name[0] = 'a';
+        column.unit = "m/s^2";
+        column.source_unit = "m_s2";
+        recording.columns.push_back(std::move(column));
+    }
+    return recording;
+}
+
+void expect_same(const AxisReport& a, const AxisReport& b) {
+    EXPECT_EQ(a.axis, b.axis);
+    for (const NoiseTerm term : all_noise_terms) {
+        EXPECT_EQ(a.fit[term].state, b.fit[term].state) << name_of(term);
+        EXPECT_EQ(a.fit[term].value, b.fit[term].value) << name_of(term);
+        EXPECT_EQ(a.fit[term].lo, b.fit[term].lo) << name_of(term);
+        EXPECT_EQ(a.fit[term].hi, b.fit[term].hi) << name_of(term);
+        EXPECT_EQ(a.fit[term].upper, b.fit[term].upper) << name_of(term);
+    }
+    EXPECT_EQ(a.bias.value, b.bias.value);
+    EXPECT_EQ(a.bias.expanded_uncertainty, b.bias.expanded_uncertainty);
+    ASSERT_EQ(a.curve.points.size(), b.curve.points.size());
+    for (std::size_t i = 0; i < a.curve.points.size(); ++i) {
+        EXPECT_EQ(a.curve.points[i].deviation, b.curve.points[i].deviation);
+        EXPECT_EQ(a.curve.points[i].lo, b.curve.points[i].lo);
+    }
+    EXPECT_EQ(a.spectrum.points.back().density, b.spectrum.points.back().density);
+    ASSERT_EQ(a.lines.size(), b.lines.size());
+    for (std::size_t i = 0; i < a.lines.size(); ++i) { EXPECT_EQ(a.lines[i].f_hz, b.lines[i].f_hz); }
+}
+
+TEST(Analyze, OfTheSameNumbersSaysTheSameWhetherAGyrosOrAnAccelerometers) {
+    const AnalysisReport report = analyze(twice_the_same(5000));
+    ASSERT_THAT(report.axes, SizeIs(3));
+    ASSERT_TRUE(report.accelerometer);
+    ASSERT_THAT(report.accelerometer->axes, SizeIs(3));
+    for (std::size_t i = 0; i < 3; ++i) { expect_same(report.axes[i], report.accelerometer->axes[i]); }
+    EXPECT_FALSE(report.axes[2].lines.empty());
+    EXPECT_EQ(report.accelerometer->unit.name, "m/s^2");
+    ASSERT_THAT(report.accelerometer->gravity, SizeIs(1));
+    EXPECT_STREQ(report.accelerometer->gravity[0].gravity.up_name(), "+y");
+    EXPECT_NEAR(report.accelerometer->gravity[0].gravity.size.value, 9.8, 0.02);
+}
+
+TEST(Analyze, LooksAtTheSensorsThatAreWanted) {
+    const Recording recording = twice_the_same(500);
+    AnalysisOptions options;
+    options.sensors = Sensors::gyro;
+    const AnalysisReport gyro = analyze(recording, options);
+    EXPECT_THAT(gyro.axes, SizeIs(3));
+    EXPECT_FALSE(gyro.accelerometer);
+    options.sensors = Sensors::accelerometer;
+    const AnalysisReport accelerometer = analyze(recording, options);
+    EXPECT_THAT(accelerometer.axes, testing::IsEmpty());
+    ASSERT_TRUE(accelerometer.accelerometer);
+    EXPECT_THAT(accelerometer.accelerometer->axes, SizeIs(3));
+    Recording without = recording;
+    without.columns.resize(3);
+    const AnalysisReport none = analyze(without, options);
+    EXPECT_FALSE(none.has_axes());
+    EXPECT_THAT(none.warnings, Contains(HasSubstr("no accelerometer column")));
+}
+
+TEST(Analyze, AnAccelerometersWarningsNameIt) {
+    Recording recording = twice_the_same(500);
+    recording.columns[3].data = std::vector<double>(500, 0.0);
+    EXPECT_THAT(analyze(recording).warnings,
+                Contains(HasSubstr("accelerometer axis x: all samples are equal")));
+    recording.columns[4].data = std::vector<double>(500, 5.0);
+    EXPECT_THAT(analyze(recording).warnings,
+                Contains(HasSubstr("accelerometer: the mean over the record is 0.51 g")));
+}
+
+TEST(Analyze, RowsWithoutTheAccelerometerAreMissingToItAlone) {
+    Recording recording = twice_the_same(3000);
+    auto& ay = std::get<std::vector<double>>(recording.columns[4].data);
+    for (std::size_t i = 1000; i < 1100; ++i) { ay[i] = std::nan(""); }
+    const AnalysisReport report = analyze(recording);
+    ASSERT_TRUE(report.accelerometer);
+    EXPECT_THAT(report.warnings, Contains(HasSubstr("accelerometer: 100 of the rows")));
+    EXPECT_EQ(report.axes[0].curve.points.front().terms, 2999);
+    EXPECT_EQ(report.accelerometer->axes[0].curve.points.front().terms, 2898);
+    EXPECT_NEAR(report.accelerometer->axes[1].bias.value, 9.8, 0.02);
+}
+
 TEST(Analyze, SaysWhichAveragingFactorsTheRecordCannotAnswer) {
     AnalysisOptions options;
     options.m = {1, 51};

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 #include "host/formats/analysis_json.hpp"
 #include "host/formats/analysis_text.hpp"
 #include "host/formats/recording_csv.hpp"
+#include "host/formats/text_file.hpp"
 #include "tests/analysis/allan/nbs14.hpp"
 #include "tests/support/needs.hpp"
 
@@ -96,6 +99,61 @@ TEST(AnalysisJson, TellsTheDropouts) {
     EXPECT_EQ(report["recording"]["segments"], 2);
 }
 
+// The accelerometer's z is up and a little tilted to x.
+std::string imu_text() {
+    const std::vector<double> noise = test::nbs14_1000_point_frequency();
+    std::string text = "t_s,gx_dps,ax_g,ay_g,az_g\n";
+    for (std::size_t i = 0; i + 2 < noise.size(); ++i) {
+        text += fmt::format("{},{},{},{},{}\n", static_cast<double>(i) / 100.0, noise[i],
+                            0.1 + 1e-3 * noise[i], 1e-3 * noise[i + 1], 1.0 + 1e-3 * noise[i + 2]);
+    }
+    return text;
+}
+
+TEST(AnalysisJson, HasTheAccelerometerBesideTheAxes) {
+    const json report = report_of(parsed(imu_text()));
+    EXPECT_EQ(report["axes"].size(), 1U);
+    const json& axes = report["accelerometer"]["axes"];
+    ASSERT_EQ(axes.size(), 3U);
+    EXPECT_EQ(axes["x"]["coefficients"]["N"]["unit"], "g/sqrt(Hz)");
+    EXPECT_EQ(axes["x"]["coefficients"]["Q"]["unit"], "g*s");
+    EXPECT_EQ(axes["x"]["allan"][0]["unit"], "g");
+    EXPECT_EQ(axes["x"]["mean"]["unit"], "g");
+    EXPECT_FALSE(axes["x"].contains("bias"));
+    // The same numbers as the gyro's, a thousandth in size.
+    EXPECT_NEAR(axes["x"]["allan"][0]["value"].get<double>() * 1e3,
+                report["axes"]["x"]["allan"][0]["value"].get<double>(), 1e-6);
+    const json& gravity = report["accelerometer"]["gravity"];
+    EXPECT_EQ(gravity["size"]["unit"], "g");
+    EXPECT_NEAR(gravity["size"]["value"].get<double>(), std::hypot(0.1005, 1.0005), 1e-3);
+    EXPECT_GT(gravity["size"]["expanded_uncertainty"].get<double>(), 0.0);
+    EXPECT_EQ(gravity["tilt"]["unit"], "deg");
+    EXPECT_NEAR(gravity["tilt"]["value"].get<double>(), 5.73, 0.1);
+    EXPECT_EQ(gravity["up"], "+z");
+    EXPECT_FALSE(report_of(parsed(csv_of({1.0, 2.0, 3.0}, "t_s,gx_dps"))).contains("accelerometer"));
+}
+
+TEST(AnalysisText, GivesTheAccelerometerInTheUnitsOfTheTrade) {
+    const std::string text = analysis_text(analyze(parsed(imu_text())));
+    for (const char* part :
+         {"\ngyro\n", "\naccelerometer\n", "velocity random walk", "ug/sqrt(Hz)", "m/s/sqrt(h)",
+          "m/s^2/sqrt(Hz)", "ug*sqrt(Hz)", "gravity: 1.00", "+z is up, tilted by 5.7"}) {
+        EXPECT_THAT(text, HasSubstr(part));
+    }
+    AnalysisOptions options;
+    options.sensors = Sensors::accelerometer;
+    const std::string alone = analysis_text(analyze(parsed(imu_text()), options));
+    EXPECT_THAT(alone, testing::Not(HasSubstr("angle random walk")));
+    EXPECT_THAT(alone, HasSubstr("Cramer-Rao bound"));
+}
+
+TEST(AnalysisText, OfCountsHasNoUnitsOfTheTrade) {
+    const std::string text = "t_s,gx_dps,ax_lsb\n0,1,3\n1,2,5\n2,1,4\n3,2,3\n";
+    const std::string report = analysis_text(analyze(parsed(text)));
+    EXPECT_THAT(report, HasSubstr("lsb/sqrt(Hz)"));
+    EXPECT_THAT(report, testing::Not(HasSubstr("m/s")));
+}
+
 TEST(AnalysisText, NamesEveryAxisWithItsUnits) {
     const std::string text =
         analysis_text(analyze(parsed(csv_of(test::nbs14_1000_point_frequency(), "t_s,gx_dps"))));
@@ -135,6 +193,79 @@ TEST_F(AnalysisOfRealRecordings, WhiteNoiseOfAPublishedSensorIsWhatItsSourceSays
     EXPECT_NEAR(r.axes[0].bias.value, -427.46, 15.0);
     EXPECT_NEAR(r.axes[1].bias.value, 147.95, 15.0);
     EXPECT_NEAR(r.axes[2].bias.value, -80.72, 20.0);
+}
+
+// Their sources state no noise of the accelerometers. The expected numbers are the mean levels, above a
+// fiftieth of the rate, of Welch spectra of the same samples (numpy, Hann windows of 1024 samples, of 256
+// where the record is short), two-sided: an estimator that has nothing in common with the likelihood.
+void expect_white_noise(const std::vector<AxisReport>& axes, const std::string& unit,
+                        const std::array<double, 3>& expected) {
+    constexpr std::array names = {"x", "y", "z"};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const auto axis = std::ranges::find(axes, names[i] + unit, &AxisReport::axis);
+        ASSERT_NE(axis, axes.end()) << names[i] << unit;
+        const FittedCoefficient& N = axis->fit[NoiseTerm::N];
+        EXPECT_EQ(N.state, FittedCoefficient::State::identified);
+        EXPECT_NEAR(N.value / expected[i], 1.0, 0.1) << axis->axis;
+    }
+}
+
+TEST_F(AnalysisOfRealRecordings, AnAccelerometersWhiteNoiseIsTheLevelOfItsSpectrum) {
+    const AnalysisReport uncuyo = report("mpu6050_uncuyo/static_7min.csv.xz", {.lsb_dps = deg_per_rad});
+    ASSERT_TRUE(uncuyo.accelerometer);
+    expect_white_noise(uncuyo.accelerometer->axes, "", {5.345, 4.927, 7.536});
+    const AnalysisReport frdm = report("mpu6050_frdm/static_11min.csv.xz");
+    ASSERT_TRUE(frdm.accelerometer);
+    expect_white_noise(frdm.accelerometer->axes, "", {3.078e-3, 3.056e-3, 4.898e-3});
+    ASSERT_EQ(frdm.accelerometer->gravity.size(), 1U);
+    EXPECT_STREQ(frdm.accelerometer->gravity[0].gravity.up_name(), "-z");
+}
+
+// The still pose that its statistics name, 469 to 495 s.
+TEST_F(AnalysisOfRealRecordings, EachAccelerometerOfAnArrayHasItsOwnWhiteNoise) {
+    const auto recording =
+        read_recording_csv(shared_data("mimu8_array/exp1.csv.xz"), {.lsb_dps = deg_per_rad});
+    ASSERT_TRUE(recording.ok());
+    const Recording still = rows_of(*recording, segments_where(recording->segments, [&](std::size_t row) {
+        return recording->t_s[row] >= 469.0 && recording->t_s[row] < 495.0;
+    }));
+    AnalysisOptions options;
+    options.sensors = Sensors::accelerometer;
+    const AnalysisReport report = analyze(still, options);
+    ASSERT_TRUE(report.accelerometer);
+    EXPECT_EQ(report.accelerometer->gravity.size(), 8U);
+    expect_white_noise(report.accelerometer->axes, "1", {0.962, 0.880, 1.275});
+    expect_white_noise(report.accelerometer->axes, "2", {0.884, 0.857, 1.220});
+    expect_white_noise(report.accelerometer->axes, "5", {0.907, 0.867, 1.258});
+}
+
+// Its rate is not in the file; at 204.8 Hz its turns are whole ones.
+TEST_F(AnalysisOfRealRecordings, AFewSecondsOfAnAccelerometerAreEnoughForItsWhiteNoise) {
+    auto file = TextReader::open(shared_data("nilspod_ferraris/annotated_session.csv.xz"));
+    ASSERT_TRUE(file.ok());
+    std::string text;
+    for (auto piece = file->read(); piece.ok() && !piece->empty(); piece = file->read()) {
+        text.append(*piece);
+    }
+    std::string face = "ax_lsb,ay_lsb,az_lsb\n";
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string line = text.substr(begin, end - begin);
+        begin = end + 1;
+        if (!line.starts_with("x_a,")) { continue; }
+        // part,samples,acc_x,acc_y,acc_z,gyr_x,gyr_y,gyr_z
+        std::size_t from = line.find(',', line.find(',') + 1) + 1;
+        std::size_t to = from;
+        for (int field = 0; field < 3; ++field) { to = line.find(',', to) + 1; }
+        face += line.substr(from, to - 1 - from) + "\n";
+    }
+    const auto recording = parse_recording_csv(face, "x_a", {.rate_hz = 204.8, .needs_gyro = false});
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(recording->rows(), 1061U);
+    const AnalysisReport report = analyze(*recording);
+    ASSERT_TRUE(report.accelerometer);
+    expect_white_noise(report.accelerometer->axes, "", {0.455, 0.436, 0.520});
+    EXPECT_STREQ(report.accelerometer->gravity.at(0).gravity.up_name(), "-x");
 }
 
 TEST_F(AnalysisOfRealRecordings, BurstyStampsDoNotSpoilTheCurve) {
