@@ -17,8 +17,9 @@ namespace {
 
 constexpr double codes_of_a_side = 32768.0;  // of a 16-bit converter
 constexpr std::array usual_ranges_dps = {250.0, 500.0, 1000.0, 2000.0};
+constexpr std::array usual_ranges_g = {2.0, 4.0, 8.0, 16.0};
 
-double largest_rad_s(const Column& column) {
+double largest_of(const Column& column) {
     double largest = 0.0;
     for (std::size_t i = 0; i < column.size(); ++i) {
         largest = std::max(largest, std::abs(column.value(i)));
@@ -28,16 +29,20 @@ double largest_rad_s(const Column& column) {
 
 }  // namespace
 
-RecordedConverter recorded_converter(const Column& column, double step_rad_s, double range_least_rad_s) {
-    const double largest = largest_rad_s(column);
-    if (step_rad_s > 0.0 && largest <= codes_of_a_side * step_rad_s) {
-        return {step_rad_s, codes_of_a_side * step_rad_s, (codes_of_a_side - 1.0) * step_rad_s};
+RecordedConverter recorded_converter(const Column& column, double step, double range_least,
+                                     SensorKind sensor) {
+    const double largest = largest_of(column);
+    if (step > 0.0 && largest <= codes_of_a_side * step) {
+        return {step, codes_of_a_side * step, (codes_of_a_side - 1.0) * step};
     }
-    const double reached = std::max(largest, range_least_rad_s);
-    const auto* const range_dps =
-        std::ranges::find_if(usual_ranges_dps, [&](double dps) { return dps * rad_per_deg >= reached; });
-    const double range_rad_s = range_dps == usual_ranges_dps.end() ? reached : *range_dps * rad_per_deg;
-    return {step_rad_s, range_rad_s, range_rad_s};
+    const double reached = std::max(largest, range_least);
+    const bool is_gyro = sensor == SensorKind::gyro;
+    const double unit = is_gyro ? rad_per_deg : standard_gravity_m_s2;
+    const auto& usual = is_gyro ? usual_ranges_dps : usual_ranges_g;
+    const auto* const holds =
+        std::ranges::find_if(usual, [&](double range) { return range * unit >= reached; });
+    const double range = holds == usual.end() ? reached : *holds * unit;
+    return {step, range, range};
 }
 
 std::optional<RecordedConverter> recorded_converter(const Recording& recording) {

@@ -5,6 +5,7 @@
 
 #include "analysis/recording/grid.hpp"
 #include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/resting_accelerometer.hpp"
 
 namespace gyrolog {
 
@@ -18,6 +19,16 @@ std::uint64_t slots_of(const Recording& recording) {
 bool is_gyro(const Column& column) { return column.name.starts_with('g'); }
 
 double nanoseconds(double t_s) { return std::floor(t_s * 1e9 + 0.5) / 1e9; }
+
+Column sensor_column(char sensor, std::size_t axis, const std::array<double, 3>& lsb) {
+    Column column{std::string(1, sensor) + axis_names.at(axis), sensor == 'g' ? "rad/s" : "m/s^2", {}};
+    if (lsb.at(axis) == 0.0) {
+        column.data = std::vector<double>{};
+    } else {
+        column.scale = lsb.at(axis);
+    }
+    return column;
+}
 
 Column real_column(std::string name, std::string unit) {
     return {std::move(name), std::move(unit), std::vector<double>{}, 1.0, 0.0, {}};
@@ -173,6 +184,12 @@ RecordingSimulator::RecordingSimulator(const SensorModel& model, const Simulatio
         samples_ = samples_ == 0 ? all : std::min(samples_, all);
     }
     rows_.reserve(block_samples);
+    const bool at_rest = !like_ && (world_ == nullptr || !world_->moves());
+    if (model.accelerometer && at_rest) {
+        const SensorModel sensor = resting_accelerometer(model);
+        accelerometer_.emplace(sensor, rate_hz_, accelerometer_seed(request.seed));
+        accelerometer_lsb_m_s2_ = converter_steps_rad_s(sensor);
+    }
 }
 
 void RecordingSimulator::take_own_rows(std::size_t count, const SampleBlock& block) {
@@ -232,12 +249,10 @@ void RecordingSimulator::make_columns(Recording& piece) const {
     piece.rate_hz = rate_hz_;
     piece.stamps = StampKind::sampling;
     for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
-        const std::string name = std::string("g") + axis_names[axis];
-        if (lsb_rad_s_[axis] == 0.0) {
-            piece.columns.push_back(real_column(name, "rad/s"));
-        } else {
-            piece.columns.push_back({name, "rad/s", std::vector<std::int16_t>{}, lsb_rad_s_[axis], 0.0, {}});
-        }
+        piece.columns.push_back(sensor_column('g', axis, lsb_rad_s_));
+    }
+    for (std::size_t axis = 0; accelerometer_ && axis < axis_names.size(); ++axis) {
+        piece.columns.push_back(sensor_column('a', axis, accelerometer_lsb_m_s2_));
     }
     if (simulates_temperature()) { piece.columns.push_back(real_column("temp", "degC")); }
     if (like_) {
@@ -257,16 +272,19 @@ void RecordingSimulator::make_columns(Recording& piece) const {
     }
 }
 
-void RecordingSimulator::fill_gyro(const SampleBlock& block, Recording& piece) const {
+void RecordingSimulator::fill_sensor(char sensor, const SampleBlock& block, const std::array<double, 3>& lsb,
+                                     Recording& piece) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::string name = std::string(1, sensor) + axis_names[axis];
+        Column& column = *std::ranges::find(piece.columns, name, &Column::name);
         const auto fill = [&](auto& data, const auto& source) {
             data.resize(rows_.size());
             for (std::size_t i = 0; i < rows_.size(); ++i) { data[i] = source[rows_[i].place]; }
         };
-        if (lsb_rad_s_[axis] == 0.0) {
-            fill(std::get<std::vector<double>>(piece.columns[axis].data), block.rate_rad_s[axis]);
+        if (lsb[axis] == 0.0) {
+            fill(std::get<std::vector<double>>(column.data), block.rate_rad_s[axis]);
         } else {
-            fill(std::get<std::vector<std::int16_t>>(piece.columns[axis].data), block.counts[axis]);
+            fill(std::get<std::vector<std::int16_t>>(column.data), block.counts[axis]);
         }
     }
 }
@@ -343,7 +361,8 @@ bool RecordingSimulator::next(Recording& piece) {
     for (const Row& row : rows_) {
         add_segment_row(piece, first_index + static_cast<std::int64_t>(row.place));
     }
-    fill_gyro(block, piece);
+    fill_sensor('g', block, lsb_rad_s_, piece);
+    if (accelerometer_) { fill_sensor('a', accelerometer_->next_block(), accelerometer_lsb_m_s2_, piece); }
     fill_temperature(block, piece);
     done_ += count;
     return true;

@@ -43,8 +43,9 @@ public:
     // that is handed in again is refilled. Its segments count on the grid of the whole recording. Stamps are
     // whole nanoseconds.
     //
-    // Columns: gx gy gz, counts where the model has an lsb; temp. In a moving world ref_x ref_y ref_z with
-    // the reference's noise, ax ay az with the accelerometer's. With `like`: its own columns in place of
+    // Columns: gx gy gz, counts where the model has an lsb; temp. At rest, ax ay az where the model has an
+    // accelerometer. In a moving world ref_x ref_y ref_z with the reference's noise, ax ay az with
+    // acc_noise_m_s2 and nothing else. With `like`: its own columns in place of
     // these, as they are, and the simulated temperature only if it has none.
     bool next(Recording& piece);
 
@@ -67,12 +68,15 @@ private:
     void take_like_rows(std::int64_t begin, std::size_t count, const SampleBlock& block);
     void add_segment_row(Recording& piece, std::int64_t index) const;
     void make_columns(Recording& piece) const;
-    void fill_gyro(const SampleBlock& block, Recording& piece) const;
+    void fill_sensor(char sensor, const SampleBlock& block, const std::array<double, 3>& lsb,
+                     Recording& piece) const;
     void fill_motion(const SampleBlock& block, Recording& piece) const;
     void fill_temperature(const SampleBlock& block, Recording& piece) const;
     void fill_like(Recording& piece) const;
 
     SensorSimulator simulator_;
+    std::optional<SensorSimulator> accelerometer_;  // in m/s^2 for rad/s
+    std::array<double, 3> accelerometer_lsb_m_s2_{};
     std::shared_ptr<const World> world_;
     std::shared_ptr<const RecordedWorld> like_;
     double rate_hz_;

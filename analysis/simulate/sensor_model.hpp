@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/recording/standard_gravity.hpp"
 
 namespace gyrolog {
 
@@ -20,6 +21,7 @@ inline constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
 // A range that nothing reaches: of a model that has none.
 inline constexpr double no_range_rad_s = 1e9 * rad_per_deg;
+inline constexpr double no_range_m_s2 = 1e9 * standard_gravity_m_s2;
 
 struct AxisModel {
     NoiseCoefficients noise;  // two-sided convention
@@ -43,6 +45,18 @@ struct EffectModel {
     std::map<std::string, std::vector<double>> table{};  // columns by name, of one length; {} for none
 };
 
+// In m/s^2 where a gyro's model has rad/s: of the members of `axes` and of NoiseCoefficients, too.
+struct AccelerometerModel {
+    double full_scale_m_s2 = no_range_m_s2;
+    double lsb_m_s2 = 0.0;  // 0: no quantisation
+    double saturation_m_s2 = no_range_m_s2;
+    std::array<AxisModel, 3> axes;
+    Matrix3 M = identity_matrix;  // true specific force to measured one
+    std::map<std::string, double> sd_rel;
+    std::map<std::string, double> sd_abs;
+    std::vector<EffectModel> effects;  // their params in g (sigma_g) in the place of deg/s (sigma_dps)
+};
+
 struct SensorModel {
     double rate_hz = 100.0;
     double full_scale_rad_s = 0.0;
@@ -61,6 +75,7 @@ struct SensorModel {
     std::optional<Vector3> misalignment;   // leak of each rate into the other two axes; a full matrix: M
     std::optional<TemperatureModel> temperature;
     std::vector<EffectModel> effects;
+    std::optional<AccelerometerModel> accelerometer;
     std::string carried_json;  // keys that this build does not know, as JSON text; written back untouched; ""
                                // for none
 };

@@ -4,12 +4,18 @@
 
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/converter.hpp"
+#include "analysis/simulate/resting_accelerometer.hpp"
 
 namespace gyrolog {
 
 std::optional<std::string> simulation_refusal(const SensorModel& model) {
     for (const EffectModel& effect : model.effects) {
         if (auto refusal = effect_refusal(effect)) { return refusal; }
+    }
+    if (model.accelerometer) {
+        if (auto refusal = simulation_refusal(resting_accelerometer(model))) {
+            return "accelerometer: " + *refusal;
+        }
     }
     return std::nullopt;
 }

@@ -49,32 +49,55 @@ double coefficient_factor(Keys& keys) {
 // Keys that a file need not have, with those that it has not.
 class StatedNumbers {
 public:
+    explicit StatedNumbers(std::string of = "") : of_(std::move(of)) {}
+
     // 0 where it is not stated.
     double number(Keys& keys, const std::string& key, Range range) {
         const std::optional<double> stated = keys.optional_number(key, range);
-        if (!stated && std::ranges::count(absent_, key) == 0) { absent_.push_back(key); }
+        if (!stated && std::ranges::count(absent_, of_ + key) == 0) { absent_.push_back(of_ + key); }
         return stated.value_or(0.0);
     }
 
-    const std::vector<std::string>& absent() const { return absent_; }
+    void note(std::vector<std::string>& notes) const {
+        if (absent_.empty()) { return; }
+        notes.push_back(
+            fmt::format("the model does not state {}: taken as 0, exactly", fmt::join(absent_, ", ")));
+    }
 
 private:
+    std::string of_;
     std::vector<std::string> absent_;
 };
 
-AxisModel read_axis(Keys& keys, double factor, StatedNumbers& stated) {
+// `unit`: of the file's numbers, in SI.
+AxisModel read_axis(Keys& keys, double unit, double factor, StatedNumbers& stated) {
     AxisModel axis;
     const bool has_any = std::ranges::any_of(std::array{"N", "B", "K", "bias"},
                                              [&](const char* key) { return keys.find(key) != nullptr; });
     if (!has_any) { keys.fail(keys.name("N"), "is missing, as are B, K and bias: one of them is needed"); }
-    axis.noise.N_rad_per_sqrt_s = stated.number(keys, "N", Range::not_negative) * rad_per_deg / factor;
-    axis.noise.B_rad_per_s = stated.number(keys, "B", Range::not_negative) * rad_per_deg / factor;
-    axis.noise.K_rad_per_s_sqrt_s = stated.number(keys, "K", Range::not_negative) * rad_per_deg / factor;
-    axis.bias_rad_s = stated.number(keys, "bias", Range::any) * rad_per_deg;
-    axis.noise.Q_rad = keys.number_or("Q", Range::not_negative, 0.0) * rad_per_deg;
-    axis.noise.R_rad_per_s2 = keys.number_or("R", Range::any, 0.0) * rad_per_deg;
+    axis.noise.N_rad_per_sqrt_s = stated.number(keys, "N", Range::not_negative) * unit / factor;
+    axis.noise.B_rad_per_s = stated.number(keys, "B", Range::not_negative) * unit / factor;
+    axis.noise.K_rad_per_s_sqrt_s = stated.number(keys, "K", Range::not_negative) * unit / factor;
+    axis.bias_rad_s = stated.number(keys, "bias", Range::any) * unit;
+    axis.noise.Q_rad = keys.number_or("Q", Range::not_negative, 0.0) * unit;
+    axis.noise.R_rad_per_s2 = keys.number_or("R", Range::any, 0.0) * unit;
     if (const Json* sd = keys.find("sd")) { axis.sd_rel = keys.uncertainties(*sd, "sd"); }
     return axis;
+}
+
+// Gives back what of `axes` is not known.
+Json read_axes(Keys& keys, double unit, double factor, StatedNumbers& stated,
+               std::array<AxisModel, 3>& axes) {
+    Keys axes_keys = keys.inside(keys.need("axes"), "axes");
+    Json carried = Json::object();
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string axis = axis_names[i];
+        Keys axis_keys = axes_keys.inside(axes_keys.need(axis), axis);
+        axes[i] = read_axis(axis_keys, unit, factor, stated);
+        carry(carried, axis, axis_keys.left_over());
+    }
+    carried.update(axes_keys.left_over());
+    return carried;
 }
 
 TemperatureModel read_temperature(Keys& keys) {
@@ -201,6 +224,29 @@ void read_sensor(Keys& keys, SensorModel& model, StatedNumbers& stated) {
     }
 }
 
+// Gives back what of it is not known.
+Json read_accelerometer(Keys& keys, double factor, std::vector<std::string>& notes,
+                        AccelerometerModel& model) {
+    constexpr double g = standard_gravity_m_s2;
+    StatedNumbers stated("accelerometer.");
+    Json carried = Json::object();
+    carry(carried, "axes", read_axes(keys, g, factor, stated, model.axes));
+    model.lsb_m_s2 = keys.number_or("lsb_g", Range::not_negative, 0.0) * g;
+    if (const auto range_g = keys.optional_number("full_scale_g", Range::positive)) {
+        model.full_scale_m_s2 = *range_g * g;
+    }
+    const auto saturation_g = keys.optional_number("saturation_g", Range::positive);
+    model.saturation_m_s2 = saturation_g ? *saturation_g * g : model.full_scale_m_s2;
+    if (keys.find("M") != nullptr) { model.M = keys.matrix("M"); }
+    if (const Json* sd = keys.find("sd_rel")) { model.sd_rel = keys.uncertainties(*sd, "sd_rel"); }
+    if (const Json* sd = keys.find("sd_abs")) { model.sd_abs = keys.uncertainties(*sd, "sd_abs"); }
+    read_effects(keys, "effects", named_effect, model.effects);
+    read_effects(keys, "unnamed", named_form, model.effects);
+    stated.note(notes);
+    carried.update(keys.left_over());
+    return carried;
+}
+
 ModelFile read_document(const Json& document, std::optional<std::string>& problem) {
     ModelFile file;
     SensorModel& model = file.model;
@@ -212,31 +258,23 @@ ModelFile read_document(const Json& document, std::optional<std::string>& proble
 
     Json carried = Json::object();
     const double factor = coefficient_factor(keys);
-    const Json& axes = keys.need("axes");
-    Keys axes_keys = keys.inside(axes, "axes");
-    Json axes_carried = Json::object();
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::string axis = axis_names[i];
-        Keys axis_keys = axes_keys.inside(axes_keys.need(axis), axis);
-        model.axes[i] = read_axis(axis_keys, factor, stated);
-        carry(axes_carried, axis, axis_keys.left_over());
-    }
-    axes_carried.update(axes_keys.left_over());
-    carry(carried, "axes", std::move(axes_carried));
+    carry(carried, "axes", read_axes(keys, rad_per_deg, factor, stated, model.axes));
 
     if (const Json* temperature = keys.find("temperature")) {
         Keys temperature_keys = keys.inside(*temperature, "temperature");
         model.temperature = read_temperature(temperature_keys);
         carry(carried, "temperature", temperature_keys.left_over());
     }
+    stated.note(file.notes);
+    if (const Json* accelerometer = keys.find("accelerometer")) {
+        Keys inside = keys.inside(*accelerometer, "accelerometer");
+        carry(carried, "accelerometer",
+              read_accelerometer(inside, factor, file.notes, model.accelerometer.emplace()));
+    }
     read_effects(keys, "effects", named_effect, model.effects);
     read_effects(keys, "unnamed", named_form, model.effects);
     carried.update(keys.left_over());
     if (!carried.empty()) { model.carried_json = carried.dump(); }
-    if (!stated.absent().empty()) {
-        file.notes.push_back(fmt::format("the model does not state {}: taken as 0, exactly",
-                                         fmt::join(stated.absent(), ", ")));
-    }
     return file;
 }
 
@@ -273,14 +311,14 @@ Json format_map(const std::map<std::string, double>& numbers) {
     return json;
 }
 
-Json format_axis(const AxisModel& axis) {
+Json format_axis(const AxisModel& axis, double unit) {
     Json json;
-    json["N"] = in_unit(axis.noise.N_rad_per_sqrt_s, rad_per_deg);
-    json["B"] = in_unit(axis.noise.B_rad_per_s, rad_per_deg);
-    json["K"] = in_unit(axis.noise.K_rad_per_s_sqrt_s, rad_per_deg);
-    json["bias"] = in_unit(axis.bias_rad_s, rad_per_deg);
-    if (axis.noise.Q_rad != 0.0) { json["Q"] = in_unit(axis.noise.Q_rad, rad_per_deg); }
-    if (axis.noise.R_rad_per_s2 != 0.0) { json["R"] = in_unit(axis.noise.R_rad_per_s2, rad_per_deg); }
+    json["N"] = in_unit(axis.noise.N_rad_per_sqrt_s, unit);
+    json["B"] = in_unit(axis.noise.B_rad_per_s, unit);
+    json["K"] = in_unit(axis.noise.K_rad_per_s_sqrt_s, unit);
+    json["bias"] = in_unit(axis.bias_rad_s, unit);
+    if (axis.noise.Q_rad != 0.0) { json["Q"] = in_unit(axis.noise.Q_rad, unit); }
+    if (axis.noise.R_rad_per_s2 != 0.0) { json["R"] = in_unit(axis.noise.R_rad_per_s2, unit); }
     if (!axis.sd_rel.empty()) { json["sd"] = format_map(axis.sd_rel); }
     return json;
 }
@@ -323,6 +361,28 @@ Json format_effect(const EffectModel& effect) {
     for (const auto& [name, column] : effect.table) { entry["table"][name] = column; }
     put_back(entry, effect.carried_json);
     return entry;
+}
+
+void put_effects(Json& json, const std::vector<EffectModel>& effects) {
+    json["effects"] = Json::array();
+    for (const EffectModel& effect : effects) {
+        const bool is_unnamed = !form_of(effect).empty();
+        json[is_unnamed ? "unnamed" : "effects"].push_back(format_effect(effect));
+    }
+}
+
+Json format_accelerometer(const AccelerometerModel& model) {
+    constexpr double g = standard_gravity_m_s2;
+    Json json;
+    json["full_scale_g"] = in_unit(model.full_scale_m_s2, g);
+    json["lsb_g"] = in_unit(model.lsb_m_s2, g);
+    json["saturation_g"] = in_unit(model.saturation_m_s2, g);
+    for (std::size_t i = 0; i < 3; ++i) { json["axes"][axis_names[i]] = format_axis(model.axes[i], g); }
+    json["M"] = format_matrix(model.M);
+    json["sd_rel"] = format_map(model.sd_rel);
+    json["sd_abs"] = format_map(model.sd_abs);
+    put_effects(json, model.effects);
+    return json;
 }
 
 Result<SensorModel> standing_for_itself(Result<ModelFile> file, const std::string& name) {
@@ -396,7 +456,9 @@ std::string format_model(const SensorModel& model) {
     json["full_scale_dps"] = in_unit(model.full_scale_rad_s, rad_per_deg);
     json["lsb_dps"] = in_unit(model.lsb_rad_s, rad_per_deg);
     json["saturation_dps"] = in_unit(model.saturation_rad_s, rad_per_deg);
-    for (std::size_t i = 0; i < 3; ++i) { json["axes"][axis_names[i]] = format_axis(model.axes[i]); }
+    for (std::size_t i = 0; i < 3; ++i) {
+        json["axes"][axis_names[i]] = format_axis(model.axes[i], rad_per_deg);
+    }
     json["M"] = format_matrix(model.M);
     json["latency_s"] = model.latency_s;
     json["timestamp_jitter_s"] = model.timestamp_jitter_s;
@@ -416,11 +478,8 @@ std::string format_model(const SensorModel& model) {
         temperature["scale_percent_per_C"] =
             same ? Json(in_unit(scale[0], percent)) : in_unit(scale, percent);
     }
-    json["effects"] = Json::array();
-    for (const EffectModel& effect : model.effects) {
-        const bool is_unnamed = !form_of(effect).empty();
-        json[is_unnamed ? "unnamed" : "effects"].push_back(format_effect(effect));
-    }
+    if (model.accelerometer) { json["accelerometer"] = format_accelerometer(*model.accelerometer); }
+    put_effects(json, model.effects);
     put_back(json, model.carried_json);
     return written_out(json, 2);
 }

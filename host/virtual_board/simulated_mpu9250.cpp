@@ -5,6 +5,7 @@
 
 #include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/converter.hpp"
+#include "analysis/simulate/resting_accelerometer.hpp"
 #include "firmware_protocol/device/mpu9250.h"
 
 namespace gyrolog {
@@ -249,7 +250,14 @@ void SimulatedMpu9250::prepare_simulator() {
     unconverted.lsb_rad_s = 0.0;
     unconverted.saturation_rad_s = std::numeric_limits<double>::infinity();
     // The first simulation is the seed's own, as anyone may repeat it; later ones must not repeat it.
-    simulator_.emplace(unconverted, rate_hz, seed_ + (simulations_ << 32U));
+    const std::uint64_t seed = seed_ + (simulations_ << 32U);
+    simulator_.emplace(unconverted, rate_hz, seed);
+    if (model_.accelerometer) {
+        SensorModel accelerometer = resting_accelerometer(model_);
+        accelerometer.lsb_rad_s = 0.0;
+        accelerometer.saturation_rad_s = std::numeric_limits<double>::infinity();
+        accelerometer_.emplace(accelerometer, rate_hz, accelerometer_seed(seed));
+    }
     ++simulations_;
     simulated_rate_hz_ = rate_hz;
     next_block();
@@ -257,6 +265,7 @@ void SimulatedMpu9250::prepare_simulator() {
 
 void SimulatedMpu9250::next_block() {
     block_ = &simulator_->next_block();
+    if (accelerometer_) { accelerometer_block_ = &accelerometer_->next_block(); }
     place_ = 0;
     convert();
 }
@@ -274,7 +283,8 @@ void SimulatedMpu9250::convert() {
         const StageContext context{model_, simulated_rate_hz_, seed_ + ((simulations_ - 1) << 32U)};
         context.stream({'A', '0'}, axis).normals(block_->first_index, noise);
         for (std::size_t i = 0; i < block_samples; ++i) {
-            counts_[i][axis] = accel(block_->specific_force_m_s2[axis][i] + model_.acc_noise_m_s2 * noise[i]);
+            const double force_m_s2 = block_->specific_force_m_s2[axis][i] + model_.acc_noise_m_s2 * noise[i];
+            counts_[i][axis] = accel(accelerometer_ ? accelerometer_block_->rate_rad_s[axis][i] : force_m_s2);
             counts_[i][4 + axis] = gyro(block_->rate_rad_s[axis][i]);
         }
     }

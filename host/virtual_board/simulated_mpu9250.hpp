@@ -12,7 +12,8 @@
 //             scale and the model's step is the register's to 0.1 % (files round it), but for an
 //             effect's step that is no multiple of it. Otherwise the registers' step and range convert
 //             the same rates.
-//   accel     The specific force in the sensor's axes, with acc_noise_m_s2.
+//   accel     That of the model's accelerometer; of a model without one, the specific force in the sensor's
+//             axes, with acc_noise_m_s2.
 //   DLPF_CFG  Chooses the rates only. The model's noise holds at the output; what filters is the model's own
 //             `lowpass` effect.
 //
@@ -99,6 +100,8 @@ private:
 
     // Samples ahead of time, a block at once. A new rate begins a new simulation.
     std::optional<SensorSimulator> simulator_;
+    std::optional<SensorSimulator> accelerometer_;  // of a model that has one
+    const SampleBlock* accelerometer_block_ = nullptr;
     double simulated_rate_hz_ = 0.0;
     std::uint64_t simulations_ = 0;
     const SampleBlock* block_ = nullptr;

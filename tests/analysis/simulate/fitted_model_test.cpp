@@ -31,6 +31,29 @@ TEST(FittedModel, OfRealNumbersCanBeSimulatedInTheSmallestRangeThatHoldsThem) {
     EXPECT_NEAR(model.axes[0].noise.N_rad_per_sqrt_s, 0.001, 5e-5);
 }
 
+TEST(FittedModel, HasTheAccelerometerBesideTheGyro) {
+    Recording recording = white_recording(20'000, 0.01, 0.0);
+    std::mt19937_64 random(9);
+    std::normal_distribution<double> normal;
+    constexpr double step_m_s2 = 2.0 * standard_gravity_m_s2 / 32768.0;
+    for (const char* name : {"ax", "ay", "az"}) {
+        const double mean_m_s2 = name[1] == 'z' ? standard_gravity_m_s2 : 0.0;
+        std::vector<std::int16_t> counts(20'000);
+        for (std::int16_t& count : counts) {
+            count = static_cast<std::int16_t>(std::lround((mean_m_s2 + 0.03 * normal(random)) / step_m_s2));
+        }
+        recording.columns.push_back({name, "m/s^2", counts, step_m_s2, 0.0, ""});
+    }
+    const SensorModel model = fitted_model(analyze(recording), recording);
+    ASSERT_TRUE(model.accelerometer);
+    EXPECT_NEAR(model.accelerometer->axes[1].noise.N_rad_per_sqrt_s, 0.003, 4.0 * 0.003 / std::sqrt(4e4));
+    EXPECT_EQ(model.accelerometer->axes[2].bias_rad_s, 0.0);
+    EXPECT_EQ(model.accelerometer->lsb_m_s2, step_m_s2);
+    EXPECT_NEAR(model.accelerometer->full_scale_m_s2, 2.0 * standard_gravity_m_s2, 1e-9);
+    EXPECT_EQ(simulation_refusal(model), std::nullopt);
+    EXPECT_NEAR(model.axes[0].noise.N_rad_per_sqrt_s, 0.001, 5e-5);
+}
+
 TEST(FittedModel, HasTheStepOfTheConverterOnceAndNotInTheNoise) {
     constexpr double step_rad_s = 0.015;
     Recording recording = white_recording(100'000, 0.01, 0.1);

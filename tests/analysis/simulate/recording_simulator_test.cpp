@@ -134,6 +134,78 @@ TEST(RecordingSimulator, AMovingWorldIsReadByReferenceAndAccelerometerAtTheStamp
     EXPECT_NEAR(force / 5000.0 / (0.1 * 0.1), 1.0, allowed);
 }
 
+SensorModel with_accelerometer() {
+    SensorModel model = typical_mpu9250();
+    AccelerometerModel& accelerometer = model.accelerometer.emplace();
+    for (AxisModel& axis : accelerometer.axes) { axis.noise.N_rad_per_sqrt_s = 0.003; }
+    accelerometer.axes[0].bias_rad_s = 0.2;
+    accelerometer.M[1][2] = 0.01;
+    accelerometer.effects.push_back({"tone", {"x"}, {{"f_hz", 12.5}, {"amplitude_g", 0.01}}, {}});
+    return model;
+}
+
+TEST(RecordingSimulator, AnAccelerometerAtRestHasGravityAndItsOwnNoise) {
+    const SensorModel model = with_accelerometer();
+    const Recording recording = simulate_recording(model, {.samples = 20'000, .seed = 3});
+    const std::vector<double> x = recording.find("ax")->values();
+    const std::vector<double> y = recording.find("ay")->values();
+    const std::vector<double> z = recording.find("az")->values();
+    const auto mean = [](const std::vector<double>& values) {
+        double sum = 0.0;
+        for (const double value : values) { sum += value; }
+        return sum / static_cast<double>(values.size());
+    };
+    const double allowed_m_s2 = 4.0 * 0.03 / std::sqrt(20'000.0);
+    EXPECT_NEAR(mean(x), 0.2, allowed_m_s2);
+    EXPECT_NEAR(mean(y), 0.01 * standard_gravity_m_s2, allowed_m_s2);
+    EXPECT_NEAR(mean(z), standard_gravity_m_s2, allowed_m_s2);
+    const auto variance_about = [](const std::vector<double>& values, double about) {
+        double sum = 0.0;
+        for (const double value : values) { sum += (value - about) * (value - about); }
+        return sum / static_cast<double>(values.size());
+    };
+    const double allowed = 4.0 * std::sqrt(2.0 / 20'000.0);
+    EXPECT_NEAR(variance_about(z, standard_gravity_m_s2) / 9e-4, 1.0, allowed);
+    const double amplitude_m_s2 = 0.01 * standard_gravity_m_s2;
+    EXPECT_NEAR(variance_about(x, 0.2) / (9e-4 + 0.5 * amplitude_m_s2 * amplitude_m_s2), 1.0, allowed);
+}
+
+TEST(RecordingSimulator, AnAccelerometerLeavesTheGyroAsItWas) {
+    SensorModel model = with_accelerometer();
+    model.accelerometer->lsb_m_s2 = 0.001;
+    const SimulationRequest request{.samples = 3000, .seed = 3};
+    const Recording with = simulate_recording(model, request);
+    model.accelerometer.reset();
+    const Recording without = simulate_recording(model, request);
+    EXPECT_EQ(without.find("ax"), nullptr);
+    EXPECT_TRUE(with.find("az")->is_counts());
+    for (const char* name : {"gx", "gy", "gz"}) {
+        EXPECT_EQ(with.find(name)->data, without.find(name)->data);
+    }
+    EXPECT_EQ(with.t_s, without.t_s);
+    // The two sensors' noise is not the same.
+    const std::vector<double> g = with.find("gz")->values();
+    const std::vector<double> a = with.find("az")->values();
+    double product = 0.0;
+    double g_square = 0.0;
+    double a_square = 0.0;
+    for (std::size_t i = 1; i < g.size(); ++i) {
+        product += (g[i] - g[i - 1]) * (a[i] - a[i - 1]);
+        g_square += std::pow(g[i] - g[i - 1], 2.0);
+        a_square += std::pow(a[i] - a[i - 1], 2.0);
+    }
+    EXPECT_NEAR(product / std::sqrt(g_square * a_square), 0.0, 4.0 * std::sqrt(1.5 / 3000.0));
+}
+
+TEST(RecordingSimulator, AnEffectThatAnAccelerometerCannotHaveIsNamed) {
+    SensorModel model = with_accelerometer();
+    model.accelerometer->effects[0].params = {{"f_hz", 12.5}, {"amplitude_dps", -1.0}, {"width", 2.0}};
+    model.accelerometer->effects[0].effect = "no such effect";
+    const auto refusal = simulation_refusal(model);
+    ASSERT_TRUE(refusal);
+    EXPECT_EQ(refusal->find("accelerometer: "), 0U);
+}
+
 // 2000 rows with a hole of 300 after the first 500, stamps that are not on a grid, a temperature and a turn.
 std::shared_ptr<const Recording> real_recording() {
     auto recording = std::make_shared<Recording>();

@@ -35,7 +35,8 @@ protected:
             ExitCode::ok)
             << quiet.str();
         usual_ = analyze({path});
-        every_m_ = analyze({path, "--m", "all", "--timing"});
+        every_m_ = analyze({path, "--m", "all", "--timing", "--sensor", "gyro"});
+        gyro_ = analyze({path, "--sensor", "gyro"});
     }
 
     static Answer analyze(std::vector<std::string> arguments) {
@@ -48,10 +49,12 @@ protected:
 
     static Answer usual_;
     static Answer every_m_;
+    static Answer gyro_;
 };
 
 AnalyzeCommand::Answer AnalyzeCommand::usual_;
 AnalyzeCommand::Answer AnalyzeCommand::every_m_;
+AnalyzeCommand::Answer AnalyzeCommand::gyro_;
 
 TEST_F(AnalyzeCommand, AtEveryFactorGivesEveryPointAndTheSameOnesAsAtTheUsualFactors) {
     const json& every = every_m_.report["axes"]["x"]["allan"];
@@ -116,6 +119,74 @@ TEST(AnalyzeFiles, AModelOfAnArrayOfGyrosIsRefused) {
     EXPECT_NE(result.err.find("a model is of one sensor with axes x, y and z"), std::string::npos)
         << result.err;
     EXPECT_FALSE(std::filesystem::exists(model));
+}
+
+// A gyro and an accelerometer of a sensor at rest.
+std::string write_imu_recording(const TemporaryFolder& folder) {
+    std::string path = folder.path("imu.csv");
+    std::ofstream text(path);
+    text << "t_s,gx_dps,ax_g,ay_g,az_g\n";
+    unsigned state = 1;
+    const auto noise = [&] {
+        state = state * 1664525U + 1013904223U;
+        return static_cast<double>((state >> 16U) % 1000) * 1e-6;
+    };
+    for (int i = 0; i < 500; ++i) {
+        text << i / 100.0 << ',' << noise() << ',' << noise() << ',' << noise() << ',' << 1.0 + noise()
+             << '\n';
+    }
+    return path;
+}
+
+TEST(AnalyzeFiles, TheAccelerometerHasAFigureOfItsOwnAndIsInTheModel) {
+    const TemporaryFolder folder;
+    const CommandResult both = run({"analyze", write_imu_recording(folder), "--plot", folder.path("a.png"),
+                                    "--histogram", folder.path("h.png"), "--model", folder.path("m.json")});
+    EXPECT_EQ(both.exit_code, ExitCode::ok) << both.err;
+    for (const char* name : {"a.png", "a.accelerometer.png", "h.png", "h.accelerometer.png"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder.path(name))) << name;
+        EXPECT_NE(both.err.find(folder.path(name)), std::string::npos) << both.err;
+    }
+    const json model = json::parse(std::ifstream(folder.path("m.json")));
+    EXPECT_GT(model["accelerometer"]["axes"]["z"]["N"].get<double>(), 0.0);
+}
+
+TEST(AnalyzeFiles, OneSensorCanBeChosen) {
+    const TemporaryFolder folder;
+    const std::string recording = write_imu_recording(folder);
+    const CommandResult gyro = run({"analyze", recording, "--sensor", "gyro", "--json", "-"});
+    EXPECT_FALSE(json::parse(gyro.out).contains("accelerometer"));
+    const CommandResult accelerometer = run(
+        {"analyze", recording, "--sensor", "accelerometer", "--json", "-", "--plot", folder.path("a.png")});
+    EXPECT_EQ(accelerometer.exit_code, ExitCode::ok) << accelerometer.err;
+    const json report = json::parse(accelerometer.out);
+    EXPECT_TRUE(report["axes"].empty());
+    EXPECT_EQ(report["accelerometer"]["axes"].size(), 3U);
+    EXPECT_TRUE(std::filesystem::exists(folder.path("a.png")));
+    EXPECT_FALSE(std::filesystem::exists(folder.path("a.accelerometer.png")));
+    const CommandResult model =
+        run({"analyze", recording, "--sensor", "accelerometer", "--model", folder.path("m.json")});
+    EXPECT_EQ(model.exit_code, ExitCode::usage);
+    EXPECT_NE(model.err.find("a model is of a gyro"), std::string::npos) << model.err;
+}
+
+TEST(AnalyzeFiles, AnAccelerometerThatIsNotThereIsAnError) {
+    const TemporaryFolder folder;
+    const std::string recording = write_text_recording(folder, "gx_dps,gy_dps");
+    const CommandResult result = run({"analyze", recording, "--sensor", "accelerometer"});
+    EXPECT_EQ(result.exit_code, ExitCode::failed);
+    EXPECT_EQ(result.out, "");
+    EXPECT_NE(result.err.find("run.csv: there is no accelerometer in it"), std::string::npos) << result.err;
+}
+
+TEST_F(AnalyzeCommand, OfACaptureReportsTheAccelerometerAsAsked) {
+    const json& both = usual_.report;
+    ASSERT_TRUE(both.contains("accelerometer"));
+    EXPECT_EQ(both["accelerometer"]["axes"]["z"]["coefficients"]["N"]["unit"], "g/sqrt(Hz)");
+    EXPECT_EQ(both["accelerometer"]["gravity"]["up"], "+z");
+    EXPECT_NEAR(both["accelerometer"]["gravity"]["size"]["value"].get<double>(), 1.0, 0.001);
+    EXPECT_FALSE(gyro_.report.contains("accelerometer"));
+    EXPECT_EQ(gyro_.report["axes"], both["axes"]);
 }
 
 TEST(AnalyzeFiles, TheReportIsShownBeforeAFileThatCannotBeWritten) {

@@ -75,6 +75,59 @@ TEST(ModelJson, WhatIsReadIsWrittenBackWithTheSameNumbers) {
     EXPECT_EQ(Json::parse(format_model(model_of(example()))), example());
 }
 
+Json with_accelerometer() {
+    Json json = example();
+    json["accelerometer"] = Json::parse(R"({
+      "full_scale_g": 2.0, "lsb_g": 6.1e-5, "saturation_g": 1.9999,
+      "axes": {
+        "x": {"N": 3e-4, "B": 2e-5, "K": 1e-6, "bias": 0.02, "Q": 1e-6, "R": -3e-9, "sd": {"N": 0.01}},
+        "y": {"N": 3.1e-4, "B": 2.1e-5, "K": 1.1e-6, "bias": -0.01},
+        "z": {"N": 4e-4, "B": 3e-5, "K": 2e-6, "bias": 0.05}
+      },
+      "M": [[1,0,0.002],[0,1.01,0],[0,0,1]],
+      "sd_rel": {"N": 0.01}, "sd_abs": {"M": 1e-3},
+      "effects": [{"effect": "tone", "axes": ["z"], "params": {"f_hz": 31.0, "amplitude_g": 0.002}}]
+    })");
+    return json;
+}
+
+TEST(ModelJson, AnAccelerometerArrivesInMetresPerSecondSquared) {
+    const SensorModel model = model_of(with_accelerometer());
+    ASSERT_TRUE(model.accelerometer);
+    EXPECT_DOUBLE_EQ(model.accelerometer->axes[0].noise.N_rad_per_sqrt_s, 3e-4 * 9.80665);
+    EXPECT_DOUBLE_EQ(model.accelerometer->axes[1].noise.B_rad_per_s, 2.1e-5 * 9.80665);
+    EXPECT_DOUBLE_EQ(model.accelerometer->axes[2].noise.K_rad_per_s_sqrt_s, 2e-6 * 9.80665);
+    EXPECT_DOUBLE_EQ(model.accelerometer->axes[2].bias_rad_s, 0.05 * 9.80665);
+    EXPECT_DOUBLE_EQ(model.accelerometer->lsb_m_s2, 6.1e-5 * 9.80665);
+    EXPECT_EQ(model.accelerometer->M[0][2], 0.002);
+    EXPECT_EQ(model.accelerometer->effects.at(0).params.at("amplitude_g"), 0.002);
+}
+
+TEST(ModelJson, AnAccelerometerIsWrittenBackWithTheSameNumbersAndUnknownKeys) {
+    Json json = with_accelerometer();
+    EXPECT_EQ(Json::parse(format_model(model_of(json))), json);
+    json["accelerometer"]["lot"] = 7;
+    json["accelerometer"]["axes"]["x"]["colour"] = "red";
+    json["accelerometer"]["unnamed"] = {
+        {{"form", "density"}, {"axes", {"z"}}, {"table", {{"f_hz", {0.0, 50.0}}, {"factor", {1.0, 2.5}}}}}};
+    EXPECT_EQ(Json::parse(format_model(model_of(json))), json);
+}
+
+TEST(ModelJson, OfAnAccelerometerAFewNumbersAreEnoughAndAWrongOneIsNamed) {
+    Json json = example();
+    json["accelerometer"] = {{"axes", {{"x", {{"N", 1e-4}}}, {"y", {{"N", 1e-4}}}, {"z", {{"N", 1e-4}}}}}};
+    const SensorModel model = model_of(json);
+    ASSERT_TRUE(model.accelerometer);
+    EXPECT_EQ(model.accelerometer->M, identity_matrix);
+    EXPECT_EQ(model.accelerometer->full_scale_m_s2, no_range_m_s2);
+    json["accelerometer"]["axes"]["y"]["N"] = "loud";
+    EXPECT_THAT(refusal_of(json.dump()), HasSubstr("accelerometer.axes.y.N"));
+    json["accelerometer"] = 3;
+    EXPECT_THAT(refusal_of(json.dump()), HasSubstr("accelerometer"));
+    json["accelerometer"] = Json::object();
+    EXPECT_THAT(refusal_of(json.dump()), HasSubstr("accelerometer.axes is missing"));
+}
+
 Json with_density(Json form) {
     Json json = example();
     json["unnamed"] = {{{"form", std::move(form)},
