@@ -100,6 +100,7 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     }
     AnalysisOptions analysis;
     analysis.threads = 0;
+    analysis.sensors = format.sensors;
     const AnalysisReport report = analyze(recording, analysis);
     const ExportSource source = export_source(recording, report);
     if (format.needs == ExportFormat::Needs::noise && source.gyro.empty()) {

@@ -25,14 +25,16 @@ Status write_text_of(const ExportSource& source, const std::string& path) {
 }
 
 constexpr std::array formats = {
-    ExportFormat{".csv", "the samples as text", Needs::samples, write_csv},
-    ExportFormat{".csv.gz", "", Needs::samples, write_csv},
-    ExportFormat{".csv.xz", "", Needs::samples, write_csv},
-    ExportFormat{".csv.zst", "", Needs::samples, write_csv},
-    ExportFormat{".mat", "samples and analysis for MATLAB, level 5", Needs::analysis, write_recording_mat},
-    ExportFormat{".yaml", "Kalibr's imu.yaml", Needs::noise, write_text_of<kalibr_yaml>},
-    ExportFormat{".m", "a MATLAB gyroparams object", Needs::noise, write_text_of<gyroparams_script>},
-    ExportFormat{".tuning.json", "process noise for Kalman filters", Needs::noise,
+    ExportFormat{".csv", "the samples as text", Needs::samples, Sensors::all, write_csv},
+    ExportFormat{".csv.gz", "", Needs::samples, Sensors::all, write_csv},
+    ExportFormat{".csv.xz", "", Needs::samples, Sensors::all, write_csv},
+    ExportFormat{".csv.zst", "", Needs::samples, Sensors::all, write_csv},
+    ExportFormat{".mat", "samples and analysis for MATLAB, level 5", Needs::analysis, Sensors::all,
+                 write_recording_mat},
+    ExportFormat{".yaml", "Kalibr's imu.yaml", Needs::noise, Sensors::all, write_text_of<kalibr_yaml>},
+    ExportFormat{".m", "a MATLAB gyroparams object", Needs::noise, Sensors::gyro,
+                 write_text_of<gyroparams_script>},
+    ExportFormat{".tuning.json", "process noise for Kalman filters", Needs::noise, Sensors::gyro,
                  write_text_of<filter_tuning_json>},
 };
 

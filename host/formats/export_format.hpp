@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/noise/sensor_unit.hpp"
 #include "host/base/result.hpp"
 #include "host/formats/export_source.hpp"
 
@@ -20,6 +21,7 @@ struct ExportFormat {
         noise,     // noise coefficients, of an analysis or of a model
     };
     Needs needs;
+    Sensors sensors;  // those of the analysis that it needs
     Status (*write)(const ExportSource& source, const std::string& path);
 };
 

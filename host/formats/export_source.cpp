@@ -1,7 +1,6 @@
 #include "host/formats/export_source.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "host/base/printable.hpp"
 
@@ -24,24 +23,31 @@ std::optional<double> flat_tau_of(const SlopeReading& slopes) {
     return slopes.B ? std::optional(slopes.B->tau_s) : std::nullopt;
 }
 
-// An accelerometer's columns are analysed here, because the report is about rates.
-void add_accelerometer(ExportSource& source, const Recording& recording) {
-    for (const char* axis : axis_names) {
-        const Column* column = recording.find(std::string("a") + axis);
-        if (column == nullptr || column->unit != "m/s^2") { continue; }
-        const std::vector<double> values = column->values();
-        if (std::ranges::any_of(values, [](double x) { return !std::isfinite(x); })) { continue; }
-        AllanOptions options;
-        options.threads = 0;
-        const AllanCurve curve = allan_deviation(*column, recording.segments, recording.rate_hz, options);
-        source.accelerometer.push_back(
-            exported_axis(axis, fit_noise(curve), 0.0, flat_tau_of(read_slopes(curve))));
+// x, y and z, as far as there are.
+std::vector<ExportedAxis> exported_axes(const std::vector<AxisReport>& axes) {
+    std::vector<ExportedAxis> exported;
+    for (const char* name : axis_names) {
+        const auto axis = std::ranges::find(axes, name, &AxisReport::axis);
+        if (axis == axes.end()) { continue; }
+        exported.push_back(exported_axis(name, axis->fit, axis->bias.value, flat_tau_of(axis->slopes)));
     }
+    return exported;
 }
 
 ExportedTerm term_of_model(double value) {
     if (value > 0.0) { return {true, value, std::nullopt}; }
     return {};
+}
+
+std::vector<ExportedAxis> exported_axes(const std::array<AxisModel, 3>& axes) {
+    std::vector<ExportedAxis> exported;
+    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+        const AxisModel& of = axes[axis];
+        exported.push_back({axis_names[axis], term_of_model(of.noise.N_rad_per_sqrt_s),
+                            term_of_model(of.noise.B_rad_per_s), term_of_model(of.noise.K_rad_per_s_sqrt_s),
+                            of.bias_rad_s, std::nullopt});
+    }
+    return exported;
 }
 
 }  // namespace
@@ -58,10 +64,8 @@ ExportSource export_source(const Recording& recording, const AnalysisReport& rep
     source.confidence = report.confidence;
     source.recording = &recording;
     source.report = &report;
+    source.gyro = exported_axes(report.axes);
     for (const char* name : axis_names) {
-        const auto axis = std::ranges::find(report.axes, name, &AxisReport::axis);
-        if (axis == report.axes.end()) { continue; }
-        source.gyro.push_back(exported_axis(name, axis->fit, axis->bias.value, flat_tau_of(axis->slopes)));
         const Column* column = recording.find(std::string("g") + name);
         if (column != nullptr && column->is_counts() && column->unit == "rad/s") {
             constexpr double codes_of_a_side = 32768.0;  // of a 16-bit converter
@@ -69,7 +73,10 @@ ExportSource export_source(const Recording& recording, const AnalysisReport& rep
             source.full_scale_rad_s = codes_of_a_side * column->scale;
         }
     }
-    add_accelerometer(source, recording);
+    if (report.accelerometer && !report.accelerometer->unit.is_counts()) {
+        source.accelerometer = exported_axes(report.accelerometer->axes);
+        for (ExportedAxis& axis : source.accelerometer) { axis.bias = 0.0; }  // gravity hides it
+    }
     return source;
 }
 
@@ -80,12 +87,8 @@ ExportSource export_source(const SensorModel& model, const std::string& name) {
     source.full_scale_rad_s = model.full_scale_rad_s;
     if (model.lsb_rad_s > 0.0) { source.lsb_rad_s = model.lsb_rad_s; }
     source.temperature = model.temperature;
-    for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
-        const AxisModel& of = model.axes[axis];
-        source.gyro.push_back({axis_names[axis], term_of_model(of.noise.N_rad_per_sqrt_s),
-                               term_of_model(of.noise.B_rad_per_s),
-                               term_of_model(of.noise.K_rad_per_s_sqrt_s), of.bias_rad_s, std::nullopt});
-    }
+    source.gyro = exported_axes(model.axes);
+    if (model.accelerometer) { source.accelerometer = exported_axes(model.accelerometer->axes); }
     return source;
 }
 

@@ -168,6 +168,13 @@ std::string write_all(mat_t* file, const ExportSource& source, std::size_t& writ
     write_columns(writer, *source.recording);
     Structure analysis("analysis");
     for (const AxisReport& axis : source.report->axes) { analysis.add(axis.axis.c_str(), axis_of(axis)); }
+    if (source.report->accelerometer) {
+        Structure accelerometer("accelerometer");
+        for (const AxisReport& axis : source.report->accelerometer->axes) {
+            accelerometer.add(axis.axis.c_str(), axis_of(axis));
+        }
+        analysis.add("accelerometer", accelerometer.take());
+    }
     writer.write(analysis.take());
     written = writer.written();
     return writer.failure();

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <random>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <matio.h>
@@ -49,6 +50,24 @@ Recording made_recording() {
     return std::move(recording).value();
 }
 
+// A gyro and an accelerometer with random walk, a minute at rest.
+Recording made_imu_recording() {
+    std::string text = "t_s,gx_dps,ax_g,ay_g,az_g\n";
+    std::mt19937_64 generator(12);
+    std::normal_distribution<double> normal;
+    double walk_g = 0.0;
+    for (int i = 0; i < 6000; ++i) {
+        walk_g += 1e-4 * normal(generator);
+        text += std::to_string(i / 100.0) + "," + std::to_string(normal(generator)) + "," +
+                std::to_string(1e-3 * normal(generator)) + "," +
+                std::to_string(2e-3 * normal(generator) + walk_g) + "," +
+                std::to_string(1.0 + 1e-3 * normal(generator)) + "\n";
+    }
+    auto recording = parse_recording_csv(text, "imu.csv");
+    EXPECT_TRUE(recording.ok());
+    return std::move(recording).value();
+}
+
 std::string temporary(const std::string& name) {
     return (std::filesystem::path(testing::TempDir()) / ("gyrolog_export_" + name)).string();
 }
@@ -71,6 +90,29 @@ TEST(KalibrYaml, LeavesOutARandomWalkThatIsNotIdentified) {
     const std::string yaml = kalibr_yaml(source);
     EXPECT_THAT(yaml, Not(HasSubstr("\ngyroscope_random_walk:")));
     EXPECT_THAT(yaml, HasSubstr("# gyroscope_random_walk: not identified, at most 4e-06 (at 68.3 %)"));
+}
+
+TEST(KalibrYaml, HasTheNumbersOfTheAnalysisForTheAccelerometer) {
+    const Recording recording = made_imu_recording();
+    const AnalysisReport report = analyze(recording);
+    ASSERT_TRUE(report.accelerometer);
+    const NoiseFit& noisiest = report.accelerometer->axes.at(1).fit;
+    ASSERT_EQ(noisiest.method, FitMethod::likelihood);
+    ASSERT_EQ(noisiest[NoiseTerm::K].state, FittedCoefficient::State::identified);
+    const std::string yaml = kalibr_yaml(export_source(recording, report));
+    EXPECT_THAT(yaml, HasSubstr(fmt::format("\naccelerometer_noise_density: {:.9g}\n",
+                                            noisiest[NoiseTerm::N].value)));
+    EXPECT_THAT(
+        yaml, HasSubstr(fmt::format("\naccelerometer_random_walk: {:.9g}\n", noisiest[NoiseTerm::K].value)));
+    // Within four of its standard deviations of the truth.
+    EXPECT_NEAR(noisiest[NoiseTerm::N].value, 2e-4 * 9.80665, 4.0 * noisiest[NoiseTerm::N].sd);
+}
+
+TEST(KalibrYaml, OfAModelHasItsAccelerometer) {
+    SensorModel model;
+    for (AxisModel& axis : model.accelerometer.emplace().axes) { axis.noise.N_rad_per_sqrt_s = 2e-3; }
+    EXPECT_THAT(kalibr_yaml(export_source(model, "imu.json")),
+                HasSubstr("\naccelerometer_noise_density: 0.002\n"));
 }
 
 TEST(GyroparamsScript, NeverTakesOneCoefficientForAnother) {
