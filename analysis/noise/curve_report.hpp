@@ -13,13 +13,13 @@ namespace gyrolog {
 
 struct PrintedCurve {
     std::string name;  // "x", "sensor_x"
-    AllanCurve curve;  // rad/s, by rising tau; without m, degrees of freedom and terms
+    AllanCurve curve;  // rad/s or m/s^2, by rising tau; without m, degrees of freedom and terms
 };
 
 // Curves that were read from one table.
 struct PrintedCurves {
     std::string name;  // of the file
-    RateUnit unit;     // in which to show them
+    SensorUnit unit;   // in which to show them
     std::vector<PrintedCurve> curves;
     std::vector<std::string> warnings;
 };
@@ -39,7 +39,7 @@ struct NamedCurveGap {
 
 struct CurveReport {
     std::string name;
-    RateUnit unit;
+    SensorUnit unit;
     CurveFitOptions options;
     std::vector<PrintedCurveReport> curves;
     std::vector<NamedCurveGap> gaps;

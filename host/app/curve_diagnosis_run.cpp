@@ -118,6 +118,10 @@ struct Outcome {
 
 Result<Outcome> diagnose(const CurveDiagnosisRequest& request) {
     GYROLOG_TRY(PrintedCurves curves, read_curve_csv(request.curve_path));
+    if (curves.unit.sensor != SensorKind::gyro) {
+        return Error{ErrorCode::unsupported,
+                     "'" + request.curve_path + "' has curves of an accelerometer; a diagnosis is of a gyro"};
+    }
     CurvesAgainst against(std::move(curves));
     if (request.model_path.empty()) {
         GYROLOG_CHECK(against.own_simulation());

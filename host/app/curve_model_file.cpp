@@ -34,6 +34,12 @@ void put_axis(const PrintedCurveReport& curve, std::size_t axis, ModelOfCurves& 
 }  // namespace
 
 Result<ModelOfCurves> model_of_curves(const CurveReport& report, std::optional<double> rate_hz) {
+    if (report.unit.sensor == SensorKind::accelerometer) {
+        return Error{
+            ErrorCode::invalid_argument,
+            "a model is of a gyro, with its accelerometer beside it: curves of an accelerometer alone "
+            "make none"};
+    }
     ModelOfCurves result;
     double shortest_s = 0.0;
     std::string absent;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -19,15 +20,26 @@ constexpr double largest_read = 1e15;
 
 struct CurveUnit {
     std::string_view ending;
-    double rad_per_s;
+    double si;  // rad/s, or m/s^2
+    SensorKind sensor = SensorKind::gyro;
+    bool is_si = false;
 };
 
 constexpr std::array curve_units = {
     CurveUnit{"_dps", rad_per_deg},
     CurveUnit{"_deg_per_s", rad_per_deg},
     CurveUnit{"_deg_per_h", rad_per_deg / 3600.0},
-    CurveUnit{"_rad_s", 1.0},
+    CurveUnit{"_rad_s", 1.0, SensorKind::gyro, true},
+    CurveUnit{"_g", standard_gravity_m_s2, SensorKind::accelerometer},
+    CurveUnit{"_mg", 1e-3 * standard_gravity_m_s2, SensorKind::accelerometer},
+    CurveUnit{"_ug", 1e-6 * standard_gravity_m_s2, SensorKind::accelerometer},
+    CurveUnit{"_m_s2", 1.0, SensorKind::accelerometer, true},
 };
+
+SensorUnit shown_unit(const CurveUnit& unit) {
+    if (unit.sensor == SensorKind::gyro) { return unit.is_si ? SensorUnit::rad_per_s() : SensorUnit::dps(); }
+    return unit.is_si ? SensorUnit::m_per_s2() : SensorUnit::g();
+}
 
 struct Deviation {
     std::string name;
@@ -44,9 +56,10 @@ std::optional<Deviation> deviation_of(std::string_view header) {
 }
 
 Status judge_header(std::vector<CsvTableColumn>& columns) {
-    constexpr const char* example = "such as tau_s,x_dps,y_dps (or _deg_per_h, _rad_s)";
+    constexpr const char* example = "such as tau_s,x_dps,y_dps (or _deg_per_h, _rad_s; _g, _m_s2)";
     bool tau = false;
     std::vector<std::string> names;
+    std::set<SensorKind> sensors;
     for (CsvTableColumn& column : columns) {
         const auto deviation = deviation_of(column.header);
         if (column.header == "tau_s") {
@@ -58,6 +71,7 @@ Status judge_header(std::vector<CsvTableColumn>& columns) {
             return malformed("line 1: curve " + in_quotes(deviation->name) +
                              " appears twice, in different units");
         } else {
+            sensors.insert(deviation->unit->sensor);
             names.push_back(deviation->name);
         }
         column.used = true;
@@ -71,16 +85,19 @@ Status judge_header(std::vector<CsvTableColumn>& columns) {
         return malformed(
             fmt::format("line 1: no deviation; it must name the columns with their units, {}", example));
     }
+    if (sensors.size() > 1) {
+        return malformed("line 1: curves of a gyro and of an accelerometer; give each a file");
+    }
     return {};
 }
 
-AllanCurve curve_of(const std::vector<double>& tau_s, const std::vector<double>& values, double rad_per_s) {
+AllanCurve curve_of(const std::vector<double>& tau_s, const std::vector<double>& values, double si) {
     AllanCurve curve;
     for (std::size_t i = 0; i < tau_s.size(); ++i) {
         if (std::isnan(values[i])) { continue; }
         AllanPoint point;
         point.tau_s = tau_s[i];
-        point.deviation = values[i] * rad_per_s;
+        point.deviation = values[i] * si;
         point.lo = point.deviation;
         point.hi = point.deviation;
         curve.points.push_back(point);
@@ -98,11 +115,8 @@ Result<PrintedCurves> curves_of(std::vector<CsvTableColumn>& columns, std::strin
         if (!column.used) { ignored += (ignored.empty() ? "" : ", ") + column.header; }
         const auto deviation = deviation_of(column.header);
         if (!deviation) { continue; }
-        if (curves.curves.empty()) {
-            const bool radians = deviation->unit->rad_per_s == 1.0;
-            curves.unit = radians ? RateUnit{"rad/s", 1.0} : RateUnit{"dps", deg_per_rad};
-        }
-        AllanCurve curve = curve_of(tau->values, column.values, deviation->unit->rad_per_s);
+        if (curves.curves.empty()) { curves.unit = shown_unit(*deviation->unit); }
+        AllanCurve curve = curve_of(tau->values, column.values, deviation->unit->si);
         if (curve.points.size() < curve_fit_points_min) {
             return malformed(fmt::format("column {}: {} points; a model needs {} at least",
                                          in_quotes(column.header), curve.points.size(),

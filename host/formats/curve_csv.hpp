@@ -2,7 +2,8 @@
 // averaging time.
 //
 //   tau_s           averaging time, seconds (needed)
-//   NAME_UNIT       a deviation; UNIT is dps, deg_per_s, deg_per_h or rad_s: x_deg_per_h, sensor_x_dps
+//   NAME_UNIT       a deviation; UNIT is dps, deg_per_s, deg_per_h or rad_s: x_deg_per_h, sensor_x_dps; of an
+//                   accelerometer g, mg, ug or m_s2, and then of all columns
 //
 // Columns may come in any order; unknown ones are ignored, with one warning. An empty field or NaN is a point
 // that the curve does not have.

@@ -9,7 +9,7 @@
 namespace gyrolog {
 namespace {
 
-Json term_json(const CurveTerm& term, const RateUnit& unit) {
+Json term_json(const CurveTerm& term, const SensorUnit& unit) {
     Json json;
     json["term"] = name_of(term.kind);
     json["value"] = term.size * unit.per_column_unit;
@@ -46,7 +46,7 @@ const char* name_of(CurveFitStep::Change change) {
     return "";
 }
 
-Json ladder_json(const CurveModelFit& fit, const RateUnit& unit) {
+Json ladder_json(const CurveModelFit& fit, const SensorUnit& unit) {
     Json ladder = Json::array();
     for (const CurveFitStep& step : fit.steps) {
         Json json;
@@ -61,7 +61,7 @@ Json ladder_json(const CurveModelFit& fit, const RateUnit& unit) {
     return ladder;
 }
 
-Json fit_json(const CurveModelFit& fit, const RateUnit& unit) {
+Json fit_json(const CurveModelFit& fit, const SensorUnit& unit) {
     Json json;
     put_residual(json, fit.residual);
     json["smooth_sd_db"] = fit.smooth_sd_db;
@@ -76,7 +76,7 @@ Json fit_json(const CurveModelFit& fit, const RateUnit& unit) {
     return json;
 }
 
-Json curve_axis_json(const PrintedCurveReport& curve, const RateUnit& unit) {
+Json curve_axis_json(const PrintedCurveReport& curve, const SensorUnit& unit) {
     Json json;
     json["allan"] = Json::array();
     for (const AllanPoint& point : curve.curve.points) {
@@ -92,7 +92,7 @@ Json curve_axis_json(const PrintedCurveReport& curve, const RateUnit& unit) {
     return json;
 }
 
-Json gap_json(const NamedCurveGap& named, const RateUnit& unit) {
+Json gap_json(const NamedCurveGap& named, const SensorUnit& unit) {
     Json json;
     json["sensor"] = named.sensor;
     json["simulation"] = named.simulation;
@@ -128,8 +128,11 @@ std::string curve_json(const CurveReport& report) {
     json["curve"] = {{"name", report.name}, {"reading_error", report.options.reading_error}};
     json["confidence"] = report.options.confidence;
     json["axes"] = Json::object();
+    const bool is_gyro = report.unit.sensor == SensorKind::gyro;
+    if (!is_gyro) { json["accelerometer"]["axes"] = Json::object(); }
+    Json& axes = is_gyro ? json["axes"] : json["accelerometer"]["axes"];
     for (const PrintedCurveReport& curve : report.curves) {
-        json["axes"][curve.name] = curve_axis_json(curve, report.unit);
+        axes[curve.name] = curve_axis_json(curve, report.unit);
     }
     if (!report.gaps.empty()) {
         json["gaps"] = Json::array();

@@ -17,7 +17,7 @@ std::string residual_text(const CurveResidual& residual) {
                        duration_text(residual.worst_tau_s));
 }
 
-std::string step_text(const CurveFitStep& step, const RateUnit& unit) {
+std::string step_text(const CurveFitStep& step, const SensorUnit& unit) {
     if (step.change == CurveFitStep::Change::removed) { return fmt::format("- {}", name_of(step.term)); }
     if (step.change == CurveFitStep::Change::added) { return "+ " + term_text(step.terms.back(), unit); }
     std::string text;
@@ -27,7 +27,7 @@ std::string step_text(const CurveFitStep& step, const RateUnit& unit) {
     return text;
 }
 
-std::string ladder_text(const PrintedCurveReport& curve, const RateUnit& unit) {
+std::string ladder_text(const PrintedCurveReport& curve, const SensorUnit& unit) {
     const auto& points = curve.curve.points;
     std::string text = fmt::format("\n{}: {} points from {} to {}\n", curve.name, points.size(),
                                    duration_text(points.front().tau_s), duration_text(points.back().tau_s));
@@ -43,7 +43,7 @@ std::string ladder_text(const PrintedCurveReport& curve, const RateUnit& unit) {
     return text + fmt::format("  not called for (fall of BIC, of 6 needed):\n    {}\n", rejected);
 }
 
-std::string verdict_text(const CurveGapTerm& term, const RateUnit& unit) {
+std::string verdict_text(const CurveGapTerm& term, const SensorUnit& unit) {
     using Verdict = CurveGapTerm::Verdict;
     switch (term.verdict) {
         case Verdict::lacking:
@@ -62,7 +62,7 @@ std::string verdict_text(const CurveGapTerm& term, const RateUnit& unit) {
     return {};
 }
 
-std::string gap_text(const NamedCurveGap& named, const RateUnit& unit) {
+std::string gap_text(const NamedCurveGap& named, const SensorUnit& unit) {
     const CurveGap& gap = named.gap;
     std::string text =
         fmt::format("\n{} over {}: {}\n", named.sensor, named.simulation, residual_text(gap.residual));
@@ -84,6 +84,8 @@ std::string gap_text(const NamedCurveGap& named, const RateUnit& unit) {
 }  // namespace
 
 std::string curve_text(const CurveReport& report) {
+    const bool is_gyro = report.unit.sensor == SensorKind::gyro;
+    const SensorUnit unit = is_gyro ? report.unit : SensorUnit::micro_g();
     std::string text = fmt::format("{}: {} Allan curve{} without samples; reading error taken as {:.3g} %\n",
                                    report.name, report.curves.size(), report.curves.size() == 1 ? "" : "s",
                                    report.options.reading_error * 100.0);
@@ -91,11 +93,11 @@ std::string curve_text(const CurveReport& report) {
     std::vector<FitOfColumn> fits;
     std::vector<std::string> heads;
     for (const PrintedCurveReport& curve : report.curves) {
-        text += ladder_text(curve, report.unit);
+        text += ladder_text(curve, unit);
         fits.push_back({&curve.fit.noise, &curve.slopes});
         heads.push_back(curve.name);
     }
-    text += '\n' + text_table(heads, noise_rows(fits, report.unit));
+    text += '\n' + text_table(heads, noise_rows(fits, unit));
     text += fmt::format(
         "\n  ± one standard deviation of reading the curve and of what the model leaves over: the scatter of "
         "the\n"
@@ -103,9 +105,9 @@ std::string curve_text(const CurveReport& report) {
         "curve,\n"
         "  upper limit at {:.3g} %\n",
         report.options.confidence * 100.0);
-    const std::vector<TextRow> si = si_rows(fits, report.unit);
+    const std::vector<TextRow> si = si_rows(fits, unit);
     if (!si.empty()) { text += '\n' + text_table(heads, si); }
-    for (const NamedCurveGap& gap : report.gaps) { text += gap_text(gap, report.unit); }
+    for (const NamedCurveGap& gap : report.gaps) { text += gap_text(gap, unit); }
     return text;
 }
 

@@ -49,6 +49,19 @@ TEST(CurveCsv, TheSameDeviationInEveryUnitIsTheSameCurve) {
     EXPECT_EQ(curves.unit.name, "dps");
 }
 
+TEST(CurveCsv, AnAccelerometersDeviationInEveryUnitIsTheSameCurve) {
+    const PrintedCurves curves = parsed(
+        "tau_s,a_g,b_mg,c_ug,d_m_s2\n1,0.004,4,4000,0.0392266\n2,0.002,2,2000,0.0196133\n"
+        "4,0.001,1,1000,0.00980665\n8,0.0005,0.5,500,0.004903325\n");
+    ASSERT_EQ(curves.curves.size(), 4U);
+    for (const PrintedCurve& curve : curves.curves) {
+        EXPECT_NEAR(curve.curve.points.at(2).deviation, 0.00980665, 1e-15) << curve.name;
+    }
+    EXPECT_EQ(curves.unit.name, "g");
+    EXPECT_EQ(curves.unit.sensor, SensorKind::accelerometer);
+    EXPECT_THAT(error_of("tau_s,x_dps,y_ug\n1,1,1\n"), HasSubstr("a gyro and of an accelerometer"));
+}
+
 TEST(CurveCsv, PointsAreSortedAndHolesLeftOut) {
     const PrintedCurves curves = parsed("x_rad_s,note,tau_s\n4,?,4\n1,,1\n,,3\nnan,,5\n2,,2\n6,,6\n");
     ASSERT_EQ(curves.curves.size(), 1U);
