@@ -237,14 +237,20 @@ std::optional<AxisMean> mean_of(const AccelerometerReport& report, const std::st
     return AxisMean{found->bias, found->fit.mean_dof};
 }
 
-void warn_of_gravity(const AccelerometerReport& report, const AccelerometerReport::UnitGravity& unit,
-                     std::vector<std::string>& warnings) {
+void warn_of_gravity(const AccelerometerReport& report, std::vector<std::string>& warnings) {
     constexpr double allowed = 0.2;  // three axes of the worst kind: 80 mg and 3 % (PS-MPU-9250A-01, table 2)
-    const double size = unit.gravity.size.value / standard_gravity_m_s2;
-    if (report.unit.is_counts() || std::abs(size - 1.0) < allowed) { return; }
-    warnings.push_back("accelerometer" + (unit.unit.empty() ? unit.unit : " " + unit.unit) +
-                       ": the mean over the record is " + rounded(size) +
-                       " g, which is not gravity: it moved or was turned, or its scale is wrong");
+    if (report.unit.is_counts()) { return; }
+    std::string units;
+    for (const AccelerometerReport::UnitGravity& of : report.gravity) {
+        const double size = of.gravity.size.value / standard_gravity_m_s2;
+        if (std::abs(size - 1.0) < allowed) { continue; }
+        units += (units.empty() ? " " : ", ") + (of.unit.empty() ? of.unit : of.unit + " ") + "(" +
+                 rounded(size) + " g)";
+    }
+    if (units.empty()) { return; }
+    warnings.push_back("accelerometer" + units +
+                       ": the mean over the record is not gravity: it moved or was turned, or its scale is "
+                       "wrong");
 }
 
 void find_gravity(AccelerometerReport& report, std::vector<std::string>& warnings) {
@@ -254,10 +260,9 @@ void find_gravity(AccelerometerReport& report, std::vector<std::string>& warning
         const auto x = mean_of(report, axis.axis);
         const auto y = mean_of(report, "y" + unit);
         const auto z = mean_of(report, "z" + unit);
-        if (!y || !z) { continue; }
-        report.gravity.push_back({unit, gravity_of({*x, *y, *z})});
-        warn_of_gravity(report, report.gravity.back(), warnings);
+        if (y && z) { report.gravity.push_back({unit, gravity_of({*x, *y, *z})}); }
     }
+    warn_of_gravity(report, warnings);
 }
 
 const char* sensors_text(Sensors sensors) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/numerics/square.hpp"
 
 namespace gyrolog {
@@ -72,6 +73,7 @@ Gravity gravity_of(const std::array<AxisMean, 3>& axes) {
     std::array<double, 3> weights = across(gravity.direction, gravity.up_axis, axes);
     for (double& weight : weights) { weight /= size; }
     gravity.tilt_rad = with_uncertainty_of(tilt_rad, axes, weights);
+    gravity.tilt_rad.expanded_uncertainty = std::min(gravity.tilt_rad.expanded_uncertainty, pi);
     return gravity;
 }
 

@@ -39,8 +39,9 @@ struct AxisMean {
 // With f the vector of means, u_i their standard uncertainties and independent axes (JCGM 100:2008, 5.1.2):
 //   u^2(|f|) = sum_i (f_i / |f|)^2 u_i^2
 //   u^2(tilt) = sum_i (e_i / |f|)^2 u_i^2,  e: the direction across f in which the tilt grows
-// For a tilt of 0, which has no such direction, e is the axis across f with the largest u_i. Coverage factors
-// are by the effective degrees of freedom (Welch-Satterthwaite, JCGM 100:2008, G.4.1).
+// where a tilt is known to half a turn at worst. For a tilt of 0, which has no such direction, e is the axis
+// across f with the largest u_i. Coverage factors are by the effective degrees of freedom
+// (Welch-Satterthwaite, JCGM 100:2008, G.4.1).
 Gravity gravity_of(const std::array<AxisMean, 3>& axes);
 
 }  // namespace gyrolog

@@ -114,7 +114,7 @@ TEST(Analyze, AnAccelerometersWarningsNameIt) {
                 Contains(HasSubstr("accelerometer axis x: all samples are equal")));
     recording.columns[4].data = std::vector<double>(500, 5.0);
     EXPECT_THAT(analyze(recording).warnings,
-                Contains(HasSubstr("accelerometer: the mean over the record is 0.51 g")));
+                Contains(HasSubstr("accelerometer (0.51 g): the mean over the record is not gravity")));
 }
 
 TEST(Analyze, RowsWithoutTheAccelerometerAreMissingToItAlone) {

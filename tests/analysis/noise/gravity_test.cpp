@@ -39,6 +39,11 @@ TEST(Gravity, TiltIsTheAngleToTheAxisNearestToTheVertical) {
     EXPECT_NEAR(gravity.direction[1], 0.6 * std::sin(tilt_rad), 1e-12);
 }
 
+TEST(Gravity, ATiltIsKnownToHalfATurnAtWorst) {
+    const Gravity gravity = gravity_of({mean_of(0.1, 9.0), mean_of(0.2, 9.0), mean_of(0.3, 9.0)});
+    EXPECT_EQ(gravity.tilt_rad.expanded_uncertainty, pi);
+}
+
 TEST(Gravity, OfAFreeFallIsNothing) {
     const Gravity gravity = gravity_of({mean_of(0.0, 0.1), mean_of(0.0, 0.1), mean_of(0.0, 0.1)});
     EXPECT_EQ(gravity.size.value, 0.0);
