@@ -31,6 +31,7 @@ AllanTrace trace_of(const PrintedCurveReport& curve) {
 Status write_curve_plot(const CurveReport& report, const std::string& path) {
     AllanFigure figure;
     if (report.unit.sensor == SensorKind::accelerometer) {
+        figure.title += " of the accelerometer";
         figure.unit = DeviationUnit::m_per_s2_as_micro_g();
     }
     figure.source = report.name;
