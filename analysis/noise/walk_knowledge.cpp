@@ -7,15 +7,19 @@
 #include "analysis/allan/difference_covariance.hpp"
 
 namespace gyrolog {
+namespace {
 
-std::optional<double> walk_relative_sd(const NoiseCoefficients& noise, double rate_hz, double length_s) {
+constexpr double longest_s = 3.2e11;  // ten thousand years
+
+// Of N^2, B^2 and K^2, in units of N^2, N W and W^2, W being a walk of about the record's size: the matrix is
+// then well scaled whatever the units.
+Eigen::Matrix3d covariance_of_squares(const NoiseCoefficients& noise, double W, double rate_hz,
+                                      double length_s) {
     const double N = noise.N_rad_per_sqrt_s;
     const double B = noise.B_rad_per_s;
     const double K = noise.K_rad_per_s_sqrt_s;
-    if (!(K > 0.0) || !(N > 0.0) || !(rate_hz * length_s >= 10.0)) { return std::nullopt; }
     const Eigen::Vector3d squares(N * N, B * B, K * K);
-    // Relative to white noise and to the walk: the matrix is then well scaled whatever the units.
-    const Eigen::Vector3d unit(N * N, N * K, K * K);
+    const Eigen::Vector3d unit(N * N, N * W, W * W);
     constexpr double step = 1.02;
     const double half = std::sqrt(step);
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -27,16 +31,23 @@ std::optional<double> walk_relative_sd(const NoiseCoefficients& noise, double ra
         const Eigen::Vector3d relative = spectra.cwiseProduct(unit) / spectra.dot(squares);
         information += length_s * f_hz * (half - 1.0 / half) * relative * relative.transpose();
     }
-    const double variance = information.inverse()(2, 2);
+    return information.inverse();
+}
+
+bool has_bound(const NoiseCoefficients& noise, double rate_hz, double length_s) {
+    return noise.N_rad_per_sqrt_s > 0.0 && rate_hz * length_s >= 10.0;
+}
+
+std::optional<double> root_of_half(double variance) {
     if (!(variance > 0.0) || !std::isfinite(variance)) { return std::nullopt; }
     return std::sqrt(variance) / 2.0;
 }
 
-std::optional<double> length_to_know_walk_s(const NoiseCoefficients& noise, double rate_hz,
-                                            double relative_sd) {
-    constexpr double longest_s = 3.2e11;
+// Of the relative standard deviation at a length, which falls with it.
+template <typename RelativeSd>
+std::optional<double> length_to_know_s(double rate_hz, double relative_sd, const RelativeSd& sd_at) {
     const auto known = [&](double length_s) {
-        const auto sd = walk_relative_sd(noise, rate_hz, length_s);
+        const std::optional<double> sd = sd_at(length_s);
         return sd && *sd <= relative_sd;
     };
     if (!(rate_hz > 0.0) || !known(longest_s)) { return std::nullopt; }
@@ -47,6 +58,34 @@ std::optional<double> length_to_know_walk_s(const NoiseCoefficients& noise, doub
         (known(middle_s) ? above_s : below_s) = middle_s;
     }
     return above_s;
+}
+
+}  // namespace
+
+std::optional<double> walk_relative_sd(const NoiseCoefficients& noise, double rate_hz, double length_s) {
+    const double K = noise.K_rad_per_s_sqrt_s;
+    if (!(K > 0.0) || !has_bound(noise, rate_hz, length_s)) { return std::nullopt; }
+    return root_of_half(covariance_of_squares(noise, K, rate_hz, length_s)(2, 2));
+}
+
+std::optional<double> flicker_relative_sd(const NoiseCoefficients& noise, double rate_hz, double length_s) {
+    const double N = noise.N_rad_per_sqrt_s;
+    const double B = noise.B_rad_per_s;
+    if (!(B > 0.0) || !has_bound(noise, rate_hz, length_s)) { return std::nullopt; }
+    const double W = B * B / N;
+    return root_of_half(covariance_of_squares(noise, W, rate_hz, length_s)(1, 1));
+}
+
+std::optional<double> length_to_know_walk_s(const NoiseCoefficients& noise, double rate_hz,
+                                            double relative_sd) {
+    return length_to_know_s(rate_hz, relative_sd,
+                            [&](double length_s) { return walk_relative_sd(noise, rate_hz, length_s); });
+}
+
+std::optional<double> length_to_know_flicker_s(const NoiseCoefficients& noise, double rate_hz,
+                                               double relative_sd) {
+    return length_to_know_s(rate_hz, relative_sd,
+                            [&](double length_s) { return flicker_relative_sd(noise, rate_hz, length_s); });
 }
 
 std::optional<double> walk_seen_from(const NoiseCoefficients& noise, double rate_hz, double length_s) {

@@ -1,4 +1,5 @@
-// How well a record can tell the rate random walk K, and how long it must be to tell it as well as wanted.
+// How well a record can tell the rate random walk K and the bias instability B, and how long it must be to
+// tell them as well as wanted.
 //
 // The bound of Cramer and Rao with N^2, B^2 and K^2 all unknown, by Whittle's approximation of the
 // information in a stationary record of length T (P. Whittle, Ark. Mat. 2, 1953; the spectra are those of
@@ -24,6 +25,11 @@ std::optional<double> walk_relative_sd(const NoiseCoefficients& noise, double ra
 // suffice.
 std::optional<double> length_to_know_walk_s(const NoiseCoefficients& noise, double rate_hz,
                                             double relative_sd);
+
+// The same of B, beside a walk that is not known, or not there: sd(B) / B.
+std::optional<double> flicker_relative_sd(const NoiseCoefficients& noise, double rate_hz, double length_s);
+std::optional<double> length_to_know_flicker_s(const NoiseCoefficients& noise, double rate_hz,
+                                               double relative_sd);
 
 // The walk that a record of this length would have shown, but for one in twenty: K told to 22 % (simulated:
 // walk_knowledge_test.cpp), beside N and B as they are. What goes unseen by the power laws is most likely

@@ -55,6 +55,22 @@ TEST(WalkKnowledge, GrowsWithTheSquareRootOfTheLength) {
     EXPECT_NEAR(sd(length_s), 0.05, 1e-4);
 }
 
+// Flicker that is all there is: n samples tell its square to sqrt(2 / n) at best. That the white noise and
+// the walk are not known costs a factor.
+TEST(WalkKnowledge, OfFlickerGrowsWithTheSquareRootOfTheLength) {
+    const NoiseCoefficients flicker{0.0, 1e-3, 0.01, 0.0, 0.0};
+    const auto sd = [&](double length_s) { return flicker_relative_sd(flicker, rate_hz, length_s).value(); };
+    const double at_best = 1.0 / std::sqrt(2.0 * rate_hz * 1e5);
+    EXPECT_GT(sd(1e5), at_best);
+    EXPECT_LT(sd(1e5), 4.0 * at_best);
+    const auto length_s = length_to_know_flicker_s(flicker, rate_hz, 0.05).value();
+    EXPECT_NEAR(sd(length_s), 0.05, 1e-4);
+    // A unit a million times as large.
+    const NoiseCoefficients tiny{0.0, 1e-9, 1e-8, 0.0, 0.0};
+    EXPECT_NEAR(flicker_relative_sd(tiny, rate_hz, 1e5).value() / sd(1e5), 1.0, 1e-6);
+    EXPECT_FALSE(flicker_relative_sd(white_and_walk, rate_hz, 1e5).has_value());
+}
+
 TEST(WalkKnowledge, DependsOnNoUnit) {
     const NoiseCoefficients tiny{0.0, 0.01e-4, 0.002e-4, 1e-8, 0.0};
     const NoiseCoefficients usual{0.0, 0.01, 0.002, 1e-4, 0.0};
