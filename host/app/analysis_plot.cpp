@@ -95,7 +95,14 @@ DeviationUnit deviation_unit(const DrawnSensor& drawn) {
                                             : DeviationUnit::m_per_s2_as_micro_g();
 }
 
-AllanFigure figure_of(const AnalysisReport& report, SensorKind sensor) {
+Status write_png(const Rendering& rendering, const std::string& path) {
+    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
+    return write_file(path, rendering.png);
+}
+
+}  // namespace
+
+AllanFigure analysis_figure(const AnalysisReport& report, SensorKind sensor) {
     const DrawnSensor drawn = drawn_sensor(report, sensor);
     AllanFigure figure;
     const DrawnDeviation deviation = drawn_deviation(report.kind);
@@ -110,7 +117,7 @@ AllanFigure figure_of(const AnalysisReport& report, SensorKind sensor) {
     return figure;
 }
 
-HistogramFigure histograms_of(const AnalysisReport& report, const Recording& recording, SensorKind sensor) {
+HistogramFigure samples_figure(const AnalysisReport& report, const Recording& recording, SensorKind sensor) {
     const DrawnSensor drawn = drawn_sensor(report, sensor);
     const bool is_gyro = sensor == SensorKind::gyro;
     HistogramFigure figure;
@@ -132,13 +139,6 @@ HistogramFigure histograms_of(const AnalysisReport& report, const Recording& rec
     return figure;
 }
 
-Status write_png(const Rendering& rendering, const std::string& path) {
-    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
-    return write_file(path, rendering.png);
-}
-
-}  // namespace
-
 std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, NoiseTerm term) {
     const FittedCoefficient& coefficient = fit[term];
     if (coefficient.state != FittedCoefficient::State::identified) { return std::nullopt; }
@@ -146,12 +146,12 @@ std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, Noise
 }
 
 Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const std::string& path) {
-    return write_png(render(figure_of(report, sensor)), path);
+    return write_png(render(analysis_figure(report, sensor)), path);
 }
 
 Status write_histogram_plot(const AnalysisReport& report, const Recording& recording, SensorKind sensor,
                             const std::string& path) {
-    return write_png(render(histograms_of(report, recording, sensor)), path);
+    return write_png(render(samples_figure(report, recording, sensor)), path);
 }
 
 }  // namespace gyrolog

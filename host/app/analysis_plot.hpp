@@ -6,11 +6,17 @@
 
 #include "analysis/noise/analyze.hpp"
 #include "analysis/plot/allan_figure.hpp"
+#include "analysis/plot/histogram_figure.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
 
-// Draws the curves and spectra of one sensor of the report, which has it, into a PNG file.
+// The curves and spectra of one sensor of the report, which has it, and how the samples of its axes lie
+// around their bias, an accelerometer's around their mean.
+AllanFigure analysis_figure(const AnalysisReport& report, SensorKind sensor);
+HistogramFigure samples_figure(const AnalysisReport& report, const Recording& recording, SensorKind sensor);
+
+// Draws these curves and spectra into a PNG file.
 Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const std::string& path);
 
 // Draws how the samples of its axes lie around their bias, an accelerometer's around their mean.

@@ -334,13 +334,13 @@ std::string missing_text(const LinkReport& link) {
                : counted(link.samples.missing, "sample").append(" in ").append(counted(dropouts, "dropout"));
 }
 
-std::string info_text(const std::string& path, const LoadedCapture& capture) {
+std::vector<LabelledLine> info_lines(const std::string& path, const LoadedCapture& capture) {
     const LinkReport link = capture.decoder->report();
     const auto& hello = capture.decoder->hello();
     const auto& config = capture.decoder->config();
-    std::string text = path + "\n";
+    std::vector<LabelledLine> lines;
     const auto line = [&](const char* what, const std::string& value) {
-        if (!value.empty()) { text += fmt::format("  {:<10} {}\n", what, value); }
+        if (!value.empty()) { lines.push_back({what, value}); }
     };
     if (capture.metadata) {
         const SourceIdentity& source = capture.metadata->source;
@@ -377,6 +377,14 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
     line("file",
          fmt::format("{}, {}", format_bytes(capture.file.blocks.bytes_total), end_text(path, capture)));
     if (!hello) { line("note", "no HELLO frame: this capture does not say what it is a capture of"); }
+    return lines;
+}
+
+std::string info_text(const std::string& path, const LoadedCapture& capture) {
+    std::string text = path + "\n";
+    for (const LabelledLine& line : info_lines(path, capture)) {
+        text += fmt::format("  {:<10} {}\n", line.label, line.text);
+    }
     return text;
 }
 

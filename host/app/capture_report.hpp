@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "host/formats/json_fwd.hpp"
+#include "host/formats/labelled_line.hpp"
 #include "host/session/load_capture.hpp"
 
 namespace gyrolog {
@@ -14,6 +16,8 @@ Json info_json(const std::string& path, const LoadedCapture& capture);
 
 std::string check_text(const std::string& path, const LoadedCapture& capture);
 std::string info_text(const std::string& path, const LoadedCapture& capture);
+// The lines of that text.
+std::vector<LabelledLine> info_lines(const std::string& path, const LoadedCapture& capture);
 
 // "no sample", "12 samples in 3 dropouts".
 std::string missing_text(const LinkReport& link);

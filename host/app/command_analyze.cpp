@@ -64,7 +64,7 @@ Action setup_analyze(CLI::App& app) {
         ->type_name("LIST");
     app.add_option("--rate", request->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
-        ->check(number_from_to(1e-4, 1e7, "Hz"));
+        ->check(sampling_rate());
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());

@@ -162,7 +162,7 @@ Action setup_export(CLI::App& app) {
     app.add_option("--seed", options->seed, "With --for and a data sheet: another unit")->needs(simulator);
     app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
-        ->check(number_from_to(1e-4, 1e7, "Hz"));
+        ->check(sampling_rate());
     app.add_option("--lsb-dps", options->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());

@@ -366,7 +366,7 @@ Action setup_simulate(CLI::App& app) {
         ->type_name("RECORDING");
     app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the model's or the recording's")
         ->type_name("HZ")
-        ->check(number_from_to(1e-4, 1e7, "Hz"));
+        ->check(sampling_rate());
     app.add_option("--model-out", options->model_out,
                    "Write the simulated unit as gyrolog-model/1 (of a data sheet: the one that was drawn)")
         ->type_name("FILE");

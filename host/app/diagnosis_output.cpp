@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/plot/diagnosis_figure.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/base/file_output.hpp"
 #include "host/formats/diagnosis_text.hpp"
@@ -31,14 +30,19 @@ Result<ModelFile> read_single_model(const std::string& path) {
     return file;
 }
 
-Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string_view of, std::vector<std::string> facts,
-                            const std::string& path) {
+DiagnosisFigure titled_figure(const Diagnosis& diagnosis, std::string_view of,
+                              std::vector<std::string> facts) {
     std::string title = verdict_sentence(diagnosis, of);
     if (title.size() > title_length_max) {
         facts.insert(facts.begin(), std::move(title));
         title = short_verdict_sentence(diagnosis, of);
     }
-    const Rendering rendering = render(DiagnosisFigure{diagnosis, std::move(title), std::move(facts)});
+    return DiagnosisFigure{diagnosis, std::move(title), std::move(facts)};
+}
+
+Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string_view of, std::vector<std::string> facts,
+                            const std::string& path) {
+    const Rendering rendering = render(titled_figure(diagnosis, of, std::move(facts)));
     if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
     return write_file(path, rendering.png);
 }

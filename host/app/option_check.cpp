@@ -47,6 +47,8 @@ CLI::Validator number_from_to(double lowest, double highest, const std::string& 
         fmt::format("must be from {:.10g} to {:.10g}{}{}", lowest, highest, unit.empty() ? "" : " ", unit));
 }
 
+CLI::Validator sampling_rate() { return number_from_to(1e-4, 1e7, "Hz"); }
+
 CLI::Validator positive_number() {
     return number_where([](double x, double, double) { return x > 0.0 && std::isfinite(x); }, 0.0, 0.0,
                         "must be a finite number above 0");

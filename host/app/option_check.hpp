@@ -12,6 +12,9 @@ namespace gyrolog {
 // A number from `lowest` to `highest`; `unit` ends the message: "must be from 0.0001 to 10000000 Hz".
 CLI::Validator number_from_to(double lowest, double highest, const std::string& unit = "");
 
+// Of a recording, in Hz.
+CLI::Validator sampling_rate();
+
 // More than 0, and finite.
 CLI::Validator positive_number();
 

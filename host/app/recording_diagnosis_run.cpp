@@ -100,11 +100,31 @@ Result<ModelFile> read_plain_model(const Recording& recording, const std::string
     return file;
 }
 
-Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& request) {
+Status write_results(Console& console, const RecordingDiagnosisRequest& request, const Diagnosis& diagnosis) {
+    ResultOutput results(console);
+    if (request.json_path != "-") {
+        results.show(diagnosis_text(diagnosis));
+    } else {
+        tell_warnings(console, diagnosis.warnings);
+    }
+    results.text(request.json_path, [&] { return diagnosis_json(diagnosis); });
+    results.file(request.plot_path, [&] {
+        return write_diagnosis_plot(diagnosis, "recording", diagnosis_facts(diagnosis), request.plot_path);
+    });
+    results.text(request.model_out_path, [&] {
+        return format_model(request.with_unnamed ? with_unnamed(diagnosis.corrected, diagnosis)
+                                                 : diagnosis.corrected);
+    });
+    return results.finish();
+}
+
+}  // namespace
+
+Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request) {
     const bool is_plain = request.model_path.empty();
     ModelFile file;
     if (!is_plain) { GYROLOG_TRY(file, read_single_model(request.model_path)); }
-    RecordingInput input{request.recording_path, std::nullopt, request.lsb_dps};
+    RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.samples_per_row = request.average;
     GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
     if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, request.recording_path)); }
@@ -129,7 +149,7 @@ Result<Diagnosis> diagnosed(Console& console, const RecordingDiagnosisRequest& r
     return *std::move(diagnosis);
 }
 
-std::vector<std::string> facts_of(const Diagnosis& diagnosis) {
+std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis) {
     std::vector<std::string> facts{
         fmt::format("{} simulations, seed {}", diagnosis.simulations, diagnosis.seed),
         fmt::format("{:.6g} Hz, {}", diagnosis.rate_hz, format_duration(diagnosis.duration_s))};
@@ -140,26 +160,6 @@ std::vector<std::string> facts_of(const Diagnosis& diagnosis) {
     return facts;
 }
 
-Status write_results(Console& console, const RecordingDiagnosisRequest& request, const Diagnosis& diagnosis) {
-    ResultOutput results(console);
-    if (request.json_path != "-") {
-        results.show(diagnosis_text(diagnosis));
-    } else {
-        tell_warnings(console, diagnosis.warnings);
-    }
-    results.text(request.json_path, [&] { return diagnosis_json(diagnosis); });
-    results.file(request.plot_path, [&] {
-        return write_diagnosis_plot(diagnosis, "recording", facts_of(diagnosis), request.plot_path);
-    });
-    results.text(request.model_out_path, [&] {
-        return format_model(request.with_unnamed ? with_unnamed(diagnosis.corrected, diagnosis)
-                                                 : diagnosis.corrected);
-    });
-    return results.finish();
-}
-
-}  // namespace
-
 ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisRequest& request) {
     const auto fail = [&](const Error& error) { return report_error(console, "diagnose", error); };
     const NamedPath read[] = {{"RECORDING", request.recording_path},
@@ -169,7 +169,7 @@ ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisR
                                  {"--plot", request.plot_path},
                                  {"--model-out", request.model_out_path}};
     if (const Status fine = check_output_paths(read, written); !fine.ok()) { return fail(fine.error()); }
-    const Result<Diagnosis> diagnosis = diagnosed(console, request);
+    const Result<Diagnosis> diagnosis = diagnose_recording(console, request);
     if (!diagnosis.ok()) { return fail(diagnosis.error()); }
     const Status done = write_results(console, request, *diagnosis);
     return done.ok() ? ExitCode::ok : fail(done.error());

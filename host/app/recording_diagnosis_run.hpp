@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "analysis/diagnose/report.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
+#include "host/base/result.hpp"
 
 namespace gyrolog {
 
@@ -19,12 +22,19 @@ struct RecordingDiagnosisRequest {
     std::string plot_path;
     std::string model_out_path;  // the model with the causes added
     bool with_unnamed = false;   // and what was modelled without a name
+    std::optional<double> rate_hz;  // in place of the one in the file
     std::optional<double> lsb_dps;
     std::size_t average = 1;  // samples of which means are looked at
     std::size_t simulations = 200;
     std::uint64_t seed = 1;
     unsigned threads = 0;  // 0: all processors
 };
+
+// Reads, diagnoses and shows the progress; writes nothing.
+Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request);
+
+// How it was looked at, and the causes in words: below the title of the figure.
+std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis);
 
 // Prints the report for people on `out`, unless the JSON goes there.
 ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisRequest& request);

@@ -35,7 +35,8 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
         recording->rate_hz = *input.rate_hz / static_cast<double>(input.samples_per_row);
         recording->rate_sd_hz.reset();
     }
-    return TimedRecording{std::move(recording).value(), capture.decoder->recording_host_start_s()};
+    const std::optional<double> host_start_s = capture.decoder->recording_host_start_s();
+    return TimedRecording{std::move(recording).value(), host_start_s, std::move(capture)};
 }
 
 }  // namespace
@@ -58,7 +59,7 @@ Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
     options.with_accelerometer = input.with_accelerometer;
     options.needs_gyro = input.needs_gyro;
     GYROLOG_TRY(Recording recording, read_recording_csv(input.path, options));
-    return TimedRecording{std::move(recording), std::nullopt};
+    return TimedRecording{std::move(recording)};
 }
 
 }  // namespace gyrolog

@@ -9,6 +9,7 @@
 #include "analysis/recording/recording.hpp"
 #include "analysis/recording/stage_observer.hpp"
 #include "host/base/result.hpp"
+#include "host/session/load_capture.hpp"
 
 namespace gyrolog {
 
@@ -28,10 +29,11 @@ struct RecordingInput {
 
 Result<Recording> read_recording(const RecordingInput& input);
 
-// With the time of its sampling instant 0 by the clock of the host that captured it; of text none.
+// With what a capture says beside its samples; of text nothing.
 struct TimedRecording {
     Recording recording;
-    std::optional<double> host_start_s;
+    std::optional<double> host_start_s = {};  // of sampling instant 0, by the clock of the host that captured
+    std::optional<LoadedCapture> capture = {};
 };
 Result<TimedRecording> read_timed_recording(const RecordingInput& input);
 

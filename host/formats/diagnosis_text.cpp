@@ -98,10 +98,8 @@ std::string with_full_stop(std::string sentence) {
     return sentence;
 }
 
-std::string item(const std::string& sentence) { return wrapped_text("  - ", sentence); }
-
 // Whether there is a gap, how large it is, and where.
-std::string gap_section(const Diagnosis& diagnosis) {
+std::string gap_sentence(const Diagnosis& diagnosis) {
     const Gap& gap = diagnosis.gap_before;
     std::string text = fmt::format("Of recordings that do come from the model, {} would differ as much ({}).",
                                    odds_text(diagnosis.p_none), probability_text(diagnosis.p_none));
@@ -116,7 +114,7 @@ std::string gap_section(const Diagnosis& diagnosis) {
         const std::string place = place_text(diagnosis.where);
         if (!place.empty()) { text += fmt::format(" It differs most here: {}.", place); }
     }
-    return "\ngap\n" + wrapped_text("  ", text);
+    return text;
 }
 
 // On which data the shares were measured.
@@ -142,21 +140,25 @@ std::string tie_clause(const Cause& cause) {
                        fmt::format("{}", fmt::join(rivals, " or ")));
 }
 
-std::string cause_text(const Cause& cause, std::size_t rank) {
-    return wrapped_text(
-        fmt::format("  {}. ", rank),
-        fmt::format("{}: {}, probability {}. {}{}", cause_name(cause), share_text(cause.share),
-                    percent_text(cause.score), with_full_stop(cause_words(cause)), tie_clause(cause)));
+DiagnosisSentences::OfCause sentences_of(const Cause& cause) {
+    return {cause_name(cause), share_text(cause.share), percent_text(cause.score),
+            with_full_stop(cause_words(cause)) + tie_clause(cause)};
 }
 
-std::string explained_section(const Diagnosis& diagnosis) {
-    if (diagnosis.causes.empty()) { return "\nexplained: nothing, no known effect makes such a gap\n"; }
-    std::string text = wrapped_text(
-        "", fmt::format("explained: {}, {}", share_text(diagnosis.shrink), measured_sentence(diagnosis)));
-    for (std::size_t i = 0; i < diagnosis.causes.size(); ++i) {
-        text += cause_text(diagnosis.causes[i], i + 1);
+std::string explained_sentence(const Diagnosis& diagnosis) {
+    if (diagnosis.causes.empty()) { return "nothing, no known effect makes such a gap"; }
+    return fmt::format("{}, {}", share_text(diagnosis.shrink), measured_sentence(diagnosis));
+}
+
+std::string explained_section(const DiagnosisSentences& sentences) {
+    std::string text = wrapped_text("", "explained: " + sentences.explained);
+    for (std::size_t i = 0; i < sentences.causes.size(); ++i) {
+        const DiagnosisSentences::OfCause& cause = sentences.causes[i];
+        text += wrapped_text(fmt::format("  {}. ", i + 1),
+                             fmt::format("{}: {}, probability {}. {}", cause.name, cause.share,
+                                         cause.probability, cause.words));
     }
-    if (diagnosis.causes.size() > 1) {
+    if (sentences.causes.size() > 1) {
         text += wrapped_text("  ",
                              "Each share is what comes back when that cause alone is taken out again: shares "
                              "may overlap.");
@@ -207,9 +209,9 @@ std::string fall_text(const Diagnosis& diagnosis) {
     return text + " (1 is what two simulations differ by)";
 }
 
-std::string left_section(const Diagnosis& diagnosis) {
+std::string left_sentence(const Diagnosis& diagnosis) {
     std::string text =
-        fmt::format("left: {} of the gap", percent_text(std::max(1.0 - diagnosis.shrink.value, 0.0)));
+        fmt::format("{} of the gap", percent_text(std::max(1.0 - diagnosis.shrink.value, 0.0)));
     if (!diagnosis.unnamed.empty()) {
         text += fmt::format(", {} beside what has no name",
                             percent_text(std::max(1.0 - diagnosis.shrink_modelled, 0.0)));
@@ -219,14 +221,16 @@ std::string left_section(const Diagnosis& diagnosis) {
         text += fmt::format("; chance leaves as much in {} ({})", odds_text(diagnosis.p_left),
                             probability_text(diagnosis.p_left));
     }
-    text = wrapped_text("", text);
-    for (const Unnamed& one : diagnosis.unnamed) { text += item(unnamed_text(one)); }
-    for (const Left& one : diagnosis.left) { text += item(left_text(one)); }
-    if (diagnosis.better_shape) { text += item(better_shape_sentence(*diagnosis.better_shape)); }
-    if (diagnosis.left.empty() && diagnosis.unnamed.empty() && !diagnosis.better_shape) {
-        text += item("no place stands out");
-    }
-    return "\n" + text;
+    return text;
+}
+
+std::vector<std::string> left_items(const Diagnosis& diagnosis) {
+    std::vector<std::string> items;
+    for (const Unnamed& one : diagnosis.unnamed) { items.push_back(unnamed_text(one)); }
+    for (const Left& one : diagnosis.left) { items.push_back(left_text(one)); }
+    if (diagnosis.better_shape) { items.push_back(better_shape_sentence(*diagnosis.better_shape)); }
+    if (items.empty()) { items.emplace_back("no place stands out"); }
+    return items;
 }
 
 std::string heading_text(const Diagnosis& diagnosis) {
@@ -235,7 +239,7 @@ std::string heading_text(const Diagnosis& diagnosis) {
                     diagnosis.recording_name, diagnosis.simulations, diagnosis.model_name, diagnosis.seed,
                     diagnosis.samples, diagnosis.rate_hz, duration_text(diagnosis.duration_s));
     if (!diagnosis.passes.empty()) { text += "; " + passes_text(diagnosis); }
-    return wrapped_text("", text);
+    return text;
 }
 
 std::string sentences_text(const char* title, const std::vector<std::string>& sentences) {
@@ -301,12 +305,27 @@ std::string short_verdict_sentence(const Diagnosis& diagnosis, std::string_view 
         of);
 }
 
+DiagnosisSentences diagnosis_sentences(const Diagnosis& diagnosis) {
+    DiagnosisSentences sentences;
+    sentences.heading = heading_text(diagnosis);
+    sentences.gap = gap_sentence(diagnosis);
+    if (diagnosis.verdict == Verdict::none) { return sentences; }
+    sentences.explained = explained_sentence(diagnosis);
+    for (const Cause& cause : diagnosis.causes) { sentences.causes.push_back(sentences_of(cause)); }
+    sentences.left = left_sentence(diagnosis);
+    sentences.left_items = left_items(diagnosis);
+    return sentences;
+}
+
 std::string diagnosis_text(const Diagnosis& diagnosis) {
-    std::string text =
-        verdict_sentence(diagnosis) + "\n" + unnamed_sentence(diagnosis) + "\n" + heading_text(diagnosis);
-    text += gap_section(diagnosis);
+    const DiagnosisSentences sentences = diagnosis_sentences(diagnosis);
+    std::string text = verdict_sentence(diagnosis) + "\n" + unnamed_sentence(diagnosis) + "\n" +
+                       wrapped_text("", sentences.heading);
+    text += "\ngap\n" + wrapped_text("  ", sentences.gap);
     if (diagnosis.verdict != Verdict::none) {
-        text += explained_section(diagnosis) + left_section(diagnosis);
+        text += explained_section(sentences);
+        text += "\n" + wrapped_text("", "left: " + sentences.left);
+        for (const std::string& item : sentences.left_items) { text += wrapped_text("  - ", item); }
     }
     text += sentences_text("recordings that would tell more", diagnosis.next_recordings);
     text += diagnosis_details(diagnosis);

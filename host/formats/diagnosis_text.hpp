@@ -5,6 +5,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "analysis/diagnose/report.hpp"
 
@@ -18,6 +19,25 @@ std::string short_verdict_sentence(const Diagnosis& diagnosis, std::string_view 
 
 // Of a diagnosis with passes: "looked at the first 20 min sample by sample and at all of it in means of ...".
 std::string passes_text(const Diagnosis& diagnosis);
+
+// What the text says, sentence by sentence, for other forms of it.
+struct DiagnosisSentences {
+    struct OfCause {
+        std::string name;         // "temp_lag on x"
+        std::string share;        // "62 % of the gap (55 % to 68 %)"
+        std::string probability;  // "91 %"
+        std::string words;        // what it is, and what cannot be told from it
+    };
+
+    std::string heading;    // what was held against what
+    std::string gap;        // by what odds, how large, where
+    std::string explained;  // how much, and on which data that was measured
+    std::vector<OfCause> causes;
+    std::string left;  // how much
+    std::vector<std::string> left_items;
+};
+// Without a gap nothing is explained and nothing is left.
+DiagnosisSentences diagnosis_sentences(const Diagnosis& diagnosis);
 
 std::string diagnosis_text(const Diagnosis& diagnosis);
 

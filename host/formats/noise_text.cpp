@@ -58,11 +58,6 @@ TextRow row_of(std::span<const FitOfColumn> columns, std::string label, std::str
     return row;
 }
 
-std::string coefficient_text(const FittedCoefficient& fitted, double scale) {
-    if (fitted.state == State::not_identifiable) { return fmt::format("< {:.2g}", fitted.upper * scale); }
-    return with_uncertainty(fitted.value * scale, fitted.sd * scale);
-}
-
 std::string slope_text(const std::optional<SlopeReading::Value>& value, double scale) {
     if (!value) { return "-"; }
     return fmt::format("{:.3g} at {:.3g} s", value->coefficient * scale, value->tau_s);
@@ -95,8 +90,15 @@ void add_optional_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> 
     }
 }
 
-void add_shaped_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> columns,
-                     const SensorUnit& unit) {
+}  // namespace
+
+std::string coefficient_text(const FittedCoefficient& fitted, double scale) {
+    if (fitted.state == State::not_identifiable) { return fmt::format("< {:.2g}", fitted.upper * scale); }
+    return with_uncertainty(fitted.value * scale, fitted.sd * scale);
+}
+
+std::vector<TextRow> shaped_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit) {
+    std::vector<TextRow> rows;
     const double scale = unit.per_column_unit;
     const auto processes = [](const FitOfColumn& c) -> const auto& { return c.fit->gauss_markov; };
     const auto lines = [](const FitOfColumn& c) -> const auto& { return c.fit->sinusoids; };
@@ -113,9 +115,22 @@ void add_shaped_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> co
     add_optional_rows(rows, columns, "   frequency", "Hz", lines, [](const FittedSinusoid& s) {
         return with_uncertainty(s.value.frequency_hz, s.frequency_sd_hz);
     });
+    return rows;
 }
 
-}  // namespace
+std::vector<TextRow> slope_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit) {
+    const double scale = unit.per_column_unit;
+    std::vector<TextRow> rows;
+    const auto add_slope = [&](const char* label, NoiseTerm term, auto member) {
+        rows.push_back(row_of(columns, label, noise_unit(term, unit), [=](const FitOfColumn& column) {
+            return slope_text(column.slopes->*member, scale);
+        }));
+    };
+    add_slope("by slope: N", NoiseTerm::N, &SlopeReading::N);
+    add_slope("          B", NoiseTerm::B, &SlopeReading::B);
+    add_slope("          K", NoiseTerm::K, &SlopeReading::K);
+    return rows;
+}
 
 std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit) {
     const double scale = unit.per_column_unit;
@@ -136,15 +151,8 @@ std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const Sens
     add_bound_row(rows, columns, NoiseTerm::K, scale);
     add("Q  quantisation", noise_unit(NoiseTerm::Q, unit), NoiseTerm::Q, scale);
     add(trade.R, noise_unit(NoiseTerm::R, unit), NoiseTerm::R, scale);
-    add_shaped_rows(rows, columns, unit);
-    const auto add_slope = [&](const char* label, NoiseTerm term, auto member) {
-        rows.push_back(row_of(columns, label, noise_unit(term, unit), [=](const FitOfColumn& column) {
-            return slope_text(column.slopes->*member, scale);
-        }));
-    };
-    add_slope("by slope: N", NoiseTerm::N, &SlopeReading::N);
-    add_slope("          B", NoiseTerm::B, &SlopeReading::B);
-    add_slope("          K", NoiseTerm::K, &SlopeReading::K);
+    for (TextRow& row : shaped_rows(columns, unit)) { rows.push_back(std::move(row)); }
+    for (TextRow& row : slope_rows(columns, unit)) { rows.push_back(std::move(row)); }
     return rows;
 }
 

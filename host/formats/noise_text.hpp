@@ -17,9 +17,16 @@ struct FitOfColumn {
     const SlopeReading* slopes;
 };
 
+// "0.01314 ± 0.00002"; of a term that is not identifiable "< 1.2e-05", its upper limit.
+std::string coefficient_text(const FittedCoefficient& fitted, double scale);
+
 // N, B, K, Q, R in the unit given, N also per root hour and a gyro's B per hour; the least uncertainty
 // possible where it is known; Gauss-Markov noise and sinusoids where a fit has some; the readings of slopes.
 std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);
+
+// Of these the rows of Gauss-Markov noise and sinusoids, and those of the slopes.
+std::vector<TextRow> shaped_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);
+std::vector<TextRow> slope_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);
 
 // N, B and K in SI, the units of simulators and filters; no row for counts, and for rad/s, which is SI.
 std::vector<TextRow> si_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/noise/noise_fit.hpp"
 #include "analysis/noise/sensor_unit.hpp"
@@ -24,5 +25,16 @@ inline std::string noise_unit(NoiseTerm term, const SensorUnit& unit) {
     }
     return unit.name;
 }
+
+struct ScaledUnit {
+    std::string name;
+    double per_column_unit = 1.0;  // what 1 of the column's own unit is
+};
+
+// The units in which people state a term, as a page prints them: of N "rad/s/√Hz", "°/s/√Hz", "°/h/√Hz",
+// "°/√h". A unit of rate that is none of angle has its own only.
+std::vector<ScaledUnit> printed_units(NoiseTerm term, const RateUnit& unit);
+// The same of a rate: "rad/s", "°/s", "°/h".
+std::vector<ScaledUnit> printed_rate_units(const RateUnit& unit);
 
 }  // namespace gyrolog

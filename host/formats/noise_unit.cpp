@@ -1,0 +1,38 @@
+#include "host/formats/noise_unit.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr double s_per_h = 3600.0;
+constexpr double sqrt_s_per_sqrt_h = 60.0;
+constexpr double arcsec_per_deg = 3600.0;
+
+}  // namespace
+
+std::vector<ScaledUnit> printed_units(NoiseTerm term, const RateUnit& unit) {
+    if (unit.name == "lsb") { return {{noise_unit(term, unit), unit.per_column_unit}}; }
+    constexpr double deg = deg_per_rad;
+    switch (term) {
+        case NoiseTerm::Q:
+            return {{"rad", 1.0}, {"°", deg}, {"arcsec", deg * arcsec_per_deg}};
+        case NoiseTerm::N:
+            return {{"rad/s/√Hz", 1.0},
+                    {"°/s/√Hz", deg},
+                    {"°/h/√Hz", deg * s_per_h},
+                    {"°/√h", deg * sqrt_s_per_sqrt_h}};
+        case NoiseTerm::B:
+            return printed_rate_units(unit);
+        case NoiseTerm::K:
+            return {{"rad/s·√Hz", 1.0}, {"°/s·√Hz", deg}, {"°/h/√h", deg * s_per_h * sqrt_s_per_sqrt_h}};
+        case NoiseTerm::R:
+            return {{"rad/s²", 1.0}, {"°/s²", deg}, {"°/h²", deg * s_per_h * s_per_h}};
+    }
+    return {};
+}
+
+std::vector<ScaledUnit> printed_rate_units(const RateUnit& unit) {
+    if (unit.name == "lsb") { return {{unit.name, unit.per_column_unit}}; }
+    return {{"rad/s", 1.0}, {"°/s", deg_per_rad}, {"°/h", deg_per_rad * s_per_h}};
+}
+
+}  // namespace gyrolog
