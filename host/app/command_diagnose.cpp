@@ -5,12 +5,11 @@
 #include "host/app/curve_diagnosis_run.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/recording_diagnosis_run.hpp"
+#include "host/app/simulation_count.hpp"
 
 namespace gyrolog {
 namespace {
 
-constexpr std::size_t simulations_least = 20;
-constexpr std::size_t simulations_most = 10'000;
 constexpr unsigned threads_most = 1024;
 constexpr int average_most = 100'000;
 

@@ -16,6 +16,7 @@ constexpr std::array commands{
     Command{"check", "Account for every byte, frame and sample of a capture", setup_check},
     Command{"recover", "Save the intact part of a damaged capture", setup_recover},
     Command{"analyze", "Work out Allan deviation, noise coefficients and bias", setup_analyze},
+    Command{"report", "Write one page on a recording: health, noise, bias, and a model's gap", setup_report},
     Command{"compare", "Hold a recording against a model's simulations, or against another one",
             setup_compare},
     Command{"conform", "Judge a board by the numbered rules of the protocol", setup_conform},

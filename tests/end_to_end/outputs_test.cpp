@@ -83,6 +83,8 @@ TEST_F(Outputs, AreNeverWrittenOverWhatIsRead) {
         {"export", model_, "-o", model_},
         {"compare", text_, model_, "--json", text_},
         {"diagnose", text_, "--model", model_, "--model-out", model_},
+        {"report", text_, "-o", text_},
+        {"report", text_, "--model", model_, "-o", model_},
         {"denoise", text_, "-o", text_},
         {"simulate", model_, "-o", text_, "--model-out", model_},
         {"capture", "--device", "replay:" + capture_, "-o", capture_, "--force"},
@@ -197,6 +199,7 @@ TEST_F(Outputs, AreTriedBeforeTheWorkIsDone) {
              {"diagnose", "--curve", bad, "--json", no_json},
              {"diagnose", "--curve", bad, "--plot", no_plot},
              {"diagnose", "--curve", bad, "--model", model_, "--model-out", no_json},
+             {"report", bad, "-o", folder_.path("no/a.html")},
              {"denoise", bad, "-o", no_text},
              {"denoise", bad, "--json", no_json},
              {"denoise", bad, "--plot", no_plot},
@@ -268,6 +271,7 @@ TEST_F(Outputs, OneSignalEndsEveryCommandAtOnceAndLeavesNoHalfFile) {
         {"export", long_text, "-o", folder_.path("e.csv.xz")},
         {"compare", long_text, model_, "--json", folder_.path("a.json")},
         {"diagnose", long_text, "--model", model_, "--json", folder_.path("a.json")},
+        {"report", long_text, "--model", model_, "-o", folder_.path("r.html")},
         {"denoise", long_text, "-o", folder_.path("d.csv.xz")},
     };
     const auto end_by = [&](const std::vector<std::string>& command, int number, int after_ms) {

@@ -1,0 +1,41 @@
+#include <memory>
+
+#include "host/app/command.hpp"
+#include "host/app/option_check.hpp"
+#include "host/app/report_run.hpp"
+#include "host/app/simulation_count.hpp"
+
+namespace gyrolog {
+
+Action setup_report(CLI::App& app) {
+    auto request = std::make_shared<ReportRequest>();
+    app.add_option("RECORDING", request->recording_path,
+                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)")
+        ->required();
+    app.add_option("-o,--output", request->page_path, "The page, with its figures inside")
+        ->type_name("FILE.html")
+        ->required();
+    CLI::Option* model =
+        app.add_option("--model", request->model_path,
+                       "Also diagnose where the recording parts from this sensor model (.json)")
+            ->type_name("FILE");
+    app.add_option("--simulations", request->simulations, "How many simulations tell a gap from chance")
+        ->type_name("N")
+        ->check(whole_number(simulations_least, simulations_most))
+        ->needs(model)
+        ->capture_default_str();
+    app.add_option("--seed", request->seed, "Other simulations of the same kind")
+        ->type_name("N")
+        ->check(whole_number(0))
+        ->needs(model)
+        ->capture_default_str();
+    app.add_option("--rate", request->rate_hz, "Sampling rate, in place of the one in the file")
+        ->type_name("HZ")
+        ->check(sampling_rate());
+    app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
+        ->type_name("DPS")
+        ->check(positive_number());
+    return [request](Console& console) { return report_to_file(console, *request); };
+}
+
+}  // namespace gyrolog

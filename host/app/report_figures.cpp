@@ -1,0 +1,108 @@
+#include "host/app/report_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "analysis/plot/course_figure.hpp"
+#include "analysis/recording/course.hpp"
+#include "host/app/analysis_plot.hpp"
+#include "host/app/diagnosis_output.hpp"
+#include "host/app/recording_diagnosis_run.hpp"
+#include "host/base/counted.hpp"
+#include "host/formats/uncertain_number.hpp"
+
+namespace gyrolog {
+namespace {
+
+// Twice what the page's column has on a screen, for paper.
+constexpr int width_px = 1600;
+constexpr double letters_scale = 1.35;
+constexpr int deviation_height_px = 1150;
+constexpr int spectrum_height_px = 900;
+constexpr std::size_t course_parts_most = 200;
+constexpr std::size_t samples_of_part_least = 10;
+
+Result<Png> drawn(const char* what, const Figure& figure) {
+    Rendering rendering = render(figure);
+    if (!rendering.ok()) {
+        return Error{ErrorCode::failed, fmt::format("draw the {}: {}", what, rendering.problem)};
+    }
+    return std::move(rendering.png);
+}
+
+// The page says what was recorded.
+Figure on_page(Figure figure) {
+    figure.title.clear();
+    figure.source.clear();
+    figure.facts.clear();
+    return figure;
+}
+
+// A panel of a figure by itself.
+Figure panel_alone(const Figure& of, std::size_t panel, int height_px) {
+    Figure figure = of;
+    figure.panels = {of.panels.at(panel)};
+    figure.height_px = height_px;
+    return figure;
+}
+
+Status draw_analysis(ReportPage& page) {
+    AllanFigure allan = analysis_figure(page.analysis, SensorKind::gyro);
+    allan.width_px = width_px;
+    allan.scale = letters_scale;
+    const Figure both = on_page(figure_of(allan));
+    GYROLOG_TRY(page.deviation_png, drawn("Allan deviation", panel_alone(both, 0, deviation_height_px)));
+    if (both.panels.size() > 1) {
+        GYROLOG_TRY(page.spectrum_png, drawn("spectrum", panel_alone(both, 1, spectrum_height_px)));
+    }
+    return {};
+}
+
+std::size_t parts_of(const Recording& recording) {
+    return std::clamp<std::size_t>(recording.rows() / samples_of_part_least, 1, course_parts_most);
+}
+
+CourseFigure course_figure(const AnalysisReport& analysis, const Recording& recording) {
+    CourseFigure course;
+    course.width_px = width_px;
+    course.scale = letters_scale;
+    course.duration_s = analysis.duration_s;
+    if (analysis.unit.name == "lsb") {
+        course.unit_name = "lsb";
+    } else {
+        course.per_unit_of_data = deg_per_rad;
+    }
+    const std::size_t parts = parts_of(recording);
+    for (const AxisReport& axis : analysis.axes) {
+        const Column* column = recording.find("g" + axis.axis);
+        if (column == nullptr) { continue; }
+        CourseTrace& trace = course.traces.emplace_back(CourseTrace{axis.axis, {}});
+        trace.means = course_of(recording, *column, parts);
+        for (double& mean : trace.means) { mean -= axis.bias.value; }
+    }
+    if (const Column* temperature = recording.find("temp")) {
+        course.temperature_degC = course_of(recording, *temperature, parts);
+    }
+    return course;
+}
+
+}  // namespace
+
+Status draw_figures(ReportPage& page, const Recording& recording) {
+    if (Status fine = draw_analysis(page); !fine.ok()) { return fine; }
+    HistogramFigure samples = samples_figure(page.analysis, recording, SensorKind::gyro);
+    samples.width_px = width_px;
+    samples.scale = letters_scale;
+    GYROLOG_TRY(page.samples_png, drawn("histogram", on_page(figure_of(samples))));
+    GYROLOG_TRY(page.course_png,
+                drawn("course of the bias", on_page(figure_of(course_figure(page.analysis, recording)))));
+    if (page.diagnosis == nullptr) { return {}; }
+    DiagnosisFigure diagnosis = titled_figure(*page.diagnosis, "recording", diagnosis_facts(*page.diagnosis));
+    GYROLOG_TRY(page.diagnosis_png, drawn("diagnosis", on_page(figure_of(diagnosis))));
+    return {};
+}
+
+}  // namespace gyrolog
