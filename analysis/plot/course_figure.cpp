@@ -8,8 +8,8 @@ namespace gyrolog {
 namespace {
 
 constexpr double heading_px = 110.0;
-constexpr double course_panel_px = 440.0;
-constexpr double temperature_panel_px = 300.0;
+constexpr double course_panel_px = 430.0;
+constexpr double temperature_panel_px = 310.0;
 constexpr double hours_from_s = 7200.0;
 constexpr double s_per_h = 3600.0;
 constexpr std::array markers{Marker::circle,  Marker::square,        Marker::triangle,
@@ -30,7 +30,7 @@ TimeAxis time_axis(const CourseFigure& course, std::size_t parts) {
     return axis;
 }
 
-std::string rate_title(const CourseFigure& course) { return "mean rate − bias (" + course.unit_name + ")"; }
+std::string rate_title(const CourseFigure& course) { return "rate − bias (" + course.unit_name + ")"; }
 
 Curve curve_of(const CourseFigure& course, std::size_t trace, const std::vector<double>& x) {
     Curve curve;
@@ -52,6 +52,7 @@ Panel time_panel(const CourseFigure& course, const TimeAxis& time) {
         panel.curves.push_back(curve_of(course, trace, time.middles));
         panel.curves.back().markers_apart_px = 60.0;
     }
+    panel.legend_place = LegendPlace::beside;
     panel.height_share = course_panel_px;
     return panel;
 }
@@ -77,6 +78,7 @@ Panel over_temperature_panel(const CourseFigure& course) {
         curve.stroke.width_px = 0.0;
         curve.markers_apart_px = 0.0;
     }
+    panel.legend_place = LegendPlace::beside;
     panel.height_share = course_panel_px;
     return panel;
 }

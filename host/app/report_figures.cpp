@@ -22,7 +22,7 @@ constexpr int width_px = 1600;
 constexpr double letters_scale = 1.35;
 constexpr int deviation_height_px = 1150;
 constexpr int spectrum_height_px = 900;
-constexpr std::size_t course_parts_most = 200;
+constexpr std::size_t course_parts_most = 100;
 constexpr std::size_t samples_of_part_least = 10;
 
 Result<Png> drawn(const char* what, const Figure& figure) {

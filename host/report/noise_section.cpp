@@ -52,9 +52,10 @@ std::string meaning_of(NoiseTerm term, double size, const RateUnit& unit) {
     switch (term) {
         case NoiseTerm::N:
             return "The filter's gyro noise density: the variance of the angle grows by N² each second" +
-                   (has_angle ? fmt::format("; after 1 min the angle is off by {:.2g}° (1 σ)",
-                                            size * deg_per_rad * std::sqrt(integrated_s))
-                              : std::string()) +
+                   (has_angle
+                        ? fmt::format("; after 1 min the angle is off by {:.2g}° (1 σ, the noisiest axis)",
+                                      size * deg_per_rad * std::sqrt(integrated_s))
+                        : std::string()) +
                    ".";
         case NoiseTerm::B:
             return "The floor of the Allan deviation is 0.664 B: no longer rest makes the bias better known "

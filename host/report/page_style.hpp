@@ -4,11 +4,11 @@
 namespace gyrolog {
 
 // Rules are told apart by lines and weight, not by colour. On a dark screen the pictures, which have white
-// paper, are turned dark; the hues stay.
+// paper, are turned dark, to the page's own; the hues stay. On paper no picture is higher than a page of A4.
 inline constexpr const char* page_style = R"(
 :root { color-scheme: light dark; --ink: #1c1e22; --paper: #ffffff; --muted: #5c6068; --line: #b9bcc2; --head: #f0f1f3; }
 @media screen and (prefers-color-scheme: dark) {
-  :root { --ink: #e3e5e9; --paper: #15171a; --muted: #a3a8b0; --line: #4a4e56; --head: #23262b; }
+  :root { --ink: #e3e5e9; --paper: #141414; --muted: #a3a8b0; --line: #4a4e56; --head: #23262b; }
   img { filter: invert(0.92) hue-rotate(180deg); }
 }
 body { max-width: 54rem; margin: 2rem auto; padding: 0 1rem; color: var(--ink); background: var(--paper);
@@ -38,6 +38,7 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); padding-top: 0.5
   body { max-width: none; margin: 0; padding: 0; font-size: 10pt; }
   h2, h3, tr.group { break-after: avoid; }
   figure, tr, .warning { break-inside: avoid; }
+  img { width: auto; max-width: 100%; max-height: 240mm; margin: 0 auto; }
   tr.group th { print-color-adjust: exact; }
 }
 )";

@@ -29,11 +29,11 @@ struct ReportPage {
     std::optional<TemperatureRange> temperature;
     const Diagnosis* diagnosis = nullptr;  // null: no model was given
     // Empty where there is none.
-    Png deviation_png;
-    Png spectrum_png;
-    Png samples_png;
-    Png course_png;
-    Png diagnosis_png;
+    Png deviation_png{};
+    Png spectrum_png{};
+    Png samples_png{};
+    Png course_png{};
+    Png diagnosis_png{};
 };
 
 std::string report_html(const ReportPage& page);

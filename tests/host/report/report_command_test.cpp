@@ -167,7 +167,7 @@ TEST_F(ReportCommand, ListsTheHolesAndTheTemperaturesOfText) {
     text.close();
     const std::string page = page_of({path});
     EXPECT_THAT(page, HasSubstr("3 samples in 1 dropout"));
-    EXPECT_THAT(page, HasSubstr("2.000 s</th><td>3</td><td>time_stamps</td>"));
+    EXPECT_THAT(page, HasSubstr("2.000 s</th><td>3</td>\n<td>time_stamps</td>"));
     EXPECT_THAT(page, HasSubstr("20.00 °C to 25.99 °C"));
     EXPECT_THAT(page, AllOf(HasSubstr("<h1>&lt;i&gt;&amp;holes.csv</h1>"), Not(HasSubstr("<i>"))));
     EXPECT_THAT(page, HasSubstr("mean rate over temperature"));

@@ -46,7 +46,8 @@ TEST(ReportPage, TellsNEverywhereInTheUnitThatPeopleUse) {
     EXPECT_THAT(html, HasSubstr("°/h/√Hz</th><td>36.00 ± 0.36</td>"));  // 3600 s in an hour
     EXPECT_THAT(html, HasSubstr("rad/s/√Hz</th><td>(1.745 ± 0.017)e-04</td>"));
     EXPECT_THAT(html, HasSubstr("°/s·√Hz</th><td>&lt; 0.0002</td>"));
-    EXPECT_THAT(html, HasSubstr("after 1 min the angle is off by 0.077° (1 σ)"));  // 0.01 √60
+    EXPECT_THAT(html,
+                HasSubstr("after 1 min the angle is off by 0.077° (1 σ, the noisiest axis)"));  // 0.01 √60
 }
 
 TEST(ReportPage, TellsNoAngleOfCountsWithoutAScale) {
