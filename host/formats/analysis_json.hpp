@@ -1,7 +1,7 @@
 // The report of an Allan analysis as JSON, gyrolog-analysis/1. Rates are in the report's unit,
-// accelerations in the accelerometer's. Its axes have "mean" in the place of "bias", because gravity is in it:
-//   "accelerometer": {"axes": {...}, "gravity": {"size": {"value", "expanded_uncertainty", "coverage_factor",
-//     "unit"}, "tilt": {likewise, "deg"}, "up": "+z", "direction": [x, y, z]}}
+// accelerations in the accelerometer's. Its axes have "mean" in the place of "bias": gravity is in it.
+//   "accelerometer": {"axes": {...}, "gravity": {"size": {"value", "expanded_uncertainty",
+//     "coverage_factor", "unit"}, "tilt": {likewise, in deg}, "up": "+z", "direction": [x, y, z]}}
 // Of an array, "gravity" has such an object for each unit's number.
 #pragma once
 
