@@ -7,9 +7,11 @@
 namespace gyrolog {
 namespace {
 
+// Heights at scale 1.
 constexpr double heading_px = 110.0;
 constexpr double course_panel_px = 430.0;
 constexpr double temperature_panel_px = 310.0;
+// A longer record has hours on its time axis.
 constexpr double hours_from_s = 7200.0;
 constexpr double s_per_h = 3600.0;
 constexpr std::array markers{Marker::circle,  Marker::square,        Marker::triangle,

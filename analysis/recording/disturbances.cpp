@@ -9,7 +9,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::size_t blocks_least = 20;
 constexpr double sd_per_mad = 1.4826;     // of a normal distribution
 constexpr double fitted_per_block = 3.0;  // two means and where the step is
 constexpr std::size_t largest_left_out = 2;
@@ -138,7 +137,7 @@ bool is_no_chance(const std::vector<Signal>& signals, double chance_each, double
             expected += n * (chance_each + alone[a] / n) * (chance_each + alone[b] / n);
         }
     }
-    return together > 0 && poisson_tail(together, expected) < 1.001 * false_alarms_most;
+    return together > 0 && poisson_tail(together, expected) < false_alarms_most;
 }
 
 // Of a variance of its own: the likelihood ratio of a block of normal samples.
@@ -197,7 +196,7 @@ std::vector<Disturbance> disturbances(const Recording& recording,
                                       const DisturbanceOptions& options) {
     if (signals.size() < 2) { return {}; }
     const std::vector<Block> blocks = blocks_of(recording, options);
-    if (blocks.size() < blocks_least) { return {}; }
+    if (blocks.size() < options.blocks_least) { return {}; }
     const auto pairs = 0.5 * static_cast<double>(signals.size() * (signals.size() - 1));
     const double chance_each =
         std::sqrt(options.false_alarms_most / (pairs * static_cast<double>(blocks.size())));

@@ -19,9 +19,11 @@
 namespace gyrolog {
 
 struct DisturbanceOptions {
-    double block_s = 0.25;  // a bump's length
-    std::size_t block_samples_least = 16;
-    double false_alarms_most = 1e-3;  // of recordings without disturbances
+    double block_s = 0.25;                 // a bump's length
+    std::size_t block_samples_least = 16;  // a power is known to a third
+    // One block that is loud is a twentieth of the recording then, which is the longest disturbance.
+    std::size_t blocks_least = 20;
+    double false_alarms_most = 1e-3;  // share of the recordings without disturbances
     // Shares of the recording. What lasts longer is not from outside, or cannot be told from a sensor whose
     // noise changes.
     double longest_share = 0.05;

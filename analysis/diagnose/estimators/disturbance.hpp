@@ -2,7 +2,8 @@
 // recording has them (analysis/recording/disturbances.hpp). The gain is that of a power of its own in every
 // block of them, on every axis. A moving sensor has no such estimator: what its axes share is the motion.
 //
-// The effect's parameters are, in this order: number an hour, size in deg/s, decay in s.
+// The finding's parameters are the number an hour, the largest size in deg/s, and, in place of the decay, the
+// mean length of a stretch in s. Its entry simulates no bumps.
 #pragma once
 
 #include "analysis/diagnose/estimators/estimator.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -19,8 +20,6 @@ namespace {
 // Less is no reason to prefer what was not first.
 constexpr double margin_nats = 3.0;
 constexpr double far_better_nats = 8.0;
-// How many are tried as the first cause, or the next.
-constexpr std::size_t candidates_most = 4;
 // A cause of such evidence changes everything that others are judged by.
 constexpr double huge_nats = 1e4;
 
@@ -138,12 +137,12 @@ private:
         return best_first(std::move(best));
     }
 
-    static std::vector<Finding> best_first(std::map<EvidenceMethod, Finding> best) {
+    std::vector<Finding> best_first(std::map<EvidenceMethod, Finding> best) const {
         std::vector<Finding> found;
         found.reserve(best.size());
         for (auto& [method, finding] : best) { found.push_back(std::move(finding)); }
         std::ranges::sort(found, std::greater{}, &Finding::evidence_nats);
-        if (found.size() > candidates_most) { found.resize(candidates_most); }
+        if (found.size() > options_.candidates_most) { found.resize(options_.candidates_most); }
         return found;
     }
 
@@ -351,12 +350,15 @@ private:
         return finding.evidence_nats - (is_beside ? 0.0 : finding.gain_nats);
     }
 
-    // What `first`, which is all of the causes, and `next` explain.
+    // What `first`, which is all of the causes, and `next` explain; no bound where the spectra's likelihood
+    // is another.
     double realised_nats(const Finding& first, const Hypotheses& with_first, const Finding* next) const {
         const auto is_not_normal = [](const Finding& finding) {
             return traits_of(finding.effect).is_not_normal;
         };
-        if (is_not_normal(first) || (next != nullptr && is_not_normal(*next))) { return 1e300; }
+        if (is_not_normal(first) || (next != nullptr && is_not_normal(*next))) {
+            return std::numeric_limits<double>::infinity();
+        }
         return worth_nats(with_first, next) - log_likelihood_nats(*first_.observation);
     }
 

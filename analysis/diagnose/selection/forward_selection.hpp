@@ -35,14 +35,17 @@ struct SelectionOptions {
     double evidence_min_nats = 5.0;  // for a further cause
     // A bound on the time only: what more is called for stays in the gap that is left.
     std::size_t causes_most = 16;
+    // Likewise: of each estimator's best, so many are tried as the first cause, or as the next.
+    std::size_t candidates_most = 4;
     std::uint64_t seed = 1;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // false ends the work
 };
 
 // The function selects greedily, by evidence. After each new cause all are fitted again, one by one, with the
-// others in the model, and those that the others made needless are dropped. `first` is under the model as it
-// was given. The function returns no value when ended early.
+// others in the model, and those that the others made needless are dropped. A cause stays where all measures
+// together are better explained with it: the spectra's likelihood, and what each cause gains beside them.
+// `first` is under the model as it was given. The function returns no value when ended early.
 std::optional<CauseSelection> select_causes(const Hypotheses& first,
                                             const std::shared_ptr<const Recording>& recording,
                                             const SelectionOptions& options);
