@@ -78,17 +78,12 @@ double eps_sd(double eps, double rows) { return std::sqrt(std::max(eps, 1.0 / ro
 
 // Rows that repeat the one before in every quantity of a set, by the number of rows since the last such one.
 std::vector<double> distances_of(const Recording& recording, const Quantities& moving, std::size_t set) {
+    const std::vector<std::uint8_t> patterns = row_patterns(recording, moving.columns, 1);
     std::vector<double> distances;
     for (const Segment& segment : recording.segments) {
         std::optional<std::size_t> last;
         for (std::size_t row = segment.first + 1; row < segment.first + segment.count; ++row) {
-            bool repeats = true;
-            for (std::size_t c = 0; repeats && c < moving.columns.size(); ++c) {
-                if ((set >> c & 1U) == 0U) { continue; }
-                repeats = std::visit([row](const auto& data) { return data[row] == data[row - 1]; },
-                                     moving.columns[c]->data);
-            }
-            if (!repeats) { continue; }
+            if ((patterns[row] & set) != set) { continue; }
             if (last) { distances.push_back(static_cast<double>(row - *last)); }
             last = row;
         }
@@ -116,7 +111,7 @@ std::optional<Runs> random_runs(const std::vector<double>& distances, const Exce
     }
     const double by_chance =
         std::exp(-std::max(0.0, period - near) * excess.eps) - std::exp(-(period + near) * excess.eps);
-    if (in_beat > 0.5 * (1.0 + by_chance)) { return std::nullopt; }
+    if (in_beat > decisions.majority * (1.0 + by_chance)) { return std::nullopt; }
     const double length = (count + 1.0) / runs;
     return Runs{length, std::sqrt(std::max(length * (length - 1.0), 1.0 / runs) / runs)};
 }

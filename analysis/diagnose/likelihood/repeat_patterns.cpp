@@ -44,18 +44,11 @@ void count_rows(const std::vector<std::uint8_t>& patterns, std::size_t from, std
     }
 }
 
-std::vector<std::uint8_t> patterns_of(const Recording& recording,
-                                      const std::vector<const Column*>& quantities, std::size_t lag) {
-    std::vector<std::uint8_t> patterns(recording.rows(), 0);
-    for (std::size_t c = 0; c < quantities.size(); ++c) { mark(*quantities[c], recording, lag, c, patterns); }
-    return patterns;
-}
-
 // Rows that repeat in all quantities one after the other are one sample shown again and again.
 void leave_out_runs(const Recording& recording, const std::vector<const Column*>& quantities,
                     std::vector<std::uint8_t>& patterns) {
     const auto all = static_cast<std::uint8_t>((std::size_t{1} << quantities.size()) - 1);
-    const std::vector<std::uint8_t> next = patterns_of(recording, quantities, 1);
+    const std::vector<std::uint8_t> next = row_patterns(recording, quantities, 1);
     for (std::size_t row = 1; row < patterns.size(); ++row) {
         if (next[row] == all && next[row - 1] == all) { patterns[row] = 0; }
     }
@@ -139,10 +132,17 @@ RepeatFit fit(const std::vector<PatternCounts>& blocks, std::size_t quantities, 
 
 }  // namespace
 
+std::vector<std::uint8_t> row_patterns(const Recording& recording,
+                                       const std::vector<const Column*>& quantities, std::size_t lag) {
+    std::vector<std::uint8_t> patterns(recording.rows(), 0);
+    for (std::size_t c = 0; c < quantities.size(); ++c) { mark(*quantities[c], recording, lag, c, patterns); }
+    return patterns;
+}
+
 std::vector<PatternCounts> count_patterns(const Recording& recording,
                                           const std::vector<const Column*>& quantities, std::size_t lag,
                                           std::size_t blocks) {
-    std::vector<std::uint8_t> patterns = patterns_of(recording, quantities, lag);
+    std::vector<std::uint8_t> patterns = row_patterns(recording, quantities, lag);
     if (lag > 1) { leave_out_runs(recording, quantities, patterns); }
     std::vector<PatternCounts> counts(blocks);
     const auto block_of = [&](std::size_t row) { return row * blocks / patterns.size(); };

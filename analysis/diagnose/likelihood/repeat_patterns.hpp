@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "analysis/recording/recording.hpp"
@@ -36,6 +37,11 @@ private:
     Value lowest_;
     Value highest_;
 };
+
+// The pattern of each row against the `lag`-th before it; 0 where that belongs to another segment. A
+// quantity's lowest and highest value count as no repeats.
+std::vector<std::uint8_t> row_patterns(const Recording& recording,
+                                       const std::vector<const Column*>& quantities, std::size_t lag);
 
 // The function counts the rows whose `lag`-th before belongs to the same segment, by pattern, in `blocks`
 // equal blocks of rows. A quantity's lowest and highest value count as no repeats, nor, of a lag above 1, do

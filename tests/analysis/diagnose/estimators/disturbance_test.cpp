@@ -33,6 +33,20 @@ TEST(Disturbance, IsTheOnlyCauseOfBumps) {
     EXPECT_EQ(cause.finding.entries.front().params.at("simulated"), 0.0);
 }
 
+// A second recording's bumps lie elsewhere: they are found in it and left out as well.
+TEST(Disturbance, IsLeftOutOfASecondRecordingToo) {
+    const SensorModel model = calibrated_sensor();
+    DiagnosisOptions options;
+    options.simulations = 60;
+    options.holdout = recorded(bumped(model), two_minutes, 4);
+    const auto diagnosis = diagnose(recorded(bumped(model), two_minutes, 3), model, "model.json", options);
+    ASSERT_TRUE(diagnosis);
+    EXPECT_EQ(diagnosis->verdict, Verdict::known);
+    ASSERT_EQ(diagnosis->causes.size(), 1U);
+    EXPECT_EQ(diagnosis->causes.front().finding.effect, "disturbance");
+    EXPECT_GT(diagnosis->causes.front().share.value, 0.9);
+}
+
 TEST(Disturbance, IsNoneWithoutBumps) {
     const SensorModel model = calibrated_sensor();
     int found_any = 0;
