@@ -65,6 +65,7 @@ FittedCoefficient judged(const NoiseLikelihood& likelihood, const LikelihoodMaxi
     FittedCoefficient fitted;
     const auto root = [&](double x) { return std::sqrt(std::max(0.0, x - known)); };
     fitted.upper = root(interval.hi);
+    set_estimate(fitted, value - known, sd);
     if (ratio > identified_ratio && value > known) {
         fitted.state = FittedCoefficient::State::identified;
         fitted.value = root(value);
@@ -81,7 +82,8 @@ FittedCoefficient judged_ramp(const RampFit& fit, double confidence) {
     const double size = std::abs(ramp.slope_per_s);
     FittedCoefficient fitted;
     fitted.upper = size + sigmas * ramp.sd_per_s;
-    fitted.bound = ramp.sd_per_s;
+    fitted.estimate = size;
+    fitted.estimate_sd = fitted.bound = ramp.sd_per_s;
     if (is_significant(fit)) {
         fitted.state = FittedCoefficient::State::identified;
         fitted.value = size;
@@ -193,6 +195,7 @@ private:
         const double sd =
             std::sqrt(std::max(inverse_information(likelihood.expected_information(squares))(at, at), 0.0));
         FittedCoefficient coefficient;
+        set_estimate(coefficient, squares[at], sd);
         coefficient.upper = std::sqrt(profile_interval(likelihood, with.maximum, at,
                                                        normal_quantile(0.5 + options_.confidence / 2.0), sd)
                                           .hi);

@@ -261,6 +261,7 @@ FittedCoefficient judged(const Weighted& fit, Eigen::Index term, double confiden
     const double square_sd = estimator_sd(fit, estimator, coefficients_of(fit.solution.squares));
     FittedCoefficient fitted;
     fitted.upper = std::sqrt(upper_square(fit, term, estimator, square, confidence));
+    set_estimate(fitted, square, square_sd);
     const bool active = (fit.solution.active >> static_cast<unsigned>(term) & 1U) != 0;
     if (!active || !(square > identified_sd * square_sd)) { return fitted; }
     const double half = normal_quantile(0.5 + confidence / 2.0) * square_sd;
@@ -315,6 +316,11 @@ std::vector<AllanPoint> points_of_fit(const AllanCurve& curve) {
 std::string_view name_of(NoiseTerm term) {
     constexpr std::array<std::string_view, noise_terms> names = {"Q", "N", "B", "K", "R"};
     return names[static_cast<std::size_t>(term)];
+}
+
+void set_estimate(FittedCoefficient& fitted, double square, double square_sd) {
+    fitted.estimate = std::sqrt(std::max(0.0, square));
+    fitted.estimate_sd = std::sqrt(std::max(0.0, square) + square_sd) - fitted.estimate;
 }
 
 std::string_view name_of(FitMethod method) { return method == FitMethod::curve ? "curve" : "likelihood"; }

@@ -29,7 +29,7 @@ std::string_view name_of(NoiseTerm term);
 struct FittedCoefficient {
     enum class State {
         identified,        // value, sd, lo and hi hold
-        not_identifiable,  // the record is too short or the term too small: only `upper` holds
+        not_identifiable,  // the record is too short or the term too small: `upper` holds
     };
     State state = State::not_identifiable;
     double value = 0.0;  // in the curve's unit times s (Q), sqrt(s) (N), 1 (B), 1/sqrt(s) (K), 1/s (R)
@@ -37,8 +37,15 @@ struct FittedCoefficient {
     double lo = 0.0;  // two-sided interval at the fit's confidence
     double hi = 0.0;
     double upper = 0.0;  // upper end of that interval, by the scatter a value as large would have
+    // What fits best, identified or not, never negative; and how far it moves where its square moves up by
+    // one standard deviation, which near 0 is more than down.
+    double estimate = 0.0;
+    double estimate_sd = 0.0;
     double bound = 0.0;  // Cramer-Rao bound of the standard deviation under the fitted model; 0: not known
 };
+
+// Of a coefficient whose square was found to be `square` with a standard deviation.
+void set_estimate(FittedCoefficient& fitted, double square, double square_sd);
 
 struct FittedGaussMarkov {
     GaussMarkov value;

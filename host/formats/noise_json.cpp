@@ -10,8 +10,11 @@ namespace {
 Json coefficient_json(const FittedCoefficient& fitted, NoiseTerm term, const SensorUnit& unit) {
     const double scale = unit.per_column_unit;
     if (fitted.state == FittedCoefficient::State::not_identifiable) {
-        return {
-            {"state", "not_identifiable"}, {"upper", fitted.upper * scale}, {"unit", noise_unit(term, unit)}};
+        return {{"state", "not_identifiable"},
+                {"upper", fitted.upper * scale},
+                {"estimate", fitted.estimate * scale},
+                {"sd", fitted.estimate_sd * scale},
+                {"unit", noise_unit(term, unit)}};
     }
     Json json = {{"state", "identified"},   {"value", fitted.value * scale},
                  {"sd", fitted.sd * scale}, {"lo", fitted.lo * scale},

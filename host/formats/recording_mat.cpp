@@ -73,6 +73,8 @@ Variable coefficient(const char* name, const FittedCoefficient& fitted) {
     add_if(identified, "lo", fitted.lo);
     add_if(identified, "hi", fitted.hi);
     add_if(true, "upper", fitted.upper);
+    add_if(true, "estimate", fitted.estimate);
+    add_if(true, "estimate_sd", fitted.estimate_sd);
     return structure.take();
 }
 

@@ -133,6 +133,9 @@ TEST(CurveJson, HasTheFormOfItsContract) {
     EXPECT_EQ(axis["coefficients"]["N"]["unit"], "dps/sqrt(Hz)");
     EXPECT_EQ(axis["coefficients"]["B"]["state"], "not_identifiable");
     EXPECT_GT(axis["coefficients"]["B"]["upper"].get<double>(), 0.0);
+    EXPECT_LT(axis["coefficients"]["B"]["estimate"].get<double>(),
+              axis["coefficients"]["B"]["upper"].get<double>());
+    EXPECT_GT(axis["coefficients"]["B"]["sd"].get<double>(), 0.0);
     EXPECT_TRUE(axis["gauss_markov"].empty());
     EXPECT_TRUE(axis["sinusoids"].empty());
     EXPECT_EQ(axis["method"], "curve");
