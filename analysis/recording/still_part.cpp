@@ -110,21 +110,4 @@ TimeSpan still_part(const Recording& recording, std::span<const std::vector<doub
         static_cast<double>(last.index + static_cast<std::int64_t>(last.count) - origin) / recording.rate_hz};
 }
 
-std::vector<Segment> segments_within(std::span<const Segment> segments, double rate_hz,
-                                     const TimeSpan& span) {
-    std::vector<Segment> kept;
-    if (segments.empty()) { return kept; }
-    const std::int64_t origin = segments.front().first_index;
-    const std::int64_t begin = origin + std::llround(span.from_s * rate_hz);
-    const std::int64_t end = origin + std::llround(span.to_s * rate_hz);
-    for (const Segment& segment : segments) {
-        const std::int64_t from = std::max(segment.first_index, begin);
-        const std::int64_t to = std::min(segment.first_index + static_cast<std::int64_t>(segment.count), end);
-        if (from >= to) { continue; }
-        kept.push_back({segment.first + static_cast<std::size_t>(from - segment.first_index),
-                        static_cast<std::size_t>(to - from), from});
-    }
-    return kept;
-}
-
 }  // namespace gyrolog

@@ -11,19 +11,12 @@
 #include <vector>
 
 #include "analysis/recording/recording.hpp"
+#include "analysis/recording/recording_part.hpp"
 
 namespace gyrolog {
-
-struct TimeSpan {
-    double from_s = 0.0;  // from the first sampling instant
-    double to_s = 0.0;
-};
 
 // Of the signals (one value a row, all as long as the recording has rows). Empty (from = to) when there is
 // none of at least four blocks.
 TimeSpan still_part(const Recording& recording, std::span<const std::vector<double>> signals);
-
-// The segments' part between two times.
-std::vector<Segment> segments_within(std::span<const Segment> segments, double rate_hz, const TimeSpan& span);
 
 }  // namespace gyrolog

@@ -28,6 +28,7 @@ Sensors sensors_of(const AnalysisRequest& request) {
 RecordingInput input_of(const AnalysisRequest& request) {
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps, request.on_stage};
     input.lsb_g = request.lsb_g;
+    input.part = request.part;
     input.with_accelerometer = sensors_of(request) != Sensors::gyro;
     input.needs_gyro = sensors_of(request) == Sensors::gyro;
     return input;

@@ -9,6 +9,7 @@
 #include "analysis/recording/stage_observer.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
+#include "host/app/part_choice.hpp"
 
 namespace gyrolog {
 
@@ -24,6 +25,7 @@ struct AnalysisRequest {
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
     std::optional<double> lsb_g{};
+    PartChoice part{};
     std::string sensor = "all";  // or "gyro", "accelerometer"
     double confidence = 0.683;
     bool robust = false;

@@ -7,6 +7,7 @@
 #include "host/app/command.hpp"
 #include "host/app/curve_run.hpp"
 #include "host/app/option_check.hpp"
+#include "host/app/part_options.hpp"
 #include "host/app/stage_clock.hpp"
 
 namespace gyrolog {
@@ -75,6 +76,7 @@ Action setup_analyze(CLI::App& app) {
         ->check(CLI::IsMember({"gyro", "accelerometer", "all"}))
         ->type_name("NAME")
         ->capture_default_str();
+    add_part_options(app, request->part);
     app.add_flag("--robust", request->robust,
                  "First replace single samples that lie more than 6 robust standard deviations off their "
                  "neighbours");
@@ -85,7 +87,7 @@ Action setup_analyze(CLI::App& app) {
     auto timing = std::make_shared<bool>(false);
     app.add_flag("--timing", *timing, "Print on standard error where the time went");
     for (const char* of_samples : {"--deviation", "--convention", "--m", "--robust", "--histogram",
-                                   "--lsb-dps", "--lsb-g", "--sensor"}) {
+                                   "--lsb-dps", "--lsb-g", "--sensor", "--from", "--to", "--still"}) {
         curve->excludes(app.get_option(of_samples));
     }
     return [request, curve_path, timing](Console& console) {

@@ -14,6 +14,7 @@
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/part_options.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
@@ -33,33 +34,18 @@ struct CompareRequest {
     std::string plot_path;
     std::string duration;  // of the recording's beginning; empty: all
     std::optional<double> lsb_dps;
+    PartChoice part;  // of the recording, not of another one
     ModelComparisonOptions simulations;
 };
 
-void cut_to(Recording& recording, double duration_s) {
-    const std::int64_t end =
-        recording.segments.front().first_index + std::llround(duration_s * recording.rate_hz);
-    std::size_t rows = 0;
-    std::vector<Segment> kept;
-    for (Segment segment : recording.segments) {
-        if (segment.first_index >= end) { break; }
-        segment.count = std::min(segment.count, static_cast<std::size_t>(end - segment.first_index));
-        rows = segment.first + segment.count;
-        kept.push_back(segment);
-    }
-    recording.segments = std::move(kept);
-    for (Column& column : recording.columns) {
-        std::visit([&](auto& data) { data.resize(std::min(data.size(), rows)); }, column.data);
-    }
-    recording.t_s.resize(std::min(recording.t_s.size(), rows));
-    std::erase_if(recording.dropouts, [&](const Dropout& dropout) { return dropout.at_s > duration_s; });
-}
-
-Result<Recording> comparable_recording(const CompareRequest& request, const std::string& path) {
-    GYROLOG_TRY(Recording recording, read_recording({path, std::nullopt, request.lsb_dps, {}}));
+Result<Recording> comparable_recording(const CompareRequest& request, const std::string& path,
+                                       const PartChoice& part) {
+    RecordingInput input{path, std::nullopt, request.lsb_dps};
+    input.part = part;
+    GYROLOG_TRY(Recording recording, read_recording(input));
     if (!request.duration.empty() && !recording.segments.empty()) {
         GYROLOG_TRY(const double duration_s, parse_duration_s(request.duration));
-        cut_to(recording, duration_s);
+        recording = part_of(recording, {0.0, duration_s});
     }
     if (const auto refusal = comparison_refusal(recording)) {
         return Error{ErrorCode::failed, "'" + path + "': " + *refusal};
@@ -79,7 +65,7 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
     if (const auto refusal = simulation_refusal(file.model)) {
         return Error{ErrorCode::failed, "model '" + request.other_path + "': " + *refusal};
     }
-    GYROLOG_TRY(Recording recording, comparable_recording(request, request.recording_path));
+    GYROLOG_TRY(Recording recording, comparable_recording(request, request.recording_path, request.part));
     const std::size_t of_reading = recording.warnings.size();
     recording = with_known_motion(std::move(recording));
     const std::vector<std::string> left_out(
@@ -107,8 +93,9 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
 }
 
 Result<Comparison> with_recording(const CompareRequest& request) {
-    GYROLOG_TRY(const Recording recording, comparable_recording(request, request.recording_path));
-    GYROLOG_TRY(const Recording other, comparable_recording(request, request.other_path));
+    GYROLOG_TRY(const Recording recording,
+                comparable_recording(request, request.recording_path, request.part));
+    GYROLOG_TRY(const Recording other, comparable_recording(request, request.other_path, {}));
     Comparison comparison = compare_recordings(recording, other);
     if (comparison.axes.empty()) {
         return Error{ErrorCode::failed, "the two recordings have no axis in common"};
@@ -179,6 +166,7 @@ Action setup_compare(CLI::App& app) {
     app.add_option("--duration", request->duration, "Compare the first part of a recording only")
         ->type_name("T")
         ->check(duration());
+    add_part_options(app, request->part);
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());

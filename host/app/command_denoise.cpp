@@ -12,6 +12,7 @@
 #include "host/app/denoise_knowledge.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/part_options.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
@@ -33,6 +34,7 @@ struct Request {
     std::string calibration;  // another recording, at rest
     std::vector<std::string> models;
     std::string duration;
+    PartChoice part;  // to which --still and --duration refer
     std::optional<double> saturation_dps;
     bool all_methods = false;
     std::string align = "clock";
@@ -119,16 +121,12 @@ private:
             input.simulated_s = *duration_s;
         }
         GYROLOG_TRY(Recording recording, read_array(input));
-        if (duration_s && !recording.segments.empty()) {
-            std::size_t rows = 0;
-            for (const Segment& segment :
-                 segments_within(recording.segments, recording.rate_hz, {0.0, *duration_s})) {
-                rows = segment.first + segment.count;
-            }
-            if (rows == 0) {
+        GYROLOG_TRY(recording, take_part(std::move(recording), request_.part, request_.input.paths.front()));
+        if (duration_s) {
+            recording = part_of(recording, {0.0, *duration_s});
+            if (recording.rows() == 0) {
                 return invalid_argument("--duration '" + request_.duration + "' holds no sample");
             }
-            recording = first_rows(std::move(recording), rows);
         }
         return recording;
     }
@@ -170,8 +168,10 @@ private:
         return designs;
     }
 
+    bool names_still() const { return !request_.still.empty() && request_.still != "auto"; }
+
     Status find_still() {
-        if (!request_.still.empty()) {
+        if (names_still()) {
             GYROLOG_TRY(still_, parse_span(request_.still));
             if (segments_within(recording_.segments, recording_.rate_hz, still_).empty()) {
                 return invalid_argument(
@@ -228,7 +228,7 @@ private:
             GYROLOG_TRY(still, rows_at_rest(recording_, still_));
             report_.learned_from =
                 fmt::format("of {:.6g} s to {:.6g} s, at rest{}", still_.from_s, still_.to_s,
-                            request_.still.empty() ? " as it seems (--still says otherwise)" : "");
+                            !names_still() ? " as it seems (--still says otherwise)" : "");
         }
         std::vector<AxisKnowledge> knowledge = learn_units(still, saturation);
         for (const AxisKnowledge& axis : knowledge) {
@@ -384,8 +384,10 @@ void add_input_options(CLI::App& app, Request& request) {
                    "One recording with several gyros (gx1 gx2 ...) or one, several of the same time, or "
                    "sim:boards=N,...")
         ->required();
-    app.add_option("--still", request.still, "The part at rest from which the units' noise is learned")
+    app.add_option("--still", request.still,
+                   "The part at rest from which the units' noise is learned, or auto, which finds it")
         ->type_name("FROM,TO");
+    add_time_options(app, request.part);
     app.add_option("--calibration", request.calibration, "A recording of the same units at rest, instead")
         ->type_name("RECORDING");
     app.add_option("--model", request.models,

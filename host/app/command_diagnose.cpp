@@ -4,6 +4,7 @@
 #include "host/app/command.hpp"
 #include "host/app/curve_diagnosis_run.hpp"
 #include "host/app/option_check.hpp"
+#include "host/app/part_options.hpp"
 #include "host/app/recording_diagnosis_run.hpp"
 #include "host/app/simulation_count.hpp"
 
@@ -93,8 +94,9 @@ Action setup_diagnose(CLI::App& app) {
     app.add_option("--lsb-dps", request.lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());
+    add_part_options(app, request.part);
     for (const char* of_recordings : {"--auto", "--unnamed", "--holdout", "--average", "--simulations",
-                                      "--seed", "--threads", "--lsb-dps"}) {
+                                      "--seed", "--threads", "--lsb-dps", "--from", "--to", "--still"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

@@ -6,6 +6,7 @@
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/part_options.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/base/file_output.hpp"
@@ -22,6 +23,7 @@ struct ExportOptions {
     std::string output;
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
+    PartChoice part;
     std::string simulator;  // empty: by the output's ending
     std::string horizon = "1h";
     std::uint64_t seed = 1;
@@ -82,8 +84,9 @@ bool has_rates(const Recording& recording) {
 }
 
 Status export_recording(Console& console, const ExportOptions& options, const ExportFormat& format) {
-    GYROLOG_TRY(const Recording recording,
-                read_recording({options.source, options.rate_hz, options.lsb_dps}));
+    RecordingInput input{options.source, options.rate_hz, options.lsb_dps};
+    input.part = options.part;
+    GYROLOG_TRY(const Recording recording, read_recording(input));
     for (const std::string& warning : recording.warnings) {
         console.err << "gyrolog export: warning: " << warning << '\n';
     }
@@ -114,6 +117,11 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
     const NamedPath written[] = {{"--output", options.output}};
     if (const Status fine = check_output_paths(read, written); !fine.ok()) {
         return report_error(console, "export", fine.error());
+    }
+    if (options.source.ends_with(".json") && !options.part.is_whole()) {
+        return report_error(console, "export",
+                            {ErrorCode::invalid_argument,
+                             "--from, --to and --still are for a recording; a model has no time"});
     }
     if (!options.simulator.empty()) {
         const Status done = export_for_simulator(console, options);
@@ -163,6 +171,7 @@ Action setup_export(CLI::App& app) {
     app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
         ->check(sampling_rate());
+    add_part_options(app, options->part);
     app.add_option("--lsb-dps", options->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());

@@ -2,6 +2,7 @@
 
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
+#include "host/app/part_options.hpp"
 #include "host/app/report_run.hpp"
 #include "host/app/simulation_count.hpp"
 
@@ -32,6 +33,7 @@ Action setup_report(CLI::App& app) {
     app.add_option("--rate", request->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
         ->check(sampling_rate());
+    add_part_options(app, request->part);
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());

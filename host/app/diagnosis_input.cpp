@@ -128,7 +128,8 @@ Result<Means> read_means(RecordingInput input, std::size_t samples_per_row, cons
 
 }  // namespace
 
-Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& input) {
+Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& whole) {
+    GYROLOG_TRY(const RecordingInput input, with_known_part(whole));
     if (input.samples_per_row > 1) { return read_for_one_pass(input); }
     GYROLOG_TRY(Read beginning, read_samples(input, resolution::beginning_max));
     if (!beginning.is_long) { return DiagnosisInput{shared(std::move(beginning.samples)), nullptr}; }

@@ -39,6 +39,17 @@ CLI::Validator understood_by(Result<Number> (*parse)(std::string_view)) {
             ""};
 }
 
+// What zero of it is, is clear.
+template <typename Number>
+CLI::Validator understood_or_none(Result<Number> (*parse)(std::string_view)) {
+    return {[parse](const std::string& text) -> std::string {
+                if (text == "0") { return ""; }
+                const auto parsed = parse(text);
+                return parsed.ok() ? "" : parsed.error().message + "; or 0";
+            },
+            ""};
+}
+
 }  // namespace
 
 CLI::Validator number_from_to(double lowest, double highest, const std::string& unit) {
@@ -70,14 +81,9 @@ CLI::Validator duration() { return understood_by(parse_duration_s); }
 
 CLI::Validator size() { return understood_by(parse_bytes); }
 
-CLI::Validator size_or_none() {
-    return {[](const std::string& text) -> std::string {
-                if (text == "0") { return ""; }
-                const auto parsed = parse_bytes(text);
-                return parsed.ok() ? "" : parsed.error().message + "; or 0";
-            },
-            ""};
-}
+CLI::Validator duration_or_none() { return understood_or_none(parse_duration_s); }
+
+CLI::Validator size_or_none() { return understood_or_none(parse_bytes); }
 
 CLI::Validator png_file() {
     return {[](const std::string& path) -> std::string {

@@ -25,6 +25,9 @@ CLI::Validator whole_number(std::uint64_t lowest,
 // "90", "15m": what parse_duration_s() understands.
 CLI::Validator duration();
 
+// The same, or 0.
+CLI::Validator duration_or_none();
+
 // "500M", "2G": what parse_bytes() understands.
 CLI::Validator size();
 

@@ -126,12 +126,14 @@ Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisR
     if (!is_plain) { GYROLOG_TRY(file, read_single_model(request.model_path)); }
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.samples_per_row = request.average;
+    input.part = request.part;
     GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
     if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, request.recording_path)); }
     complete_from(*read.samples, file);
     DiagnosisInput second;
     if (!request.holdout_path.empty()) {
         input.path = request.holdout_path;
+        input.part = {};
         GYROLOG_TRY(second, read_for_diagnosis(input, read));
     }
     DiagnosisOptions options = options_of(console, request);

@@ -10,6 +10,7 @@
 #include "analysis/diagnose/report.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
+#include "host/app/part_choice.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
@@ -24,6 +25,7 @@ struct RecordingDiagnosisRequest {
     bool with_unnamed = false;      // and what was modelled without a name
     std::optional<double> rate_hz;  // in place of the one in the file
     std::optional<double> lsb_dps;
+    PartChoice part{};        // of the recording, not of the second one
     std::size_t average = 1;  // samples of which means are looked at
     std::size_t simulations = 200;
     std::uint64_t seed = 1;

@@ -46,7 +46,9 @@ Result<Recording> read_recording(const RecordingInput& input) {
     return std::move(timed.recording);
 }
 
-Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
+namespace {
+
+Result<TimedRecording> read_whole(const RecordingInput& input) {
     if (looks_like_capture(input.path)) { return read_capture(input); }
     input.on_stage("read");
     CsvReadOptions options;
@@ -60,6 +62,32 @@ Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
     options.needs_gyro = input.needs_gyro;
     GYROLOG_TRY(Recording recording, read_recording_csv(input.path, options));
     return TimedRecording{std::move(recording)};
+}
+
+}  // namespace
+
+Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
+    if (input.part.is_whole()) { return read_whole(input); }
+    RecordingInput all = input;
+    all.samples_most = RecordingInput{}.samples_most;
+    GYROLOG_TRY(TimedRecording timed, read_whole(all));
+    if (timed.host_start_s) {
+        GYROLOG_TRY(const TimeSpan span, chosen_span(timed.recording, input.part, input.path));
+        *timed.host_start_s += span.from_s;
+    }
+    GYROLOG_TRY(timed.recording, take_part(std::move(timed.recording), input.part, input.path));
+    return timed;
+}
+
+Result<RecordingInput> with_known_part(RecordingInput input) {
+    if (!input.part.is_still) { return input; }
+    RecordingInput all = input;
+    all.part = {};
+    all.samples_most = RecordingInput{}.samples_most;
+    GYROLOG_TRY(const Recording recording, read_recording(all));
+    GYROLOG_TRY(const TimeSpan span, chosen_span(recording, input.part, input.path));
+    input.part = {span.from_s, span.to_s, false};
+    return input;
 }
 
 }  // namespace gyrolog

@@ -8,6 +8,7 @@
 
 #include "analysis/recording/recording.hpp"
 #include "analysis/recording/stage_observer.hpp"
+#include "host/app/part_choice.hpp"
 #include "host/base/result.hpp"
 #include "host/session/load_capture.hpp"
 
@@ -25,9 +26,14 @@ struct RecordingInput {
     std::optional<double> lsb_g{};   // scale of accelerometer columns in counts
     bool with_accelerometer = true;  // without it, its columns are not read
     bool needs_gyro = true;          // else text with an accelerometer alone is a recording, too
+    PartChoice part{};
 };
 
+// Errors beside those of the file: of take_part().
 Result<Recording> read_recording(const RecordingInput& input);
+
+// The same with the times of its part at rest, for a file that is read more than once.
+Result<RecordingInput> with_known_part(RecordingInput input);
 
 // With what a capture says beside its samples; of text nothing.
 struct TimedRecording {

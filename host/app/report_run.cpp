@@ -53,6 +53,7 @@ RecordingDiagnosisRequest diagnosis_request(const ReportRequest& request) {
     diagnosis.model_path = request.model_path;
     diagnosis.rate_hz = request.rate_hz;
     diagnosis.lsb_dps = request.lsb_dps;
+    diagnosis.part = request.part;
     diagnosis.simulations = request.simulations;
     diagnosis.seed = request.seed;
     return diagnosis;
@@ -78,7 +79,9 @@ ExitCode report_to_file(Console& console, const ReportRequest& request) {
         if (!made.ok()) { return fail(made.error()); }
         diagnosis = std::move(made).value();
     }
-    const auto read = read_timed_recording({request.recording_path, request.rate_hz, request.lsb_dps});
+    RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
+    input.part = request.part;
+    const auto read = read_timed_recording(input);
     if (!read.ok()) { return fail(read.error()); }
     AnalysisOptions options;
     options.sensors = Sensors::gyro;

@@ -8,6 +8,7 @@
 
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
+#include "host/app/part_choice.hpp"
 
 namespace gyrolog {
 
@@ -17,6 +18,7 @@ struct ReportRequest {
     std::string page_path;
     std::optional<double> rate_hz;  // in place of the one in the file
     std::optional<double> lsb_dps;
+    PartChoice part{};
     std::size_t simulations = 200;
     std::uint64_t seed = 1;
 };

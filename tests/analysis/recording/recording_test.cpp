@@ -1,25 +1,13 @@
 #include "analysis/recording/recording.hpp"
 
 #include <cmath>
-#include <numeric>
 
 #include <gtest/gtest.h>
 
+#include "tests/analysis/recording/recording_with_holes.hpp"
+
 namespace gyrolog {
 namespace {
-
-// Ten rows in three segments: 0-3, then one missing, 4-5, then four missing, 6-9.
-Recording with_holes() {
-    Recording recording;
-    recording.rate_hz = 10.0;
-    Column column{.name = "gx", .unit = "rad/s", .data = std::vector<double>(10)};
-    std::iota(std::get<1>(column.data).begin(), std::get<1>(column.data).end(), 0.0);
-    recording.columns = {column};
-    recording.t_s = {0.0, 0.1, 0.2, 0.3, 0.5, 0.6, 1.1, 1.2, 1.3, 1.4};
-    recording.segments = {{0, 4, 0}, {4, 2, 5}, {6, 4, 11}};
-    recording.dropouts = {{0.4, 1, "link"}, {0.7, 4, "link"}};
-    return recording;
-}
 
 TEST(FirstRows, EndTheRecordingAndNothingElse) {
     for (std::size_t rows = 1; rows <= 10; ++rows) {

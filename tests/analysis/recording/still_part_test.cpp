@@ -52,16 +52,5 @@ TEST(StillPart, IsNoneOfAFewSamples) {
     EXPECT_EQ(span.from_s, span.to_s);
 }
 
-TEST(StillPart, SegmentsAreCutAtItsEnds) {
-    const std::vector<Segment> parts{{0, 100, 7}, {100, 100, 207}};
-    const std::vector<Segment> cut = segments_within(parts, 100.0, {0.5, 2.2});
-    ASSERT_EQ(cut.size(), 2U);
-    EXPECT_EQ(cut[0].first, 50U);
-    EXPECT_EQ(cut[0].count, 50U);
-    EXPECT_EQ(cut[0].first_index, 57);
-    EXPECT_EQ(cut[1].first, 100U);
-    EXPECT_EQ(cut[1].count, 20U);
-}
-
 }  // namespace
 }  // namespace gyrolog

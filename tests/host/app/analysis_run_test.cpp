@@ -1,6 +1,8 @@
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -222,6 +224,39 @@ TEST(StageClock, StagesTogetherAreTheTimeThatPassed) {
     for (const StageClock::Stage& stage : clock.stages()) { sum_s += stage.wall_s; }
     EXPECT_GT(sum_s, 0.0);
     EXPECT_LE(sum_s, passed.count());
+}
+
+// What is left of a recording is analysed as a recording that holds nothing else.
+TEST(AnalyzeAPart, IsAnalysingARecordingOfThatPart) {
+    const TemporaryFolder folder;
+    std::ofstream all(folder.path("all.csv"));
+    std::ofstream part(folder.path("part.csv"));
+    all << "gx_dps\n";
+    part << "gx_dps\n";
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0.0, 0.1);
+    for (int row = 0; row < 3000; ++row) {
+        const bool turns = row < 600;
+        const double rate_dps = noise(random) + (turns ? 20.0 * std::sin(0.1 * row) : 0.0);
+        all << rate_dps << '\n';
+        if (row >= 700 && row < 2700) { part << rate_dps << '\n'; }
+    }
+    all.close();
+    part.close();
+    const auto report = [&](const char* name, std::vector<std::string> options) {
+        std::ostringstream out;
+        std::ostringstream err;
+        options.insert(options.begin(), {"analyze", folder.path(name), "--rate", "100", "--json", "-"});
+        EXPECT_EQ(run_command_line(std::move(options), {out, err}), ExitCode::ok) << err.str();
+        return json::parse(out.str());
+    };
+    const json of_part = report("part.csv", {})["axes"];
+    EXPECT_EQ(report("all.csv", {"--from", "7", "--to", "27s"})["axes"], of_part);
+    const json still = report("all.csv", {"--still", "auto"});
+    EXPECT_NEAR(still["recording"]["duration_s"].get<double>(), 24.0, 1.01);
+    EXPECT_NE(still.dump().find("this is the part from 6 s"), std::string::npos) << still["warnings"];
+    // Of what the other two leave.
+    EXPECT_EQ(report("all.csv", {"--from", "7", "--to", "27s", "--still", "auto"})["axes"], of_part);
 }
 
 }  // namespace
