@@ -58,14 +58,14 @@ if(GYROLOG_JOIN_SOURCES)
   target_compile_options(gyrolog_settings INTERFACE -Wno-shadow)
 endif()
 
-# gyrolog_join(VARIABLE NAME SOURCES...): the sources, or with GYROLOG_JOIN_SOURCES fewer that include several of them,
-# which compile in half the time. For builds that are made once.
-function(gyrolog_join variable name)
+# gyrolog_join(VARIABLE NAME LINES SOURCES...): the sources, or with GYROLOG_JOIN_SOURCES fewer that include several of
+# them, LINES at most, which compile in half the time. For builds that are made once.
+function(gyrolog_join variable name lines)
   set(joined ${ARGN})
   if(GYROLOG_JOIN_SOURCES)
     list(TRANSFORM joined REPLACE "^([^/].*)$" "${CMAKE_CURRENT_SOURCE_DIR}/\\1")
     execute_process(COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/source_groups.py
-      --lines ${GYROLOG_JOINED_LINES} ${CMAKE_BINARY_DIR}/joined/${name} ${joined} OUTPUT_VARIABLE joined COMMAND_ERROR_IS_FATAL ANY)
+      --lines ${lines} ${CMAKE_BINARY_DIR}/joined/${name} ${joined} OUTPUT_VARIABLE joined COMMAND_ERROR_IS_FATAL ANY)
   endif()
   set(${variable} "${joined}" PARENT_SCOPE)
 endfunction()
@@ -98,7 +98,7 @@ gyrolog_precompile_standard_headers(${GYROLOG_STANDARD_HEADERS}_brief ${GYROLOG_
 # functions with a target attribute with -O2, too.
 function(gyrolog_library name)
   cmake_parse_arguments(arg "RUNS_BRIEFLY" "FASTER_IN" "SOURCES;LINK;PRECOMPILE" ${ARGN})
-  gyrolog_join(sources ${name} ${arg_SOURCES})
+  gyrolog_join(sources ${name} ${GYROLOG_JOINED_LINES} ${arg_SOURCES})
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC ${arg_LINK} PRIVATE gyrolog_settings)
   target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
@@ -140,7 +140,8 @@ function(gyrolog_test name)
     return()
   endif()
   find_package(GTest REQUIRED)
-  gyrolog_join(sources ${name} ${arg_SOURCES})
+  set(test_lines_joined 2000) # of tests, more have names in common
+  gyrolog_join(sources ${name} ${test_lines_joined} ${arg_SOURCES})
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE gyrolog_settings ${arg_LINK} GTest::gmock GTest::gtest_main)
   if(arg_COMPUTES)
