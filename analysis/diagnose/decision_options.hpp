@@ -24,6 +24,11 @@ struct DecisionOptions {
     double outlier_sigma = 6.0;
     // The log-likelihood that goes with `seen_sigma` for one free number (Wilks 1938).
     constexpr double seen_nats() const { return 0.5 * seen_sigma * seen_sigma; }
+    // Nats: what is certain by the log-likelihood, and wins by far.
+    constexpr double certain_nats() const { return 0.5 * certain_sigma * certain_sigma; }
+    // Nats: a Bayes factor below 20 is no strong evidence (Kass, Raftery 1995), whatever simulations have,
+    // and no reason to prefer what was not first.
+    double strong_nats = 3.0;
     // A relative standard deviation with which a positive number is just seen.
     constexpr double seen_sd_rel() const { return 1.0 / seen_sigma; }
 

@@ -31,8 +31,7 @@ struct NullJudgementOptions {
     // Probability that one effect more is found where there is none: half of the false alarms that a
     // diagnosis allows itself.
     double chance_of_an_effect = decisions.false_alarms_most / 2.0;
-    // A Bayes factor below 20 is no strong evidence (Kass, Raftery 1995), whatever simulations have.
-    double evidence_least_nats = 3.0;
+    double evidence_least_nats = decisions.strong_nats;
     // Of all false alarms, those of the stamps: a weighted Bonferroni bound (Holm 1979). Simulations copy the
     // stamps, so that their chance is not known as well as the others'.
     double share_of_stamps = 0.05;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/report.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
 
@@ -13,7 +14,7 @@ namespace gyrolog {
 
 struct ShapeOptions {
     // A shape wins by this much evidence,
-    double wins_nats = 8.0;
+    double wins_nats = decisions.certain_nats();
     // and by this share of the causes' gain: the approximations of a fit may lose as much.
     double wins_share = 0.04;
     std::uint64_t seed = 1;

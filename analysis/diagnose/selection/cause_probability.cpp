@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/simulate/chain.hpp"
 
+namespace gyrolog::resolution {
+
+// So many rivals are told of.
+constexpr std::size_t ties_most = 4;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
-
-namespace {
-
-// A difference of this evidence is no tie any more, whatever chance does to it.
-constexpr double decided_nats = 8.0;
-
-}  // namespace
 
 Cause with_probability(const FoundCause& found, double returning_nats,
                        const std::optional<BetterShape>& better_shape, const ProbabilityOptions& options) {
@@ -26,7 +27,7 @@ Cause with_probability(const FoundCause& found, double returning_nats,
         if (rival.effect == effect) { continue; }
         const double behind = found.finding.evidence_nats - rival.evidence_nats;
         sum += std::exp(-behind);
-        if (behind < options.tie_nats && cause.tie_group.size() < options.ties_most) {
+        if (behind < options.tie_nats && cause.tie_group.size() < resolution::ties_most) {
             cause.tie_group.push_back({rival.effect, behind});
         }
     }
@@ -58,7 +59,8 @@ std::string deciding_recording(const Cause& cause) {
     std::string proposal = telling_apart(cause.finding.effect) + rival.effect + ": " + cause.decided_by;
     // What noise tells grows with the time that it is listened to.
     if (traits_of(cause.finding.effect).is_noise) {
-        const double times = std::ceil(decided_nats / std::max(rival.evidence_below_best_nats, 0.5));
+        const double times =
+            std::ceil(decisions.certain_nats() / std::max(rival.evidence_below_best_nats, 0.5));
         proposal +=
             ", some " + std::to_string(std::max(2, static_cast<int>(times))) + " times as long as this one";
     }

@@ -13,7 +13,6 @@ namespace gyrolog {
 struct ProbabilityOptions {
     // Behind the best by less, a rival is a tie. (At 4 nats one is 55 times as likely as the other.)
     double tie_nats = 4.0;
-    std::size_t ties_most = 4;
 };
 
 // `returning_nats`: the surprisal that returns without the cause, on data that the fit did not use: its

@@ -13,23 +13,24 @@
 #include "analysis/diagnose/selection/joint_refit.hpp"
 #include "analysis/simulate/chain.hpp"
 
-namespace gyrolog {
+namespace gyrolog::resolution {
 
-namespace {
-
-// Less is no reason to prefer what was not first.
-constexpr double margin_nats = 3.0;
-constexpr double far_better_nats = 8.0;
-// A cause of such evidence changes everything that others are judged by.
-constexpr double huge_nats = 1e4;
-
+// Bounds on the time only: what more is called for stays in the gap that is left.
+constexpr std::size_t causes_most = 16;
+// Of each estimator's best, so many are tried as the first cause, or as the next.
+constexpr std::size_t candidates_most = 4;
 // Two causes of like size must not take turns for ever.
 constexpr int main_causes_most = 3;
-
 // Of what one response leaves, to fit it together with others.
 constexpr double worth_refitting_nats = 100.0;
 // Of responses, to fit them better than one by one.
 constexpr double worth_settling_nats = 1000.0;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 enum class Rivals { may_replace, stay_out };
 
@@ -52,7 +53,7 @@ public:
         std::optional<Hypotheses> latest = with_first_cause();
         if (latest && settle_responses()) { latest = with_causes(); }
         // A cause that others make needless may come back for ever.
-        const std::size_t rounds_most = 2 * options_.causes_most;
+        const std::size_t rounds_most = 2 * resolution::causes_most;
         for (std::size_t round = 0; latest && round < rounds_most; ++round) {
             if (has_new_main_cause(*latest)) {
                 if (!measure_null_bias(*latest->observation)) { return std::nullopt; }
@@ -142,7 +143,7 @@ private:
         found.reserve(best.size());
         for (auto& [method, finding] : best) { found.push_back(std::move(finding)); }
         std::ranges::sort(found, std::greater{}, &Finding::evidence_nats);
-        if (found.size() > options_.candidates_most) { found.resize(options_.candidates_most); }
+        if (found.size() > resolution::candidates_most) { found.resize(resolution::candidates_most); }
         return found;
     }
 
@@ -172,9 +173,12 @@ private:
     // What a further cause must have.
     double evidence_least_nats() const {
         const Finding* main = main_cause();
-        const double formulas_nats = main == nullptr ? 0.0 : formulas_share * main->evidence_nats;
+        const double formulas_nats = main == nullptr ? 0.0 : options_.formulas_share * main->evidence_nats;
         return std::max(options_.evidence_min_nats, formulas_nats);
     }
+
+    // A cause changes what others are judged by where right formulas of it may differ by half a nat.
+    bool is_huge(double evidence_nats) const { return 2.0 * options_.formulas_share * evidence_nats >= 1.0; }
 
     // One beside which others may only seem to be.
     bool has_new_main_cause(const Hypotheses& with_causes) const {
@@ -182,12 +186,11 @@ private:
             return false;
         }
         const Finding* main = main_cause();
-        if (!is_of_codes(*main) && !traits_of(main->effect).is_not_normal &&
-            main->evidence_nats < huge_nats) {
+        if (!is_of_codes(*main) && !traits_of(main->effect).is_not_normal && !is_huge(main->evidence_nats)) {
             return false;
         }
         const bool is_new = main->effect != null_bias_.beside || main->where.axes != null_bias_.axes;
-        return is_new && main_causes_ < main_causes_most;
+        return is_new && main_causes_ < resolution::main_causes_most;
     }
 
     // False when ended early. Simulations have the noise that was fitted: free, it would be drawn from all
@@ -250,7 +253,7 @@ private:
     // are without it. Where it changes much of the motion they do not. Whether parameters moved.
     bool settle_responses() {
         const std::vector<std::size_t> places = fast_responses();
-        if (evidence_nats_of(places) < worth_settling_nats) { return false; }
+        if (evidence_nats_of(places) < resolution::worth_settling_nats) { return false; }
         const JointRefit refit = fitted_together(places, nullptr);
         for (std::size_t i = 0; i < places.size(); ++i) { causes_[places[i]].finding = refit.findings[i]; }
         return refit.moved;
@@ -262,7 +265,9 @@ private:
     bool add_response(const Beside& latest, const Finding& next) {
         const std::vector<std::size_t> places = fast_responses();
         const bool is_fast = is_fast_response(next);
-        if (places.empty() || (!is_fast && next.evidence_nats < worth_refitting_nats)) { return false; }
+        if (places.empty() || (!is_fast && next.evidence_nats < resolution::worth_refitting_nats)) {
+            return false;
+        }
         double best_nats = is_fast ? -1e300 : evidence_less_bias_nats(next);
         std::vector<Finding> best;
         for (const std::optional<Finding>& other : latest.findings) {
@@ -298,22 +303,23 @@ private:
         bool best_leaves_nothing = false;
         const std::vector<Finding> first = beginnings();
         // What each then has is measured by what the other leaves: of huge ones the sum says nothing.
-        const bool is_huge = !first.empty() && first.front().evidence_nats >= huge_nats;
+        const bool is_main = !first.empty() && is_huge(first.front().evidence_nats);
         const double better_by_nats =
-            is_huge ? std::max(margin_nats, formulas_share * first.front().evidence_nats) : margin_nats;
+            is_main ? std::max(decisions.strong_nats, options_.formulas_share * first.front().evidence_nats)
+                    : decisions.strong_nats;
         for (const Finding& finding : first) {
             causes_ = {{finding, is_of_codes(finding) ? std::vector{finding} : findings_of(first_.findings)}};
             Hypotheses with_it = with_causes();
             const Finding* next = further(with_it.findings);
             const double claimed_nats = finding.evidence_nats + (next ? next->evidence_nats : 0.0);
-            const double nats = is_huge ? likelihood_with(with_it, next)
+            const double nats = is_main ? likelihood_with(with_it, next)
                                         : std::min(claimed_nats, realised_nats(finding, with_it, next));
             // What the second mends is only what the first spoils.
             if (nats <= 0.0) { continue; }
             // Noise takes up whatever is there; an answer of one shape that leaves nothing is the right one,
             // unless noise that leaves nothing either does far better.
             const bool explains_all = next == nullptr && !is_noise(finding) &&
-                                      (!best_leaves_nothing || nats > best_nats - far_better_nats);
+                                      (!best_leaves_nothing || nats > best_nats - decisions.certain_nats());
             if (!best || explains_all || nats > best_nats + better_by_nats) {
                 best = std::move(with_it);
                 best_causes = causes_;
@@ -371,7 +377,7 @@ private:
 
     bool told() const {
         const double share =
-            static_cast<double>(causes_.size()) / static_cast<double>(options_.causes_most + 1);
+            static_cast<double>(causes_.size()) / static_cast<double>(resolution::causes_most + 1);
         return !options_.on_progress || options_.on_progress(share);
     }
 
@@ -417,7 +423,7 @@ private:
     // when ended early.
     std::optional<bool> take_further(Hypotheses& latest) {
         const std::vector<Finding> candidates = all_further(latest.findings);
-        if (candidates.empty() || causes_.size() == options_.causes_most) { return false; }
+        if (candidates.empty() || causes_.size() == resolution::causes_most) { return false; }
         const std::vector<FoundCause> before = causes_;
         const double before_nats = worth_nats(*latest.observation);
         const Beside beside = given_up(std::move(latest));
@@ -426,7 +432,7 @@ private:
             if (!add(beside, next)) { return std::nullopt; }
             if (is_of_codes(next) || not_normal_among(causes_) != not_normal_among(before)) { return true; }
             if (worth_nats(observed()) > before_nats) { return true; }
-            if (causes_.size() == options_.causes_most) { continue; }
+            if (causes_.size() == resolution::causes_most) { continue; }
             const std::optional<bool> mended = add_next();
             if (!mended) { return std::nullopt; }
             if (*mended && worth_nats(observed()) > before_nats) { return true; }
@@ -466,9 +472,8 @@ private:
 
     // What a steady line leaves beside itself is no other line: it wanders, or swells.
     bool is_same_line(const Finding& a, const Finding& b) const {
-        constexpr double resolutions = 10.0;
         if (!a.where.freq_hz || !b.where.freq_hz) { return false; }
-        const double near_hz = resolutions / first_.prediction->duration_s();
+        const double near_hz = options_.same_line_resolutions / first_.prediction->duration_s();
         return a.where.freq_hz->from < b.where.freq_hz->to + near_hz &&
                b.where.freq_hz->from < a.where.freq_hz->to + near_hz;
     }
@@ -510,7 +515,7 @@ private:
             const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
             if (is_of_codes(causes_[i].finding)) {
                 if (same != findings.end()) { causes_[i].finding = *same; }
-            } else if (rivals == Rivals::may_replace && rival_nats > own_nats + margin_nats &&
+            } else if (rivals == Rivals::may_replace && rival_nats > own_nats + decisions.strong_nats &&
                        rival_nats >= least_nats) {
                 causes_[i].finding = *rival;
             } else if (own_nats >= least_nats) {
@@ -569,7 +574,7 @@ private:
         const double gained_nats = log_likelihood_nats(observed()) - likelihood_before_nats +
                                    std::max(worth_beside_spectra_nats() - beside_before_nats, 0.0);
         const double dropped = static_cast<double>(before.size() - std::min(before.size(), causes_.size()));
-        are_weighed_ = gained_nats >= -dropped * evidence_least_nats() - margin_nats ||
+        are_weighed_ = gained_nats >= -dropped * evidence_least_nats() - decisions.strong_nats ||
                        not_normal_among(before) != not_normal_among(causes_);
         if (!are_weighed_) { causes_ = before; }
         return true;

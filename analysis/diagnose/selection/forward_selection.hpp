@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/diagnose/calibration/null_bias.hpp"
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/hypotheses.hpp"
 #include "analysis/diagnose/report.hpp"
 
@@ -19,9 +20,6 @@ struct FoundCause {
     std::vector<Finding> rivals;
 };
 
-// Two right formulas of one filter differ by this share of the main cause's evidence.
-inline constexpr double formulas_share = 5e-5;
-
 struct CauseSelection {
     std::vector<FoundCause> causes;        // by evidence
     std::vector<NoiseRefit> noise_refits;  // where the model that was given held part of the causes
@@ -32,11 +30,11 @@ struct CauseSelection {
 };
 
 struct SelectionOptions {
-    double evidence_min_nats = 5.0;  // for a further cause
-    // A bound on the time only: what more is called for stays in the gap that is left.
-    std::size_t causes_most = 16;
-    // Likewise: of each estimator's best, so many are tried as the first cause, or as the next.
-    std::size_t candidates_most = 4;
+    double evidence_min_nats = decisions.strong_nats;  // for a further cause
+    // A share of the main cause's evidence: two right formulas of one filter differ by so much.
+    double formulas_share = 5e-5;
+    // Of the frequency's resolution: what a line leaves nearer to itself than that is no other line.
+    double same_line_resolutions = 10.0;
     std::uint64_t seed = 1;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // false ends the work

@@ -11,9 +11,7 @@
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 constexpr int steps_most = 8;
 constexpr int shortenings_most = 4;
@@ -25,6 +23,12 @@ constexpr double straight = 1e-3;
 // that took most of it is far too small.
 constexpr double falls_most = 0.5;
 constexpr double grows_most = 2.0;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 // One fitted parameter.
 struct Parameter {
@@ -66,12 +70,12 @@ public:
     JointRefit run() {
         Observation seen = observed(best_);
         double nats = log_likelihood_nats(seen);
-        for (int step = 0; step < steps_most; ++step) {
+        for (int step = 0; step < resolution::steps_most; ++step) {
             const NormalEquations equations = linearised(seen);
             const std::vector<double> by = equations.solution();
-            if (!(equations.gain_nats(by) > settled_nats)) { break; }
+            if (!(equations.gain_nats(by) > resolution::settled_nats)) { break; }
             bool better = false;
-            for (int i = 0; i < shortenings_most && !better; ++i) {
+            for (int i = 0; i < resolution::shortenings_most && !better; ++i) {
                 const std::vector<Finding> moved = moved_by(by, std::ldexp(1.0, -i));
                 if (!can_be_simulated(moved)) { continue; }
                 Observation there = observed(moved);
@@ -100,7 +104,8 @@ private:
             const double outwards = value < 0.0 ? -1.0 : 1.0;
             const double size = std::fabs(value);
             const double step = outwards * share * by[i];
-            value += outwards * std::clamp(step, -falls_most * size, grows_most * size);
+            value +=
+                outwards * std::clamp(step, -resolution::falls_most * size, resolution::grows_most * size);
         }
         return moved;
     }
@@ -111,7 +116,7 @@ private:
         for (const Parameter& place : places_) {
             std::vector<Finding> moved = best_;
             double& value = value_at(moved, place);
-            const double step = straight * (value != 0.0 ? std::fabs(value) : 1.0);
+            const double step = resolution::straight * (value != 0.0 ? std::fabs(value) : 1.0);
             value += step;
             const auto answer = noise_free_response(prediction, prediction.denoised_world(),
                                                     with_all(without_.model(), moved));

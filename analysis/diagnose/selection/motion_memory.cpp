@@ -6,15 +6,20 @@
 #include <cstdio>
 #include <vector>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/likelihood/effect_response.hpp"
 #include "analysis/diagnose/likelihood/mean_regression.hpp"
 #include "analysis/diagnose/selection/alternative_noise.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr std::array<double, 5> time_constants_s = {1.0, 3.0, 10.0, 30.0, 100.0};
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
-
-constexpr std::array<double, 5> time_constants_s = {1.0, 3.0, 10.0, 30.0, 100.0};
 
 struct Drive {
     const char* words;
@@ -23,9 +28,6 @@ struct Drive {
 constexpr std::array<Drive, 3> drives = {{{"rate", [](double rate) { return rate; }},
                                           {"size of the rate", [](double rate) { return std::fabs(rate); }},
                                           {"square of the rate", [](double rate) { return rate * rate; }}}};
-
-// Of the amplitude, beside half the logarithm of what it gains: that the axis has the effect, and how much.
-constexpr double amplitude_cost_nats = 3.0;
 
 std::vector<float> faded(const Prediction& prediction, std::size_t from, const Drive& drive,
                          double fades_in_s) {
@@ -64,18 +66,18 @@ std::optional<NonparametricFit> find_motion_memory(const Observation& without, c
         lost_nats += noise[axis].lost_nats;
     }
     const auto tries =
-        static_cast<double>(time_constants_s.size() * drives.size() * prediction.axes().size());
+        static_cast<double>(resolution::time_constants_s.size() * drives.size() * prediction.axes().size());
     std::array<double, 3> best_nats{};
     double most_nats = 0.0;
     std::array<char, 128> words{};
     for (const std::size_t from : prediction.axes()) {
         for (const Drive& drive : drives) {
-            for (const double fades_in_s : time_constants_s) {
+            for (const double fades_in_s : resolution::time_constants_s) {
                 const std::vector<float> cosines = faded(prediction, from, drive, fades_in_s);
                 for (const std::size_t axis : prediction.axes()) {
                     const double gain = gain_nats(without, axis, cosines, noise[axis].density);
                     const double nats =
-                        gain - 0.5 * std::log1p(2.0 * gain) - amplitude_cost_nats - std::log(tries);
+                        gain - 0.5 * std::log1p(2.0 * gain) - decisions.strong_nats - std::log(tries);
                     best_nats[axis] = std::max(best_nats[axis], nats);
                     if (nats <= most_nats) { continue; }
                     most_nats = nats;

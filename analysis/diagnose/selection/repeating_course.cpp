@@ -11,14 +11,18 @@
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/numerics/repetition.hpp"
 
-namespace gyrolog {
-
-namespace {
+namespace gyrolog::resolution {
 
 // A period shorter than some seconds is a few lines that stand alone.
 constexpr double block_s = 0.1;
 constexpr std::size_t blocks_least = 64;
 constexpr std::size_t blocks_most = 1'000'000;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
 
 std::vector<float> whitened(const Observation& without, std::size_t axis,
                             const std::vector<double>& density) {
@@ -50,9 +54,10 @@ std::vector<float> block_sums(const std::vector<float>& samples, std::size_t len
 
 std::optional<NonparametricFit> find_repeating_course(const Observation& without, const Observation& with) {
     const Prediction& prediction = without.prediction();
-    const auto length = std::max<std::size_t>(
-        {1, static_cast<std::size_t>(block_s * prediction.rate_hz()), prediction.length() / blocks_most});
-    if (prediction.length() / length < blocks_least) { return std::nullopt; }
+    const auto length =
+        std::max<std::size_t>({1, static_cast<std::size_t>(resolution::block_s * prediction.rate_hz()),
+                               prediction.length() / resolution::blocks_most});
+    if (prediction.length() / length < resolution::blocks_least) { return std::nullopt; }
     std::vector<std::vector<float>> series;
     double lost_nats = 0.0;
     for (const std::size_t axis : prediction.axes()) {
