@@ -8,14 +8,21 @@
 namespace gyrolog {
 namespace {
 
+// "sigma_g" is "sigma_dps" of a gyro, "c1_g_per_C" is "c1_dps_per_C". Empty: the name has no size in g.
+std::string name_of_a_gyro(const std::string& name) {
+    constexpr std::string_view in_g = "_g";
+    const std::size_t at = name.find(in_g);
+    const std::size_t end = at + in_g.size();
+    if (at == std::string::npos || (end < name.size() && name[end] != '_')) { return {}; }
+    return name.substr(0, at) + "_dps" + name.substr(end);
+}
+
 // Effects know deg/s: a size in g is given to them as what they make of it, m/s^2 in the place of rad/s.
 EffectModel of_a_gyro(EffectModel effect) {
-    constexpr std::string_view in_g = "_g";
     std::map<std::string, double> params;
     for (const auto& [name, value] : effect.params) {
-        if (name.ends_with(in_g)) {
-            params[name.substr(0, name.size() - in_g.size()) + "_dps"] =
-                value * standard_gravity_m_s2 * deg_per_rad;
+        if (const std::string known = name_of_a_gyro(name); !known.empty()) {
+            params[known] = value * standard_gravity_m_s2 * deg_per_rad;
         } else {
             params[name] = value;
         }
