@@ -1,0 +1,61 @@
+// The rests of a recording, and what happens between them.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "analysis/calibrate/inertial_signals.hpp"
+#include "analysis/noise/noise_model.hpp"
+
+namespace gyrolog {
+
+struct RestOptions {
+    double block_s = 0.25;         // a hand sets a sensor down within it
+    std::size_t blocks_least = 4;  // a rest of a second, of which the edges are left out (still_runs.hpp)
+    // A constant rate has no scatter either. A rest's mean rate is within this of the slowest one's: the
+    // zero-rate output's tolerance of an MPU-9250 (PS-MPU-9250A-01 rev. 1.1, table 1).
+    double rate_most_rad_s = 5.0 * rad_per_deg;
+    // Nor is the reference's, where there is one: a tenth of that, many times the noise of its mean.
+    double reference_most_rad_s = 0.5 * rad_per_deg;
+    // A slow tilt is no rest: between the first and the last quarter of a rest the force turns by less, in
+    // proportion where they are farther apart than that. What the temperature does to the bias is slower.
+    double tilt_most_rad = 0.5 * rad_per_deg;
+    double tilt_s = 10.0;
+};
+
+struct Rest {
+    std::size_t recording = 0;  // of those that were given
+    std::size_t first = 0;      // row
+    std::size_t rows = 0;
+    double from_s = 0.0;  // from the recording's first sampling instant
+    double duration_s = 0.0;
+    Vector3 force_m_s2{};  // means; 0 without the sensor
+    Vector3 rate_rad_s{};
+    std::optional<double> temperature_C;
+};
+
+// Between two rests of one recording that follow each other. All rows of it are there.
+struct Move {
+    std::size_t before = 0;  // rests
+    std::size_t after = 0;
+};
+
+// How well a mean over T seconds is known: density / sqrt(T), by axis. From the means of a rest's eight
+// parts, whose variance is that of noise as slow as an eighth of a rest; pooled over all rests.
+struct MeanScatter {
+    Vector3 force_m_s2_sqrt_s{};
+    Vector3 rate_rad_s_sqrt_s{};
+    double degrees = 0.0;  // of freedom, an axis
+};
+
+struct Phases {
+    std::vector<Rest> rests;
+    std::vector<Move> moves;
+    MeanScatter scatter;
+};
+
+Phases find_phases(std::span<const InertialSignals> recordings, const RestOptions& options = {});
+
+}  // namespace gyrolog
