@@ -1,0 +1,15 @@
+// A calibration for people, on 80 columns: each parameter with one sigma, then what to record next.
+#pragma once
+
+#include <string>
+
+#include "analysis/calibrate/calibration.hpp"
+
+namespace gyrolog {
+
+std::string calibration_text(const Calibration& calibration);
+
+// "not determined: ...; add ...", a line or more each; empty where all is determined.
+std::string undetermined_text(const Calibration& calibration);
+
+}  // namespace gyrolog
