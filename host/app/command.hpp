@@ -25,6 +25,7 @@ struct Command {
 
 // Each in its command_NAME.cpp.
 Action setup_analyze(CLI::App& app);
+Action setup_calibrate(CLI::App& app);
 Action setup_capture(CLI::App& app);
 Action setup_check(CLI::App& app);
 Action setup_compare(CLI::App& app);

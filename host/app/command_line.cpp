@@ -19,6 +19,8 @@ constexpr std::array commands{
     Command{"report", "Write one page on a recording: health, noise, bias, and a model's gap", setup_report},
     Command{"compare", "Hold a recording against a model's simulations, or against another one",
             setup_compare},
+    Command{"calibrate", "Find scale, misalignment, bias and temperature's part from rests, turns and ramps",
+            setup_calibrate},
     Command{"conform", "Judge a board by the numbered rules of the protocol", setup_conform},
     Command{"diagnose", "Find what a model lacks: where it parts from a recording, and why", setup_diagnose},
     Command{"denoise", "Combine an array of gyros and take noise out, sample by sample", setup_denoise},

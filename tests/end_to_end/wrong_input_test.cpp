@@ -418,6 +418,8 @@ TEST_F(WrongInput, OfCompareDiagnoseAndDenoise) {
         {"diagnose c.csv --model m.json --simulations 1e9", 2, "'1e9' is no whole number from 20 to 10000"},
         {"diagnose c.csv --model m.json --threads -1", 2, "'-1' is no whole number from 0 to 1024"},
         {"diagnose --curve curve.csv --average 5", 2, "--curve excludes --average"},
+        {"calibrate", 2, "RECORDING is required"},
+        {"calibrate none.csv", 1, "read 'none.csv': no such file"},
         {"denoise", 2, "RECORDING is required"},
         {"denoise none.csv", 1, "read 'none.csv': no such file"},
         {"denoise m.json", 1, "read 'm.json': this is JSON"},
