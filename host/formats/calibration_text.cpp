@@ -104,13 +104,15 @@ std::string accelerometer_text(const Calibration& calibration) {
     return text;
 }
 
+bool has_one(const Matrix3& sd) {
+    return std::ranges::any_of(sd, [](const Vector3& row) { return norm(row) > 0.0; });
+}
+
 std::string gyro_text(const Calibration& calibration) {
     const GyroCalibration& fitted = *calibration.gyro.calibration;
     std::string text = "\ngyro: y = M w + bias";
     text += fitted.has_g_sensitivity ? " + K f, f the specific force\n" : "\n";
-    if (std::ranges::count(fitted.has_scale, true) > 0) {
-        text += matrix_table("M", "", fitted.M, fitted.M_sd);
-    }
+    if (has_one(fitted.M_sd)) { text += matrix_table("M", "", fitted.M, fitted.M_sd); }
     text += vector_table("bias", "dps", fitted.bias_rad_s, fitted.bias_sd_rad_s, deg_per_rad);
     if (fitted.has_g_sensitivity) {
         text += matrix_table("K", "dps/g", fitted.K_s_per_m, fitted.K_sd_s_per_m, in_dps_per_g);
@@ -136,12 +138,12 @@ std::string temperature_text(const char* sensor, const TemperatureCalibration& f
     const char* const powers[] = {"/degC", "/degC^2", "/degC^3"};
     for (std::size_t k = 0; k < temperature_orders; ++k) {
         TextRow row{fmt::format("c{}", k + 1), std::string(unit) + powers[k], {}};
-        bool has_one = false;
+        bool is_used = false;
         for (const TemperaturePolynomial& axis : fitted.axes) {
-            has_one = has_one || k < axis.order;
+            is_used = is_used || k < axis.order;
             row.cells.push_back(k < axis.order ? cell(axis.c[k], axis.c_sd[k], factor) : "-");
         }
-        if (has_one) { rows.push_back(std::move(row)); }
+        if (is_used) { rows.push_back(std::move(row)); }
     }
     TextRow residual{"residual", unit, {}};
     for (const TemperaturePolynomial& axis : fitted.axes) {
