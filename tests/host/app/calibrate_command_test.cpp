@@ -22,7 +22,7 @@ using testing::IsEmpty;
 class CalibrateCommand : public testing::Test {
 protected:
     std::string written(const std::string& name, const Recording& recording) const {
-        const std::string path = folder.path(name);
+        std::string path = folder.path(name);
         EXPECT_TRUE(write_recording_csv(recording, path).ok());
         return path;
     }

@@ -69,9 +69,11 @@ Vector3 px4_corrected(const Parameters& p, char sensor, const Vector3& raw, doub
         const auto of = [&](const std::string& name) { return static_cast<float>(p.at(name)); };
         const float clipped = std::clamp(static_cast<float>(temperature_C), of(tc + "TMIN"), of(tc + "TMAX"));
         const float delta = clipped - of(tc + "TREF");
-        const float thermal = of(tc + "X0_" + axis) + of(tc + "X1_" + axis) * delta +
-                              of(tc + "X2_" + axis) * delta * delta +
-                              of(tc + "X3_" + axis) * delta * delta * delta;
+        const auto coefficient = [&](const char* power) {
+            return of(std::string(tc).append(power).append(axis));
+        };
+        const float thermal = coefficient("X0_") + coefficient("X1_") * delta +
+                              coefficient("X2_") * delta * delta + coefficient("X3_") * delta * delta * delta;
         const std::string cal = sensor == 'A' ? "CAL_ACC0_" : "CAL_GYRO0_";
         float value = static_cast<float>(raw[i]) - thermal - of(cal + axes_upper[i] + "OFF");
         if (sensor == 'A') { value *= of(cal + axes_upper[i] + "SCALE"); }
@@ -82,7 +84,8 @@ Vector3 px4_corrected(const Parameters& p, char sensor, const Vector3& raw, doub
 
 float ardupilot_polynomial(const Parameters& p, const std::string& sensor, const std::string& axis, float s) {
     const auto c = [&](const char* order) {
-        return static_cast<float>(p.at("INS_TCAL1_" + sensor + order + "_" + axis));
+        return static_cast<float>(
+            p.at(std::string("INS_TCAL1_").append(sensor).append(order).append("_").append(axis)));
     };
     return (c("1") + (c("2") + c("3") * s) * s) * s * 1.0e-6F;
 }
