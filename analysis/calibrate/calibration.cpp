@@ -102,12 +102,11 @@ void add_gyro_gaps(Calibration& calibration) {
         const bool is_K = what == "g-sensitivity";
         const char* const turn =
             calibration.has_accelerometer
-                ? "a turn about that axis: by hand with the axis level, from one rest to another, or by a "
-                  "known "
-                  "angle with the axis upright and --turn DEG, or with a reference rate (ref_x_dps ...)"
-                : "a reference rate (ref_x_dps ref_y_dps ref_z_dps) and turns about that axis; turns by a "
-                  "known "
-                  "angle need an accelerometer, which tells their axis";
+                ? "turns about these axes: by hand with the axis level, from one rest to another, or by a "
+                  "known angle with the axis upright and --turn DEG, or with a reference rate (ref_x_dps "
+                  "...)"
+                : "a reference rate (ref_x_dps ref_y_dps ref_z_dps) and turns about these axes; turns by a "
+                  "known angle need an accelerometer, which tells their axis";
         calibration.undetermined.push_back(
             {"gyro: " + what, is_K ? "rests with each face up, with an accelerometer" : turn});
     }

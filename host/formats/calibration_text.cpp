@@ -176,9 +176,12 @@ std::string next_text(const Calibration& calibration) {
 
 std::string undetermined_text(const Calibration& calibration) {
     std::string text;
-    for (const Undetermined& one : calibration.undetermined) {
-        text += line("not determined: ", one.what);
-        text += line("  add: ", one.add);
+    const std::vector<Undetermined>& all = calibration.undetermined;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        text += line("not determined: ", all[i].what);
+        // Once for all that it is for.
+        const bool is_last_of_it = i + 1 == all.size() || all[i + 1].add != all[i].add;
+        if (is_last_of_it) { text += line("  add: ", all[i].add); }
     }
     return text;
 }

@@ -9,7 +9,8 @@ namespace gyrolog {
 
 std::string calibration_text(const Calibration& calibration);
 
-// "not determined: ...; add ...", a line or more each; empty where all is determined.
+// "not determined: ...", a line or more each, and "add: ..." once for neighbours of which it is the same;
+// empty where all is determined.
 std::string undetermined_text(const Calibration& calibration);
 
 }  // namespace gyrolog
