@@ -1,6 +1,7 @@
 #include "host/app/analysis_run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string_view>
 #include <thread>
@@ -8,6 +9,7 @@
 #include "analysis/noise/analyze.hpp"
 #include "analysis/simulate/fitted_model.hpp"
 #include "host/app/analysis_plot.hpp"
+#include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
@@ -101,13 +103,37 @@ void write_figures(ResultOutput& results, const AnalysisReport& report, const st
     results.file(own, [&] { return write(SensorKind::accelerometer, own); });
 }
 
+std::optional<double> mean_temperature_C(const Recording& recording) {
+    const Column* column = recording.find("temp");
+    if (column == nullptr) { return std::nullopt; }
+    double sum_C = 0.0;
+    std::size_t known = 0;
+    for (std::size_t row = 0; row < column->size(); ++row) {
+        const double value_C = column->value(row);
+        if (!std::isfinite(value_C)) { continue; }
+        sum_C += value_C;
+        ++known;
+    }
+    return known == 0 ? std::nullopt : std::optional(sum_C / static_cast<double>(known));
+}
+
+RecordingFacts facts_of(const TimedRecording& read) {
+    RecordingFacts facts;
+    if (read.capture) {
+        facts.board = board_name(*read.capture);
+        facts.started = started_utc(*read.capture);
+    }
+    facts.temperature_C = mean_temperature_C(read.recording);
+    return facts;
+}
+
 Status write_results(Console& console, const char* command, const AnalysisRequest& request,
-                     const Recording& recording, const AnalysisReport& report) {
+                     const Recording& recording, const RecordingFacts& facts, const AnalysisReport& report) {
     ResultOutput results(console);
     request.on_stage("report");
     if (request.json_path != "-") { results.show(analysis_text(report)); }
     request.on_stage("json");
-    results.text(request.json_path, [&] { return analysis_json(report); });
+    results.text(request.json_path, [&] { return analysis_json(report, facts); });
     request.on_stage("plot");
     write_figures(results, report, request.plot_path, [&](SensorKind sensor, const std::string& path) {
         return write_analysis_plot(report, sensor, path);
@@ -138,12 +164,15 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
     }
     const auto options = options_of(request);
     if (!options.ok()) { return report_error(console, command, options.error()); }
-    const auto recording = read_recording(input_of(request));
-    if (!recording.ok()) {
-        report_error(console, command, recording.error());
-        return recording.error().code == ErrorCode::invalid_argument ? ExitCode::usage : ExitCode::failed;
+    auto read_in = read_timed_recording(input_of(request));
+    if (!read_in.ok()) {
+        report_error(console, command, read_in.error());
+        return read_in.error().code == ErrorCode::invalid_argument ? ExitCode::usage : ExitCode::failed;
     }
-    const AnalysisReport report = analyze(*recording, *options);
+    const RecordingFacts facts = facts_of(*read_in);
+    read_in->capture.reset();
+    const Recording& recording = read_in->recording;
+    const AnalysisReport report = analyze(recording, *options);
     if (request.json_path == "-") {  // the report for people, which is not written then, has them too
         for (const std::string& warning : report.warnings) {
             console.err << "gyrolog " << command << ": warning: " << warning << '\n';
@@ -153,7 +182,7 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
         return report_error(console, command,
                             {ErrorCode::failed, request.recording_path + ": " + what_lacks(request)});
     }
-    const Status written = write_results(console, command, request, *recording, report);
+    const Status written = write_results(console, command, request, recording, facts, report);
     return written.ok() ? ExitCode::ok : report_error(console, command, written.error());
 }
 

@@ -55,11 +55,6 @@ Json stops_json(const LoadedCapture& capture, const LinkReport& link) {
     return stops;
 }
 
-std::string started_utc(const LoadedCapture& capture) {
-    const HostTime started = capture.metadata ? capture.metadata->started : capture.first_data;
-    return started.realtime_ns == 0 ? "" : utc_text(started.realtime_ns);
-}
-
 Json reasons_json(const LinkReport& link) {
     Json reasons = Json::object();
     for (std::size_t reason = 0; reason < link.frames.corrupted_by_reason.size(); ++reason) {
@@ -173,6 +168,17 @@ std::string verdict(const LoadedCapture& capture) {
 
 }  // namespace
 
+std::string board_name(const LoadedCapture& capture) {
+    if (!capture.metadata) { return {}; }
+    const SourceIdentity& source = capture.metadata->source;
+    return source.uri.starts_with("sim:") ? source.uri : source.serial;
+}
+
+std::string started_utc(const LoadedCapture& capture) {
+    const HostTime started = capture.metadata ? capture.metadata->started : capture.first_data;
+    return started.realtime_ns == 0 ? "" : utc_text(started.realtime_ns);
+}
+
 bool nothing_missing(const LoadedCapture& capture) {
     return capture.decoder->report().complete() && capture.file.truncated_transfers == 0 &&
            capture.file.blocks.end != FileEnd::damaged && capture.stream_bytes_gone == 0;
@@ -181,6 +187,7 @@ bool nothing_missing(const LoadedCapture& capture) {
 Json check_json(const std::string& path, const LoadedCapture& capture) {
     const LinkReport link = capture.decoder->report();
     const BlockAccounts& file = capture.file.blocks;
+    const auto rate_hz = capture.decoder->rate_hz();
     Json dropouts = Json::array();
     for (const Dropout& dropout : capture.decoder->timed(link.dropouts)) {
         dropouts.push_back({{"at_s", dropout.at_s}, {"samples", dropout.samples}, {"cause", dropout.cause}});
@@ -188,6 +195,10 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
     return {
         {"schema", "gyrolog-check/1"},
         {"file", path},
+        {"board", board_name(capture)},
+        {"started", started_utc(capture)},
+        {"rate_hz", rate_hz ? Json(*rate_hz) : Json(nullptr)},
+        {"duration_s", duration_s(capture, link)},
         {"end", name_of(file.end)},
         {"closed", closed_by_writer(capture)},
         {"files", capture.files},

@@ -19,6 +19,13 @@ std::string info_text(const std::string& path, const LoadedCapture& capture);
 // The lines of that text.
 std::vector<LabelledLine> info_lines(const std::string& path, const LoadedCapture& capture);
 
+// The board's serial number; of a virtual one, which all have the same, its URI, which tells the seed. Empty:
+// not known.
+std::string board_name(const LoadedCapture& capture);
+
+// "2026-11-21T05:04:55.123456789Z"; empty: not known.
+std::string started_utc(const LoadedCapture& capture);
+
 // "no sample", "12 samples in 3 dropouts".
 std::string missing_text(const LinkReport& link);
 

@@ -6,9 +6,12 @@
 namespace gyrolog {
 namespace {
 
-Json recording_json(const AnalysisReport& report) {
+Json recording_json(const AnalysisReport& report, const RecordingFacts& facts) {
     Json json;
     json["name"] = report.name;
+    if (!facts.board.empty()) { json["board"] = facts.board; }
+    if (!facts.started.empty()) { json["started"] = facts.started; }
+    if (facts.temperature_C) { json["temperature_C"] = *facts.temperature_C; }
     json["rate_hz"] = report.rate_hz;
     if (report.rate_sd_hz) { json["rate_sd_hz"] = *report.rate_sd_hz; }
     if (report.nominal_rate_hz) { json["nominal_rate_hz"] = *report.nominal_rate_hz; }
@@ -117,10 +120,10 @@ Json accelerometer_json(const AccelerometerReport& report) {
 
 }  // namespace
 
-std::string analysis_json(const AnalysisReport& report) {
+std::string analysis_json(const AnalysisReport& report, const RecordingFacts& facts) {
     Json json;
     json["schema"] = "gyrolog-analysis/1";
-    json["recording"] = recording_json(report);
+    json["recording"] = recording_json(report, facts);
     json["deviation"] = name_of(report.kind);
     json["convention"] = name_of(report.convention);
     json["confidence"] = report.confidence;

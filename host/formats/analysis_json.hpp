@@ -3,15 +3,17 @@
 //   "accelerometer": {"axes": {...}, "gravity": {"size": {"value", "expanded_uncertainty",
 //     "coverage_factor", "unit"}, "tilt": {likewise, in deg}, "up": "+z", "direction": [x, y, z]}}
 // Of an array, "gravity" has such an object for each unit's number.
+// "recording" has "board", "started" and "temperature_C" (the mean) where they are known.
 #pragma once
 
 #include <string>
 
 #include "analysis/noise/analyze.hpp"
+#include "host/formats/recording_facts.hpp"
 
 namespace gyrolog {
 
 // Pretty-printed, ending in a newline; numbers read back as the same.
-std::string analysis_json(const AnalysisReport& report);
+std::string analysis_json(const AnalysisReport& report, const RecordingFacts& facts = {});
 
 }  // namespace gyrolog
