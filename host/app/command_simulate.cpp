@@ -346,9 +346,10 @@ ExitCode simulate(Console& console, const SimulateOptions& options) {
 
 Action setup_simulate(CLI::App& app) {
     auto options = std::make_shared<SimulateOptions>();
-    app.add_option("MODEL", options->model,
-                   "The sensor (.json): a gyrolog-model/1, a data sheet (gyrolog-datasheet/1) or gyroparams "
-                   "(gyrolog-gyroparams/1)");
+    app.add_option(
+        "MODEL", options->model,
+        "The sensor (.json): a gyrolog-model/1, a data sheet (gyrolog-datasheet/1), a population of "
+        "units (gyrolog-population/1) or gyroparams (gyrolog-gyroparams/1)");
     app.add_option("-o,--output", options->output,
                    "The recording to write, by its ending: .csv (.gz, .xz, .zst), or .pcapng as the virtual "
                    "board sends it")

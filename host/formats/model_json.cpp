@@ -21,6 +21,7 @@
 #include "host/formats/input_limits.hpp"
 #include "host/formats/json.hpp"
 #include "host/formats/json_keys.hpp"
+#include "host/formats/population_json.hpp"
 #include "host/formats/text_file.hpp"
 
 namespace gyrolog {
@@ -332,6 +333,15 @@ ModelFile draw_from(const Datasheet& sheet, std::uint64_t seed) {
     return {std::move(unit.model), std::move(notes), true};
 }
 
+ModelFile draw_from(const Population& population, std::uint64_t seed) {
+    DrawnUnit unit = draw_unit(population, seed);
+    std::vector<std::string> notes = {fmt::format("a unit drawn from the population by seed {}", seed)};
+    notes.insert(notes.end(), unit.notes.begin(), unit.notes.end());
+    const bool no_range = population.full_scale_rad_s == no_range_rad_s;
+    return {std::move(unit.model), std::move(notes), true,
+            Unstated{!population.rate_hz, population.lsb_rad_s <= 0.0, no_range, no_range}};
+}
+
 // Puts back what was carried: objects are merged, everything else is the carried value.
 void put_back(Json& to, const Json& carried) {
     for (const auto& item : carried.items()) {
@@ -385,6 +395,13 @@ Json format_accelerometer(const AccelerometerModel& model) {
     return json;
 }
 
+// Read back, that is; a rate that is not stated need not be.
+bool can_be_written(const ModelFile& file) {
+    SensorModel model = file.model;
+    if (file.unstated.rate) { model.rate_hz = 1.0; }
+    return parse_model(format_model(model), "").ok();
+}
+
 Result<SensorModel> standing_for_itself(Result<ModelFile> file, const std::string& name) {
     if (!file.ok()) { return std::move(file).error(); }
     if (file->unstated.rate) {
@@ -429,15 +446,19 @@ Result<ModelFile> parse_model_file(std::string_view text, const std::string& nam
     } else if (schema == datasheet_schema) {
         const Datasheet sheet = read_datasheet(document.json, problem);
         if (!problem) { file = draw_from(sheet, seed); }
+    } else if (schema == population_schema) {
+        const Population population = read_population(document.json, problem);
+        if (!problem) { file = draw_from(population, seed); }
     } else if (schema == gyroparams_schema) {
         file.model = read_gyroparams(document.json, problem, file.notes);
     } else {
-        return Error{ErrorCode::unsupported,
-                     fmt::format("model '{}': schema is {}, not '{}' (or '{}', '{}')", name,
-                                 in_quotes(schema), schema_name, datasheet_schema, gyroparams_schema)};
+        return Error{
+            ErrorCode::unsupported,
+            fmt::format("model '{}': schema is {}, not '{}' (or '{}', '{}', '{}')", name, in_quotes(schema),
+                        schema_name, datasheet_schema, population_schema, gyroparams_schema)};
     }
     // Numbers that are each fine can make one that is not finite.
-    if (!problem && schema != schema_name && !parse_model(format_model(file.model), name).ok()) {
+    if (!problem && schema != schema_name && !can_be_written(file)) {
         problem = "holds a number too large or too small to work with";
     }
     if (!problem && !document.plain) { problem = "holds a number that is not finite"; }

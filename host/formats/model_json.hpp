@@ -36,7 +36,8 @@ struct ModelFile {
 // Takes what the model does not state from the recording, and adds a note of it.
 void complete_from(const Recording& recording, ModelFile& file);
 
-// A gyrolog-model/1; a data sheet (datasheet_json.hpp), from which `seed` draws a unit; or gyroparams
+// A gyrolog-model/1; a data sheet (datasheet_json.hpp) or a population
+// (population_json.hpp), from which `seed` draws a unit; or gyroparams
 // (gyroparams_json.hpp). `name` is what errors call the text: the file's path.
 // Of a gyrolog-model/1 `schema` and `axes` are needed, and of each axis N, B, K or bias; what else is not
 // stated is zero and exactly known (M: the identity), or a recording's to tell. Notes say which. Errors:

@@ -329,7 +329,7 @@ TEST(ModelJson, WhatIsNoModelIsRefused) {
     json["schema"] = "gyrolog-model/2";
     EXPECT_EQ(refusal_of(json.dump()),
               "model 'm.json': schema is 'gyrolog-model/2', not 'gyrolog-model/1' (or 'gyrolog-datasheet/1', "
-              "'gyrolog-gyroparams/1')");
+              "'gyrolog-population/1', 'gyrolog-gyroparams/1')");
 }
 
 TEST(ModelJson, AOneSidedDensityIsTwiceTheTwoSidedOne) {
