@@ -1,3 +1,4 @@
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -6,6 +7,7 @@
 #include "host/app/analysis_run.hpp"
 #include "host/app/command.hpp"
 #include "host/app/curve_run.hpp"
+#include "host/app/many_recordings.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
 #include "host/app/stage_clock.hpp"
@@ -13,32 +15,67 @@
 namespace gyrolog {
 namespace {
 
-ExitCode analyze_either(Console& console, const AnalysisRequest& request, const std::string& curve_path) {
-    if (request.recording_path.empty() == curve_path.empty()) {
-        const char* problem = curve_path.empty() ? "give a RECORDING, or --curve with an Allan curve"
-                                                 : "give a RECORDING or --curve, not both";
+struct AnalyzeOptions {
+    AnalysisRequest request;
+    ManyRecordings many;
+    std::string curve_path;
+    bool timing = false;
+};
+
+ExitCode analyze_curve(Console& console, const AnalyzeOptions& options) {
+    const AnalysisRequest& request = options.request;
+    return analyze_curve_to_files(console, "analyze",
+                                  {options.curve_path, request.json_path, request.plot_path,
+                                   request.model_path, request.rate_hz, request.confidence});
+}
+
+ExitCode with_timing(Console& console, AnalyzeOptions& options,
+                     const std::function<ExitCode(Console&)>& analyze) {
+    if (!options.timing) { return analyze(console); }
+    StageClock clock;
+    options.request.on_stage = StageObserver([&clock](const char* stage) { clock.enter(stage); });
+    const ExitCode code = analyze(console);
+    clock.stop();
+    options.request.on_stage = {};
+    write_timing(console.err, clock);
+    return code;
+}
+
+ExitCode analyze_either(Console& console, AnalyzeOptions& options) {
+    AnalysisRequest& request = options.request;
+    if (options.many.recordings.empty() == options.curve_path.empty()) {
+        const char* problem = options.curve_path.empty() ? "give a RECORDING, or --curve with an Allan curve"
+                                                         : "give a RECORDING or --curve, not both";
         return report_error(console, "analyze", {ErrorCode::invalid_argument, problem});
     }
-    if (curve_path.empty()) { return analyze_to_files(console, "analyze", request); }
-    return analyze_curve_to_files(console, "analyze",
-                                  {curve_path, request.json_path, request.plot_path, request.model_path,
-                                   request.rate_hz, request.confidence});
+    if (!options.curve_path.empty()) {
+        return with_timing(console, options, [&](Console& own) { return analyze_curve(own, options); });
+    }
+    const NamedPath written[] = {{"--plot", request.plot_path},
+                                 {"--histogram", request.histogram_path},
+                                 {"--model", request.model_path}};
+    const auto run = [&](Console& own, const std::string& recording, bool as_line) {
+        request.recording_path = recording;
+        if (as_line) { request.json_path = "-"; }
+        return with_timing(own, options,
+                           [&](Console& timed) { return analyze_to_files(timed, "analyze", request); });
+    };
+    return run_on_recordings(console, "analyze", options.many, {{}, written}, run);
 }
 
 }  // namespace
 
 Action setup_analyze(CLI::App& app) {
-    auto request = std::make_shared<AnalysisRequest>();
-    auto curve_path = std::make_shared<std::string>();
-    app.add_option("RECORDING", request->recording_path,
-                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
+    auto options = std::make_shared<AnalyzeOptions>();
+    AnalysisRequest* request = &options->request;
     CLI::Option* curve =
         app.add_option(
-               "--curve", *curve_path,
+               "--curve", options->curve_path,
                "Instead of a recording: an Allan curve from print (tau_s,x_dps or x_deg_per_h, x_ug, ...)")
             ->type_name("FILE.csv");
     app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")
         ->type_name("FILE");
+    add_recordings(app, options->many, "RECORDING", "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
     app.add_option("--plot", request->plot_path, "Draw the Allan curves and the spectra")
         ->type_name("FILE.png")
         ->check(png_file());
@@ -84,21 +121,13 @@ Action setup_analyze(CLI::App& app) {
         ->check(number_from_to(0.01, 0.9999))
         ->type_name("P")
         ->capture_default_str();
-    auto timing = std::make_shared<bool>(false);
-    app.add_flag("--timing", *timing, "Print on standard error where the time went");
-    for (const char* of_samples : {"--deviation", "--convention", "--m", "--robust", "--histogram",
-                                   "--lsb-dps", "--lsb-g", "--sensor", "--from", "--to", "--still"}) {
+    app.add_flag("--timing", options->timing, "Print on standard error where the time went");
+    for (const char* of_samples :
+         {"--deviation", "--convention", "--m", "--robust", "--histogram", "--lsb-dps", "--lsb-g", "--sensor",
+          "--from", "--to", "--still", "--jsonl"}) {
         curve->excludes(app.get_option(of_samples));
     }
-    return [request, curve_path, timing](Console& console) {
-        if (!*timing) { return analyze_either(console, *request, *curve_path); }
-        StageClock clock;
-        request->on_stage = StageObserver([&clock](const char* stage) { clock.enter(stage); });
-        const ExitCode code = analyze_either(console, *request, *curve_path);
-        clock.stop();
-        write_timing(console.err, clock);
-        return code;
-    };
+    return [options](Console& console) { return analyze_either(console, *options); };
 }
 
 }  // namespace gyrolog

@@ -2,6 +2,7 @@
 
 #include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
+#include "host/app/many_recordings.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
 #include "host/formats/json.hpp"
@@ -14,12 +15,11 @@ struct CheckOptions {
     std::string json;
 };
 
-std::shared_ptr<CheckOptions> declare(CLI::App& app) {
-    auto options = std::make_shared<CheckOptions>();
-    app.add_option("FILE", options->path, "A capture (.pcapng)")->required();
-    app.add_option("--json", options->json, "Write the answer as JSON to FILE (- for standard output)")
+constexpr const char* what_is_read = "A capture (.pcapng)";
+
+void declare_json(CLI::App& app, CheckOptions& options) {
+    app.add_option("--json", options.json, "Write the answer as JSON to FILE (- for standard output)")
         ->type_name("FILE");
-    return options;
 }
 
 ExitCode tell(Console& console, const char* command, const CheckOptions& options,
@@ -44,14 +44,23 @@ ExitCode tell(Console& console, const char* command, const CheckOptions& options
 }  // namespace
 
 Action setup_check(CLI::App& app) {
-    const auto options = declare(app);
-    return [options](Console& console) {
-        return tell(console, "check", *options, check_json, check_text, ExitCode::data_lost);
+    const auto options = std::make_shared<CheckOptions>();
+    const auto many = std::make_shared<ManyRecordings>();
+    declare_json(app, *options);
+    add_recordings(app, *many, "FILE", what_is_read)->required();
+    return [options, many](Console& console) {
+        const auto run = [&](Console& own, const std::string& recording, bool as_line) {
+            const CheckOptions one{recording, as_line ? "-" : options->json};
+            return tell(own, "check", one, check_json, check_text, ExitCode::data_lost);
+        };
+        return run_on_recordings(console, "check", *many, {}, run);
     };
 }
 
 Action setup_info(CLI::App& app) {
-    const auto options = declare(app);
+    const auto options = std::make_shared<CheckOptions>();
+    app.add_option("FILE", options->path, what_is_read)->required();
+    declare_json(app, *options);
     return [options](Console& console) {
         return tell(console, "info", *options, info_json, info_text, ExitCode::ok);
     };

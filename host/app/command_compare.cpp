@@ -12,6 +12,7 @@
 #include "analysis/simulate/known_motion.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/app/command.hpp"
+#include "host/app/many_recordings.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/part_options.hpp"
@@ -126,7 +127,7 @@ Status write_results(Console& console, const CompareRequest& request, const Comp
     return results.finish();
 }
 
-ExitCode compare(Console& console, const CompareRequest& request) {
+ExitCode compare_one(Console& console, const CompareRequest& request) {
     const NamedPath read[] = {{"RECORDING", request.recording_path}, {"WITH", request.other_path}};
     const NamedPath outputs[] = {{"--json", request.json_path}, {"--plot", request.plot_path}};
     if (const Status fine = check_output_paths(read, outputs); !fine.ok()) {
@@ -139,21 +140,41 @@ ExitCode compare(Console& console, const CompareRequest& request) {
     return written.ok() ? ExitCode::ok : report_error(console, "compare", written.error());
 }
 
+// The last word is what to compare with.
+ExitCode compare(Console& console, CompareRequest request, ManyRecordings many) {
+    if (many.recordings.size() < 2) {
+        return report_error(console, "compare",
+                            {ErrorCode::invalid_argument,
+                             "WITH is required: a sensor model (.json) or another recording, after the "
+                             "recording"});
+    }
+    request.other_path = many.recordings.back();
+    many.recordings.pop_back();
+    const NamedPath read[] = {{"WITH", request.other_path}};
+    const NamedPath written[] = {{"--plot", request.plot_path}};
+    const auto run = [&](Console& own, const std::string& recording, bool as_line) {
+        request.recording_path = recording;
+        if (as_line) { request.json_path = "-"; }
+        return compare_one(own, request);
+    };
+    return run_on_recordings(console, "compare", many, {read, written}, run);
+}
+
 }  // namespace
 
 Action setup_compare(CLI::App& app) {
     auto request = std::make_shared<CompareRequest>();
-    app.add_option("RECORDING", request->recording_path,
-                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)")
-        ->required();
-    app.add_option("WITH", request->other_path,
-                   "A sensor model (.json), which is simulated, or another recording")
-        ->required();
+    auto many = std::make_shared<ManyRecordings>();
     app.add_option("--plot", request->plot_path, "Draw both side by side")
         ->type_name("FILE.png")
         ->check(png_file());
     app.add_option("--json", request->json_path, "Write the comparison as JSON (- for standard output)")
         ->type_name("FILE");
+    add_recordings(app, *many, "RECORDING",
+                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz), and last of all WITH what: "
+                   "a sensor model (.json), which is simulated, or another recording")
+        ->type_name("WITH")
+        ->required();
     app.add_option("--simulations", request->simulations.simulations,
                    "How many simulations make the band: of 39 their extremes hold 95 %, more are smoother")
         ->check(whole_number(simulations_min, 10'000))
@@ -170,7 +191,7 @@ Action setup_compare(CLI::App& app) {
     app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
         ->type_name("DPS")
         ->check(positive_number());
-    return [request](Console& console) { return compare(console, *request); };
+    return [request, many](Console& console) { return compare(console, *request, *many); };
 }
 
 }  // namespace gyrolog

@@ -3,6 +3,7 @@
 
 #include "host/app/command.hpp"
 #include "host/app/curve_diagnosis_run.hpp"
+#include "host/app/many_recordings.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
 #include "host/app/recording_diagnosis_run.hpp"
@@ -16,16 +17,32 @@ constexpr int average_most = 100'000;
 
 struct DiagnoseOptions {
     RecordingDiagnosisRequest request;
+    ManyRecordings many;
     std::string curve_path;
     bool is_plain = false;
 };
+
+ExitCode diagnose_recordings(Console& console, const DiagnoseOptions& options) {
+    const RecordingDiagnosisRequest& request = options.request;
+    const NamedPath read[] = {{"--model", request.model_path}, {"--holdout", request.holdout_path}};
+    const NamedPath of_one[] = {{"--holdout", request.holdout_path},
+                                {"--plot", request.plot_path},
+                                {"--model-out", request.model_out_path}};
+    const auto run = [&](Console& own, const std::string& recording, bool as_line) {
+        RecordingDiagnosisRequest one = request;
+        one.recording_path = recording;
+        if (as_line) { one.json_path = "-"; }
+        return diagnose_recording_to_files(own, one);
+    };
+    return run_on_recordings(console, "diagnose", options.many, {read, of_one}, run);
+}
 
 ExitCode diagnose_either(Console& console, const DiagnoseOptions& options) {
     const RecordingDiagnosisRequest& request = options.request;
     const auto wrong = [&](const char* problem) {
         return report_error(console, "diagnose", {ErrorCode::invalid_argument, problem});
     };
-    if (request.recording_path.empty() == options.curve_path.empty()) {
+    if (options.many.recordings.empty() == options.curve_path.empty()) {
         return wrong(options.curve_path.empty() ? "give a RECORDING, or --curve with an Allan curve"
                                                 : "give a RECORDING or --curve, not both");
     }
@@ -38,7 +55,7 @@ ExitCode diagnose_either(Console& console, const DiagnoseOptions& options) {
             "give the --model that the recording is to be held against, or --auto for one of white "
             "noise and a bias");
     }
-    return diagnose_recording_to_files(console, request);
+    return diagnose_recordings(console, options);
 }
 
 }  // namespace
@@ -46,8 +63,6 @@ ExitCode diagnose_either(Console& console, const DiagnoseOptions& options) {
 Action setup_diagnose(CLI::App& app) {
     auto options = std::make_shared<DiagnoseOptions>();
     RecordingDiagnosisRequest& request = options->request;
-    app.add_option("RECORDING", request.recording_path,
-                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
     CLI::Option* model =
         app.add_option("--model", request.model_path, "The sensor model (.json) whose gap is sought")
             ->type_name("FILE");
@@ -62,6 +77,7 @@ Action setup_diagnose(CLI::App& app) {
             ->type_name("FILE.csv");
     app.add_option("--json", request.json_path, "Write the diagnosis as JSON (- for standard output)")
         ->type_name("FILE");
+    add_recordings(app, options->many, "RECORDING", "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
     app.add_option("--plot", request.plot_path,
                    "Draw the shares of the causes, and where recording and model part before and after them")
         ->type_name("FILE.png")
@@ -95,8 +111,9 @@ Action setup_diagnose(CLI::App& app) {
         ->type_name("DPS")
         ->check(positive_number());
     add_part_options(app, request.part);
-    for (const char* of_recordings : {"--auto", "--unnamed", "--holdout", "--average", "--simulations",
-                                      "--seed", "--threads", "--lsb-dps", "--from", "--to", "--still"}) {
+    for (const char* of_recordings :
+         {"--auto", "--unnamed", "--holdout", "--average", "--simulations", "--seed", "--threads",
+          "--lsb-dps", "--from", "--to", "--still", "--jsonl"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

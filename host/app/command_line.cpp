@@ -49,6 +49,7 @@ std::string program_and(const char* command) {
 
 ExitCode report_error(Console& console, const char* command, const Error& error) {
     console.err << program_and(command) << ": " << error.message << '\n';
+    if (console.told_error != nullptr) { *console.told_error = error.message; }
     return exit_code_of(error);
 }
 

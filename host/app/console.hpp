@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <ostream>
+#include <string>
 
 namespace gyrolog {
 
@@ -12,6 +13,7 @@ struct Console {
     bool progress = false;                     // err is a terminal: a line may be redrawn
     const std::atomic<int>* signal = nullptr;  // set to the signal's number once the user wants to stop
     std::ostream* screen = nullptr;            // the terminal behind err, which obeys
+    std::string* told_error = nullptr;         // what report_error() says is noted here, too
 
     // For lines that are redrawn. What comes from outside goes there as printable() only.
     std::ostream& drawing() const { return screen == nullptr ? err : *screen; }

@@ -1,10 +1,21 @@
 #include "host/app/exit_code.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace gyrolog {
 
 ExitCode ended_by_signal(int number) {
     constexpr int of_a_shell = 128;
     return static_cast<ExitCode>(of_a_shell + number);
+}
+
+ExitCode worst_of(ExitCode a, ExitCode b) {
+    constexpr std::array from_best{ExitCode::ok,          ExitCode::data_lost, ExitCode::not_conforming,
+                                   ExitCode::failed,      ExitCode::usage,     ExitCode::no_device,
+                                   ExitCode::device_lost, ExitCode::disk_full};
+    const auto place = [&](ExitCode code) { return std::ranges::find(from_best, code); };
+    return place(b) > place(a) ? b : a;
 }
 
 ExitCode exit_code_of(const Error& error) {

@@ -19,6 +19,11 @@ enum class ExitCode : int {
 
 ExitCode ended_by_signal(int number);
 
+// Of what was done with many things, the one code that a caller must know of: done (0), done with losses (5),
+// not conforming (7), not done (1), senseless (2), no device (3), device lost (4), disk full (6), a signal;
+// the worst last.
+ExitCode worst_of(ExitCode a, ExitCode b);
+
 ExitCode exit_code_of(const Error& error);
 // The same while a device is being opened: one that cannot be had, for whatever reason, is "no device" to a
 // script.

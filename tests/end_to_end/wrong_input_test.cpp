@@ -212,7 +212,8 @@ TEST_F(WrongInput, OfCommandsThatReadACapture) {
         row(" c.csv", 1, "open 'c.csv': not a capture: neither pcapng nor pcap");
         row(" m.json", 1, "open 'm.json': not a capture");
         row(" -", 2, "FILE '-': standard input is read by its name, /dev/stdin");
-        row(" c.pcapng c.pcapng", 2, "not expected: c.pcapng");
+        row(" c.pcapng c.pcapng", 2,
+            command == "info" ? "not expected: c.pcapng" : "several recordings need --jsonl FILE");
         row(" c.pcapng --json c.pcapng", 2, "FILE and --json are the same file 'c.pcapng'");
         row(" c.pcapng --json dir", 1, "write 'dir': it is a directory");
     }
@@ -324,7 +325,9 @@ TEST_F(WrongInput, OfAnalyze) {
         {"analyze backwards.csv", 1, "the time stamps step back by 1 s at row 3: cut the recording there"},
         {"analyze header.csv", 1, "read 'header.csv': no samples after the header line"},
         {"analyze twice.csv", 1, "line 1: column 'gx_dps' appears twice"},
-        {"analyze c.csv c.csv", 2, "not expected: c.csv"},
+        {"analyze c.csv c.csv", 2, "several recordings need --jsonl FILE"},
+        {"analyze c.csv c.csv --jsonl dir", 1, "write 'dir': it is a directory"},
+        {"analyze --jsonl l.jsonl", 2, "give a RECORDING, or --curve"},
         {"analyze c.csv --from soon", 2, "--from: 'soon' is no duration"},
         {"analyze c.csv --from 99", 2, "'c.csv' has no sample from 99 s to"},
         {"analyze c.csv --from 5 --to 3s", 2, "'c.csv' has no sample from 5 s to 3 s; it lasts 20"},
