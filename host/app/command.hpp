@@ -38,6 +38,7 @@ Action setup_list(CLI::App& app);
 Action setup_recover(CLI::App& app);
 Action setup_report(CLI::App& app);
 Action setup_simulate(CLI::App& app);
+Action setup_table(CLI::App& app);
 // The program without a command: find the board, capture, analyse.
 Action setup_bench_session(CLI::App& app);
 

@@ -26,6 +26,7 @@ constexpr std::array commands{
     Command{"denoise", "Combine an array of gyros and take noise out, sample by sample", setup_denoise},
     Command{"simulate", "Make a recording of a simulated sensor", setup_simulate},
     Command{"export", "Write a recording or its noise for other programs", setup_export},
+    Command{"table", "Join the answers about many recordings into one table", setup_table},
 };
 
 // A word that is empty is a shell's variable that was never set, and no option's absence.

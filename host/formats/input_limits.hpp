@@ -15,6 +15,9 @@ struct InputLimits {
     std::size_t json_bytes_most = std::size_t{16} << 20;
     std::size_t json_keys_most = 10'000;
     int json_nesting_most = 32;
+    // Of a line of results: one of json_bytes_most that holds nothing but points of an Allan deviation has so
+    // many.
+    std::size_t json_line_keys_most = 700'000;
 };
 
 inline constexpr InputLimits input_limits;

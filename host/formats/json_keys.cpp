@@ -17,7 +17,8 @@ namespace {
 // Reads without keeping anything, up to the first error or what is beyond the limits.
 class Inspection final : public nlohmann::json_sax<Json> {
 public:
-    explicit Inspection(std::string_view text) : text_(text), sound_(Json::sax_parse(text, this)) {}
+    explicit Inspection(std::string_view text, std::size_t keys_most = input_limits.json_keys_most)
+        : text_(text), keys_most_(keys_most), sound_(Json::sax_parse(text, this)) {}
 
     // It is JSON, within the limits.
     bool sound() const { return sound_; }
@@ -33,6 +34,11 @@ public:
         return "line " + std::to_string(line) + ", column " +
                std::to_string(std::max<std::size_t>(column, 1)) + ": " + reason();
     }
+    // The same of a text of one line.
+    std::string error_in_line() const {
+        if (what_.empty()) { return {}; }
+        return "column " + std::to_string(std::max<std::size_t>(position_, 1)) + ": " + reason();
+    }
 
     bool null() override { return true; }
     bool boolean(bool /*value*/) override { return true; }
@@ -43,9 +49,7 @@ public:
     bool binary(binary_t& /*value*/) override { return true; }
     bool start_object(std::size_t /*elements*/) override { return enter(); }
     bool key(string_t& /*value*/) override {
-        if (++keys_ > input_limits.json_keys_most) {
-            refusal_ = "more than " + std::to_string(input_limits.json_keys_most) + " keys";
-        }
+        if (++keys_ > keys_most_) { refusal_ = "more than " + std::to_string(keys_most_) + " keys"; }
         return refusal_.empty();
     }
     bool end_object() override { return leave(); }
@@ -78,6 +82,7 @@ private:
     }
 
     std::string_view text_;
+    std::size_t keys_most_;
     std::size_t keys_ = 0;
     int depth_ = 0;
     std::string refusal_;
@@ -151,6 +156,13 @@ Result<JsonDocument> parse_json_document(std::string_view text, const std::strin
     if (schema == document.end()) { return malformed("schema is missing"); }
     if (!schema->is_string()) { return malformed("schema is not text"); }
     return JsonDocument{std::move(document), plain};
+}
+
+Result<Json> parse_json_line(std::string_view line, std::size_t keys_most) {
+    const Inspection inspection(line, keys_most);
+    if (!inspection.refusal().empty()) { return malformed(inspection.refusal()); }
+    if (!inspection.sound()) { return malformed("no JSON: " + inspection.error_in_line()); }
+    return Json(Json::parse(line));
 }
 
 JsonKeys::JsonKeys(const Json& object, std::string path, std::optional<std::string>& problem)

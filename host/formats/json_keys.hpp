@@ -25,6 +25,10 @@ struct JsonDocument {
 // `name` is what errors call the text. Error `malformed`: no JSON object, nested too deep, no schema.
 Result<JsonDocument> parse_json_document(std::string_view text, const std::string& name);
 
+// Any JSON in one line of a file, of so many keys at most. Error `malformed` with the reason alone: where it
+// is no JSON ("column 7: ..."), nested too deep, too many keys.
+Result<Json> parse_json_line(std::string_view line, std::size_t keys_most);
+
 // Reads the keys of one JSON object. The first thing that is wrong is kept, with the key's full name; later
 // reads then return defaults. Keys that nobody asked for are left over.
 class JsonKeys {

@@ -78,6 +78,8 @@ TEST_F(Outputs, AreNeverWrittenOverWhatIsRead) {
         {"check", capture_, "--jsonl", capture_},
         {"analyze", capture_, text_, "--jsonl", text_},
         {"compare", capture_, model_, "--jsonl", model_},
+        {"table", text_, "-o", text_},
+        {"table", text_, "-o", folder_.path("t.csv"), "--population", text_},
         {"info", capture_, "--json", capture_},
         {"recover", capture_, "-o", capture_},
         {"recover", capture_, "-o", folder_.path("r.pcapng"), "--json", capture_},

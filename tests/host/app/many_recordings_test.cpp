@@ -147,6 +147,28 @@ TEST_F(ManyRecordingsCommand, AfterASignalTheLineIsWholeAndTheLast) {
     EXPECT_EQ(lines_of(read_whole_file(lines)).size(), 1U);
 }
 
+TEST_F(ManyRecordingsCommand, TheTableHasThemAll) {
+    const std::string table = folder.path("table.csv");
+    const std::string expected = folder.path("expected.txt");
+    std::ofstream(expected) << first << "\n" << folder.path("lost.csv") << "\n";
+    EXPECT_EQ(run({"analyze", first, absent, "--jsonl", lines}), ExitCode::failed);
+    ASSERT_EQ(run({"table", lines, "-o", table, "--expected", expected}), ExitCode::ok) << err.str();
+    std::string text = read_whole_file(table);
+    EXPECT_EQ(std::ranges::count(text, '\n'), 1 + 3 + 1 + 1);
+    EXPECT_THAT(text, HasSubstr(folder.path("lost.csv") + ","));
+    EXPECT_THAT(text, HasSubstr("no answer"));
+    EXPECT_THAT(err.str(), HasSubstr("gyrolog table: no answer: " + folder.path("lost.csv")));
+    EXPECT_EQ(run({"table", lines, "-o", folder.path("t.txt")}), ExitCode::usage);
+    EXPECT_EQ(run({"table", lines, "-o", table, "--population", folder.path("p.json")}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("no spread between units"));
+    text = read_whole_file(table);
+    EXPECT_THAT(text, Not(HasSubstr("no answer"))) << "written all the same, and nothing was expected";
+    std::ofstream(lines, std::ios::app) << "{\n";
+    EXPECT_EQ(run({"table", lines, "-o", table}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("read '" + lines + "': line 3: no JSON"));
+    EXPECT_EQ(read_whole_file(table), text) << "what was there stays";
+}
+
 TEST(WorstOf, RanksWhatACallerMustKnow) {
     EXPECT_EQ(worst_of(ExitCode::ok, ExitCode::data_lost), ExitCode::data_lost);
     EXPECT_EQ(worst_of(ExitCode::failed, ExitCode::data_lost), ExitCode::failed);

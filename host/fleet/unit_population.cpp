@@ -1,0 +1,160 @@
+#include "host/fleet/unit_population.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "analysis/noise/noise_model.hpp"
+#include "analysis/simulate/sensor_model.hpp"
+#include "host/base/counted.hpp"
+#include "host/formats/population_json.hpp"
+
+namespace gyrolog {
+namespace {
+
+struct Value {
+    std::size_t recording = 0;
+    double value = 0.0;
+    double uncertainty = 0.0;
+};
+
+// What was measured of one parameter, before units are told apart.
+struct Measurements {
+    std::string axis;
+    std::string name;
+    std::vector<Value> values;
+    std::size_t not_identified = 0;
+};
+
+std::optional<double> dps_per(const std::string& unit) {
+    if (unit == "dps") { return 1.0; }
+    if (unit == "rad/s") { return deg_per_rad; }
+    return std::nullopt;
+}
+
+class Collector {
+public:
+    void take(std::size_t recording, const FleetLine& line) {
+        if (line.rate_hz && *line.rate_hz > 0.0) {
+            of("", "rate_hz").values.push_back({recording, *line.rate_hz, 0.0});
+        }
+        for (const FleetAxis& axis : line.axes) { take_axis(recording, axis); }
+    }
+    std::vector<Measurements>& all() { return all_; }
+    std::size_t in_counts() const { return in_counts_; }
+
+private:
+    void take_axis(std::size_t recording, const FleetAxis& axis) {
+        const bool is_known = std::ranges::find(axis_names, axis.axis) != axis_names.end();
+        if (axis.sensor != "gyro" || !is_known || axis.unit.empty()) { return; }
+        const auto scale = dps_per(axis.unit);
+        if (!scale) {
+            ++in_counts_;
+            return;
+        }
+        take_number(recording, axis.axis, "bias", axis.bias, *scale);
+        for (std::size_t i = 0; i < fleet_coefficients.size(); ++i) {
+            const std::string name = fleet_coefficients[i];
+            if (name == "R") { continue; }  // a ramp is a recording's, not a unit's
+            take_number(recording, axis.axis, name, axis.coefficients[i], *scale);
+        }
+    }
+    void take_number(std::size_t recording, const std::string& axis, const std::string& name,
+                     const FleetNumber& number, double scale) {
+        Measurements& to = of(axis, name);
+        if (number.value) {
+            to.values.push_back({recording, *number.value * scale, number.sd.value_or(0.0) * scale});
+        } else {
+            ++to.not_identified;
+        }
+    }
+    Measurements& of(const std::string& axis, const std::string& name) {
+        const auto found = std::ranges::find_if(
+            all_, [&](const Measurements& one) { return one.axis == axis && one.name == name; });
+        return found != all_.end() ? *found : all_.emplace_back(Measurements{axis, name, {}, 0});
+    }
+
+    std::vector<Measurements> all_;
+    std::size_t in_counts_ = 0;
+};
+
+std::string unit_of(std::span<const FleetLine> recordings, std::size_t recording) {
+    const FleetLine& line = recordings[recording];
+    return line.board.empty() ? "file " + line.file : "board " + line.board;
+}
+
+struct UnitValues {
+    std::vector<double> values;
+    std::vector<double> uncertainties;
+};
+
+UnitValues by_unit(std::span<const FleetLine> recordings, const Measurements& of) {
+    std::map<std::string, UnitValues> units;
+    for (const Value& one : of.values) {
+        UnitValues& unit = units[unit_of(recordings, one.recording)];
+        unit.values.push_back(one.value);
+        unit.uncertainties.push_back(one.uncertainty);
+    }
+    UnitValues medians;
+    for (const auto& [name, unit] : units) {
+        medians.values.push_back(median_of(unit.values));
+        medians.uncertainties.push_back(median_of(unit.uncertainties));
+    }
+    return medians;
+}
+
+std::string name_of(const Measurements& of) { return of.axis.empty() ? of.name : of.name + " of " + of.axis; }
+
+// Empty: there are enough.
+std::string why_not(const Measurements& of, std::size_t units, const PopulationOptions& options) {
+    const std::size_t asked = of.values.size() + of.not_identified;
+    if (static_cast<double>(of.values.size()) < options.identified_share_least * static_cast<double>(asked)) {
+        return fmt::format("{}: identified in {} of {} recordings only: no spread is given", name_of(of),
+                           of.values.size(), asked);
+    }
+    if (units >= options.units_least) { return {}; }
+    return fmt::format("{}: {} only, and a spread needs {}", name_of(of), counted(units, "unit"),
+                       options.units_least);
+}
+
+void find_outliers(const Measurements& of, const RobustSpread& spread, double outlier_z,
+                   std::vector<OutlyingParameter>& outliers) {
+    if (spread.observed_sd <= 0.0) { return; }
+    for (const Value& one : of.values) {
+        const double scale = std::max(spread.observed_sd, std::hypot(spread.sd, one.uncertainty));
+        const double z = (one.value - spread.median) / scale;
+        if (std::abs(z) > outlier_z) { outliers.push_back({one.recording, of.axis, of.name, z}); }
+    }
+}
+
+}  // namespace
+
+UnitPopulation population_of(std::span<const FleetLine> recordings, const PopulationOptions& options) {
+    Collector collector;
+    for (std::size_t i = 0; i < recordings.size(); ++i) { collector.take(i, recordings[i]); }
+    UnitPopulation population;
+    MeasuredPopulation& measured = population.measured;
+    measured.probability = options.probability;
+    for (const Measurements& of : collector.all()) {
+        const UnitValues units = by_unit(recordings, of);
+        measured.units = std::max(measured.units, units.values.size());
+        if (std::string why = why_not(of, units.values.size(), options); !why.empty()) {
+            measured.notes.push_back(std::move(why));
+            continue;
+        }
+        const RobustSpread spread = robust_spread(units.values, units.uncertainties, {options.probability});
+        measured.parameters.push_back({of.axis, of.name, spread});
+        find_outliers(of, spread, options.outlier_z, population.outliers);
+    }
+    if (collector.in_counts() > 0) {
+        measured.notes.push_back(fmt::format(
+            "rates in counts without a scale are left out, {} of them: analyze takes one with --lsb-dps",
+            collector.in_counts()));
+    }
+    return population;
+}
+
+}  // namespace gyrolog
