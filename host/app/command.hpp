@@ -32,6 +32,7 @@ Action setup_compare(CLI::App& app);
 Action setup_conform(CLI::App& app);
 Action setup_denoise(CLI::App& app);
 Action setup_diagnose(CLI::App& app);
+Action setup_doctor(CLI::App& app);
 Action setup_export(CLI::App& app);
 Action setup_info(CLI::App& app);
 Action setup_list(CLI::App& app);

@@ -27,6 +27,8 @@ constexpr std::array commands{
     Command{"simulate", "Make a recording of a simulated sensor", setup_simulate},
     Command{"export", "Write a recording or its noise for other programs", setup_export},
     Command{"table", "Join the answers about many recordings into one table", setup_table},
+    Command{"doctor", "Tell what stands in the way on this machine, and the command that mends it",
+            setup_doctor},
 };
 
 // A word that is empty is a shell's variable that was never set, and no option's absence.

@@ -179,5 +179,19 @@ TEST_F(Fleet, StoppedByCtrlCLeavesWholeLines) {
     }
 }
 
+TEST_F(Fleet, DoctorAnswersInBothForms) {
+    const ProgramResult text = run_gyrolog({"doctor"});
+    EXPECT_TRUE(text.exit_code == 0 || text.exit_code == 1) << text.err;
+    const ProgramResult answer = run_gyrolog({"doctor", "--json", "-"});
+    const json found = json::parse(answer.out);
+    EXPECT_EQ(found["schema"], "gyrolog-doctor/1");
+    EXPECT_EQ(found["ok"], text.exit_code == 0);
+    for (const json& check : found["checks"]) {
+        EXPECT_THAT(text.out, HasSubstr(check["name"].get<std::string>()));
+        EXPECT_EQ(check.contains("command"), !check["ok"].get<bool>()) << check;
+    }
+    EXPECT_EQ(run_gyrolog({"doctor", "--root", folder.path("none")}).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace gyrolog
