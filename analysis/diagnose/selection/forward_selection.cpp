@@ -478,6 +478,19 @@ private:
                b.where.freq_hz->from < a.where.freq_hz->to + near_hz;
     }
 
+    // An estimator of an effect that recurs gives its best, which may be what another such cause leaves: that
+    // tells nothing of this one.
+    bool is_of_another(const Finding& finding, std::size_t own) const {
+        if (!traits_of(finding.effect).recurs || is_same_line(causes_[own].finding, finding)) {
+            return false;
+        }
+        for (std::size_t i = 0; i < causes_.size(); ++i) {
+            const Finding& other = causes_[i].finding;
+            if (i != own && other.effect == finding.effect && is_same_line(other, finding)) { return true; }
+        }
+        return false;
+    }
+
     SensorModel model_with_all_but(std::size_t left_out) const {
         SensorModel model = model_;
         for (std::size_t i = 0; i < causes_.size(); ++i) {
@@ -508,6 +521,11 @@ private:
                                                options_.seed, options_.threads);
             const std::vector<Finding> findings = findings_of(without.findings);
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
+            if (same != findings.end() && is_of_another(*same, i)) {
+                causes_[i].rivals = rivals_of(causes_[i].finding, findings);
+                ++i;
+                continue;
+            }
             const double least_nats =
                 &causes_[i].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
             const double own_nats = same == findings.end() ? 0.0 : same->evidence_nats;
