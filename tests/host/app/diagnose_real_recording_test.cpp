@@ -1,4 +1,5 @@
 // The diagnosis of recordings of others, where the shared data are there.
+#include <cmath>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -58,6 +59,42 @@ TEST(DiagnoseRealRecording, NamesTheLineThatMovedAndNothingBeside) {
     const Result<SensorModel> written = read_model(corrected);
     ASSERT_TRUE(given.ok() && written.ok());
     EXPECT_EQ(written->effects.size() > given->effects.size(), !answer["causes"].empty());
+}
+
+// A line at 116 Hz that wanders, beside others: each cause is fitted at its own place, not at what the
+// strongest of them leaves.
+TEST(DiagnoseRealRecording, NamesNoLineTwice) {
+    if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }
+    const TemporaryFolder folder;
+    const std::string model = folder.path("model.json");
+    const std::string bench = shared_data("px4_auav_bench/sample.csv.xz");
+    std::ostringstream out;
+    std::ostringstream err;
+    const auto run = [&](std::vector<std::string> arguments) {
+        return run_command_line(std::move(arguments), {out, err});
+    };
+    ASSERT_EQ(run({"analyze", bench, "--from", "12", "--to", "40", "--sensor", "gyro", "--model", model}),
+              ExitCode::ok)
+        << err.str();
+    ASSERT_EQ(run({"diagnose", bench, "--from", "40", "--model", model, "--simulations", "60", "--json",
+                   folder.path("d.json")}),
+              ExitCode::ok)
+        << err.str();
+    const json answer = json::parse(read_whole_file(folder.path("d.json")));
+    EXPECT_GT(answer["shrink"].get<double>(), 0.7);
+    const double apart_hz = 10.0 / answer["duration_s"].get<double>();
+    std::vector<std::pair<std::string, double>> lines;
+    for (const json& cause : answer["causes"]) {
+        const json& params = cause["params"];
+        if (!params.contains("f_hz")) { continue; }
+        const double f_hz = params["f_hz"];
+        for (const auto& [effect, other_hz] : lines) {
+            EXPECT_FALSE(effect == cause["effect"] && std::abs(other_hz - f_hz) < apart_hz)
+                << effect << " at " << other_hz << " and at " << f_hz << " Hz";
+        }
+        lines.emplace_back(cause["effect"].get<std::string>(), f_hz);
+    }
+    EXPECT_GE(lines.size(), 1U);
 }
 
 }  // namespace
