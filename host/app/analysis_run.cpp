@@ -31,6 +31,7 @@ RecordingInput input_of(const AnalysisRequest& request) {
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps, request.on_stage};
     input.lsb_g = request.lsb_g;
     input.part = request.part;
+    input.text = request.text;
     input.with_accelerometer = sensors_of(request) != Sensors::gyro;
     input.needs_gyro = sensors_of(request) == Sensors::gyro;
     return input;

@@ -10,6 +10,7 @@
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 #include "host/app/part_choice.hpp"
+#include "host/app/text_options.hpp"
 
 namespace gyrolog {
 
@@ -26,6 +27,7 @@ struct AnalysisRequest {
     std::optional<double> lsb_dps;
     std::optional<double> lsb_g{};
     PartChoice part{};
+    TextChoice text{};
     std::string sensor = "all";  // or "gyro", "accelerometer"
     double confidence = 0.683;
     bool robust = false;

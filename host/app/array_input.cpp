@@ -113,7 +113,9 @@ Result<Recording> read_array(const ArrayInput& input) {
             aligned.align_starts = true;
             break;
         }
-        GYROLOG_TRY(TimedRecording timed, read_timed_recording({path, input.rate_hz, input.lsb_dps, {}}));
+        RecordingInput file{path, input.rate_hz, input.lsb_dps};
+        file.text = input.text;
+        GYROLOG_TRY(TimedRecording timed, read_timed_recording(file));
         recordings.push_back(std::move(timed));
     }
     if (recordings.size() == 1) { return std::move(recordings.front().recording); }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/recording/recording.hpp"
+#include "host/app/text_options.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
@@ -14,6 +15,7 @@ struct ArrayInput {
     std::vector<std::string> paths;  // files, or "sim:..." for boards= simulated boards
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
+    TextChoice text{};
     double simulated_s = 60.0;
     // Several files: by their first samples instead of by their clocks (device time on the host's clock of
     // captures, time stamps of text).

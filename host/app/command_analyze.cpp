@@ -11,6 +11,7 @@
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
 #include "host/app/stage_clock.hpp"
+#include "host/app/text_options.hpp"
 
 namespace gyrolog {
 namespace {
@@ -75,7 +76,8 @@ Action setup_analyze(CLI::App& app) {
             ->type_name("FILE.csv");
     app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")
         ->type_name("FILE");
-    add_recordings(app, options->many, "RECORDING", "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
+    add_recordings(app, options->many, "RECORDING",
+                   "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy");
     app.add_option("--plot", request->plot_path, "Draw the Allan curves and the spectra")
         ->type_name("FILE.png")
         ->check(png_file());
@@ -103,12 +105,11 @@ Action setup_analyze(CLI::App& app) {
     app.add_option("--rate", request->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
         ->check(sampling_rate());
-    app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
-        ->type_name("DPS")
-        ->check(positive_number());
+    app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
     app.add_option("--lsb-g", request->lsb_g, "Scale of accelerometer columns that are counts (_lsb)")
         ->type_name("G")
         ->check(positive_number());
+    add_text_options(app, request->text);
     app.add_option("--sensor", request->sensor, "Which sensor: gyro, accelerometer, or all that there are")
         ->check(CLI::IsMember({"gyro", "accelerometer", "all"}))
         ->type_name("NAME")
@@ -124,7 +125,7 @@ Action setup_analyze(CLI::App& app) {
     app.add_flag("--timing", options->timing, "Print on standard error where the time went");
     for (const char* of_samples :
          {"--deviation", "--convention", "--m", "--robust", "--histogram", "--lsb-dps", "--lsb-g", "--sensor",
-          "--from", "--to", "--still", "--jsonl"}) {
+          "--from", "--to", "--still", "--jsonl", "--columns", "--unit", "--acc-unit"}) {
         curve->excludes(app.get_option(of_samples));
     }
     return [options](Console& console) { return analyze_either(console, *options); };

@@ -34,14 +34,17 @@ struct CompareRequest {
     std::string json_path;  // "-" is standard output; empty: not wanted
     std::string plot_path;
     std::string duration;  // of the recording's beginning; empty: all
+    std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
+    TextChoice text{};
     PartChoice part;  // of the recording, not of another one
     ModelComparisonOptions simulations;
 };
 
 Result<Recording> comparable_recording(const CompareRequest& request, const std::string& path,
                                        const PartChoice& part) {
-    RecordingInput input{path, std::nullopt, request.lsb_dps};
+    RecordingInput input{path, request.rate_hz, request.lsb_dps};
+    input.text = request.text;
     input.part = part;
     GYROLOG_TRY(Recording recording, read_recording(input));
     if (!request.duration.empty() && !recording.segments.empty()) {
@@ -171,7 +174,7 @@ Action setup_compare(CLI::App& app) {
     app.add_option("--json", request->json_path, "Write the comparison as JSON (- for standard output)")
         ->type_name("FILE");
     add_recordings(app, *many, "RECORDING",
-                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz), and last of all WITH what: "
+                   "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy, and last of all WITH what: "
                    "a sensor model (.json), which is simulated, or another recording")
         ->type_name("WITH")
         ->required();
@@ -187,10 +190,12 @@ Action setup_compare(CLI::App& app) {
     app.add_option("--duration", request->duration, "Compare the first part of a recording only")
         ->type_name("T")
         ->check(duration());
+    app.add_option("--rate", request->rate_hz, "Sampling rate of recordings, in place of the one in the file")
+        ->type_name("HZ")
+        ->check(sampling_rate());
     add_part_options(app, request->part);
-    app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
-        ->type_name("DPS")
-        ->check(positive_number());
+    add_text_options(app, request->text);
+    app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
     return [request, many](Console& console) { return compare(console, *request, *many); };
 }
 

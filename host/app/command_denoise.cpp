@@ -186,9 +186,9 @@ private:
     }
 
     Result<Recording> calibration_recording() const {
-        GYROLOG_TRY(
-            Recording other,
-            read_recording({request_.calibration, request_.input.rate_hz, request_.input.lsb_dps, {}}));
+        RecordingInput input{request_.calibration, request_.input.rate_hz, request_.input.lsb_dps};
+        input.text = request_.input.text;
+        GYROLOG_TRY(Recording other, read_recording(input));
         const std::vector<ArrayAxis> here = array_axes(recording_);
         const std::vector<ArrayAxis> there = array_axes(other);
         bool same = here.size() == there.size();
@@ -404,7 +404,8 @@ void add_input_options(CLI::App& app, Request& request) {
     app.add_option("--rate", request.input.rate_hz, "Sampling rate, in place of what time stamps say")
         ->type_name("HZ")
         ->check(positive_number());
-    app.add_option("--lsb-dps", request.input.lsb_dps, "Scale of gyro columns that are counts (_lsb)")
+    add_text_options(app, request.input.text);
+    app.add_option("--lsb-dps", request.input.lsb_dps, lsb_dps_help)
         ->type_name("DPS")
         ->check(positive_number());
 }

@@ -77,7 +77,8 @@ Action setup_diagnose(CLI::App& app) {
             ->type_name("FILE.csv");
     app.add_option("--json", request.json_path, "Write the diagnosis as JSON (- for standard output)")
         ->type_name("FILE");
-    add_recordings(app, options->many, "RECORDING", "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)");
+    add_recordings(app, options->many, "RECORDING",
+                   "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy");
     app.add_option("--plot", request.plot_path,
                    "Draw the shares of the causes, and where recording and model part before and after them")
         ->type_name("FILE.png")
@@ -107,13 +108,15 @@ Action setup_diagnose(CLI::App& app) {
         ->type_name("N")
         ->check(whole_number(0, threads_most))
         ->capture_default_str();
-    app.add_option("--lsb-dps", request.lsb_dps, "Scale of gyro columns that are counts (_lsb)")
-        ->type_name("DPS")
-        ->check(positive_number());
+    app.add_option("--rate", request.rate_hz, "Sampling rate of recordings, in place of the one in the file")
+        ->type_name("HZ")
+        ->check(sampling_rate());
+    add_text_options(app, request.text);
+    app.add_option("--lsb-dps", request.lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
     add_part_options(app, request.part);
-    for (const char* of_recordings :
-         {"--auto", "--unnamed", "--holdout", "--average", "--simulations", "--seed", "--threads",
-          "--lsb-dps", "--from", "--to", "--still", "--jsonl"}) {
+    for (const char* of_recordings : {"--auto", "--unnamed", "--holdout", "--average", "--simulations",
+                                      "--seed", "--threads", "--lsb-dps", "--rate", "--columns", "--unit",
+                                      "--acc-unit", "--from", "--to", "--still", "--jsonl"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

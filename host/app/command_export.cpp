@@ -24,6 +24,7 @@ struct ExportOptions {
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
     PartChoice part;
+    TextChoice text{};
     std::string simulator;  // empty: by the output's ending
     std::string horizon = "1h";
     std::uint64_t seed = 1;
@@ -86,6 +87,7 @@ bool has_rates(const Recording& recording) {
 Status export_recording(Console& console, const ExportOptions& options, const ExportFormat& format) {
     RecordingInput input{options.source, options.rate_hz, options.lsb_dps};
     input.part = options.part;
+    input.text = options.text;
     GYROLOG_TRY(const Recording recording, read_recording(input));
     for (const std::string& warning : recording.warnings) {
         console.err << "gyrolog export: warning: " << warning << '\n';
@@ -148,7 +150,7 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
 Action setup_export(CLI::App& app) {
     auto options = std::make_shared<ExportOptions>();
     app.add_option("RECORDING", options->source,
-                   "A capture (.pcapng), text (.csv, .csv.xz), or a model (.json)")
+                   "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy, or a model (.json)")
         ->required();
     app.add_option(
            "-o,--output", options->output,
@@ -172,9 +174,8 @@ Action setup_export(CLI::App& app) {
         ->type_name("HZ")
         ->check(sampling_rate());
     add_part_options(app, options->part);
-    app.add_option("--lsb-dps", options->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
-        ->type_name("DPS")
-        ->check(positive_number());
+    add_text_options(app, options->text);
+    app.add_option("--lsb-dps", options->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
     return [options](Console& console) { return export_to_file(console, *options); };
 }
 

@@ -11,7 +11,7 @@ namespace gyrolog {
 Action setup_report(CLI::App& app) {
     auto request = std::make_shared<ReportRequest>();
     app.add_option("RECORDING", request->recording_path,
-                   "A capture (.pcapng) or text (.csv, .csv.xz, .csv.gz)")
+                   "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy")
         ->required();
     app.add_option("-o,--output", request->page_path, "The page, with its figures inside")
         ->type_name("FILE.html")
@@ -34,9 +34,8 @@ Action setup_report(CLI::App& app) {
         ->type_name("HZ")
         ->check(sampling_rate());
     add_part_options(app, request->part);
-    app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
-        ->type_name("DPS")
-        ->check(positive_number());
+    add_text_options(app, request->text);
+    app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
     return [request](Console& console) { return report_to_file(console, *request); };
 }
 

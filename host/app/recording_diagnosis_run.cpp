@@ -127,6 +127,7 @@ Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisR
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.samples_per_row = request.average;
     input.part = request.part;
+    input.text = request.text;
     GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
     if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, request.recording_path)); }
     complete_from(*read.samples, file);

@@ -11,6 +11,7 @@
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 #include "host/app/part_choice.hpp"
+#include "host/app/text_options.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
@@ -25,7 +26,8 @@ struct RecordingDiagnosisRequest {
     bool with_unnamed = false;      // and what was modelled without a name
     std::optional<double> rate_hz;  // in place of the one in the file
     std::optional<double> lsb_dps;
-    PartChoice part{};        // of the recording, not of the second one
+    PartChoice part{};  // of the recording, not of the second one
+    TextChoice text{};
     std::size_t average = 1;  // samples of which means are looked at
     std::size_t simulations = 200;
     std::uint64_t seed = 1;

@@ -1,12 +1,14 @@
 #include "host/app/recording_input.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "analysis/noise/noise_model.hpp"
 #include "host/base/counted.hpp"
-#include "host/formats/recording_csv.hpp"
+#include "host/formats/recording_file.hpp"
 #include "host/session/load_capture.hpp"
 
 namespace gyrolog {
@@ -24,6 +26,11 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
             fmt::format("the file is damaged in {}; the samples lost there count as missing",
                         counted(capture.file.blocks.damaged_ranges, "place")));
     }
+    const TextChoice& text = input.text;
+    if (!text.columns.empty() || !text.gyro_unit.empty() || !text.accelerometer_unit.empty()) {
+        recording->warnings.emplace_back(
+            "--columns, --unit and --acc-unit are ignored: a capture says itself what it holds");
+    }
     if (input.rate_hz) {
         const double told_hz = recording->rate_hz * static_cast<double>(input.samples_per_row);
         if (std::abs(*input.rate_hz / told_hz - 1.0) > 1e-3) {
@@ -39,6 +46,57 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
     return TimedRecording{std::move(recording).value(), host_start_s, std::move(capture)};
 }
 
+// Of the gyros that put out counts the widest range: ST LSM6DSV, TDK ICM-45686. With 12 bits or more a count
+// of such a gyro is below 2 deg/s.
+constexpr double widest_range_dps = 4000.0;
+constexpr double coarsest_count_dps = 2.0;
+
+struct Moments {
+    double mean_dps;
+    double sd_dps;
+};
+
+Moments moments_of(const Column& column) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < column.size(); ++i) {
+        const double dps = column.value(i) * deg_per_rad;
+        sum += dps;
+        squares += dps * dps;
+    }
+    const auto count = static_cast<double>(column.size());
+    const double mean_dps = sum / count;
+    return {mean_dps, std::sqrt(std::max(squares / count - mean_dps * mean_dps, 0.0))};
+}
+
+// Data sheets give the sensitivity, in counts per deg/s; the option takes its inverse.
+Status check_scale(Recording& recording, double lsb_dps, const std::string& path) {
+    const std::string meant =
+        lsb_dps > 1.0 ? fmt::format("; a data sheet's {0:g} LSB per deg/s is --lsb-dps {1:.6g} (1/{0:g})",
+                                    lsb_dps, 1.0 / lsb_dps)
+                      : "";
+    bool any_counts = false;
+    for (const Column& column : recording.columns) {
+        if (column.source_unit != "lsb" || column.unit != "rad/s" || column.size() == 0) { continue; }
+        any_counts = true;
+        const Moments moments = moments_of(column);
+        const bool is_mean = std::abs(moments.mean_dps) > widest_range_dps;
+        if (!is_mean && moments.sd_dps <= widest_range_dps) { continue; }
+        return invalid_argument(
+            fmt::format("'{}': with --lsb-dps {:g}, deg/s per count, the {} of {} is {:.4g} deg/s, and no "
+                        "gyro that puts out "
+                        "counts reaches {:g}{}",
+                        path, lsb_dps, is_mean ? "mean" : "standard deviation", column.name,
+                        is_mean ? moments.mean_dps : moments.sd_dps, widest_range_dps, meant));
+    }
+    if (any_counts && lsb_dps > coarsest_count_dps) {
+        recording.warnings.push_back(
+            fmt::format("--lsb-dps {:g} makes each count {:g} deg/s, coarser than any gyro's{}", lsb_dps,
+                        lsb_dps, meant));
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<Recording> read_recording(const RecordingInput& input) {
@@ -51,7 +109,7 @@ namespace {
 Result<TimedRecording> read_whole(const RecordingInput& input) {
     if (looks_like_capture(input.path)) { return read_capture(input); }
     input.on_stage("read");
-    CsvReadOptions options;
+    RecordingReadOptions options;
     options.rate_hz = input.rate_hz;
     options.lsb_dps = input.lsb_dps;
     options.allow_unscaled_counts = true;
@@ -60,7 +118,9 @@ Result<TimedRecording> read_whole(const RecordingInput& input) {
     options.lsb_g = input.lsb_g;
     options.with_accelerometer = input.with_accelerometer;
     options.needs_gyro = input.needs_gyro;
-    GYROLOG_TRY(Recording recording, read_recording_csv(input.path, options));
+    options.choice = input.text;
+    GYROLOG_TRY(Recording recording, read_recording_file(input.path, options));
+    if (input.lsb_dps) { GYROLOG_CHECK(check_scale(recording, *input.lsb_dps, input.path)); }
     return TimedRecording{std::move(recording)};
 }
 

@@ -1,4 +1,4 @@
-// A RECORDING argument of the command line: a capture, or text.
+// A RECORDING argument of the command line: a capture, text, or an array of numbers.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include "analysis/recording/recording.hpp"
 #include "analysis/recording/stage_observer.hpp"
 #include "host/app/part_choice.hpp"
+#include "host/app/text_options.hpp"
 #include "host/base/result.hpp"
 #include "host/session/load_capture.hpp"
 
@@ -26,10 +27,12 @@ struct RecordingInput {
     std::optional<double> lsb_g{};   // scale of accelerometer columns in counts
     bool with_accelerometer = true;  // without it, its columns are not read
     bool needs_gyro = true;          // else text with an accelerometer alone is a recording, too
+    TextChoice text{};               // what the columns of text are where their names do not say it
     PartChoice part{};
 };
 
-// Errors beside those of the file: of take_part().
+// Errors: those of load_capture(), read_recording_file() and take_part(), and invalid_argument where counts,
+// scaled by lsb_dps, are rates that no gyro has.
 Result<Recording> read_recording(const RecordingInput& input);
 
 // The same with the times of its part at rest, for a file that is read more than once.

@@ -54,6 +54,7 @@ RecordingDiagnosisRequest diagnosis_request(const ReportRequest& request) {
     diagnosis.rate_hz = request.rate_hz;
     diagnosis.lsb_dps = request.lsb_dps;
     diagnosis.part = request.part;
+    diagnosis.text = request.text;
     diagnosis.simulations = request.simulations;
     diagnosis.seed = request.seed;
     return diagnosis;
@@ -81,6 +82,7 @@ ExitCode report_to_file(Console& console, const ReportRequest& request) {
     }
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.part = request.part;
+    input.text = request.text;
     const auto read = read_timed_recording(input);
     if (!read.ok()) { return fail(read.error()); }
     AnalysisOptions options;

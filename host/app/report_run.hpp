@@ -9,6 +9,7 @@
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 #include "host/app/part_choice.hpp"
+#include "host/app/text_options.hpp"
 
 namespace gyrolog {
 
@@ -19,6 +20,7 @@ struct ReportRequest {
     std::optional<double> rate_hz;  // in place of the one in the file
     std::optional<double> lsb_dps;
     PartChoice part{};
+    TextChoice text{};
     std::size_t simulations = 200;
     std::uint64_t seed = 1;
 };

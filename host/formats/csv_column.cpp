@@ -22,6 +22,8 @@ struct Unit {
 constexpr std::array units = {
     Unit{Kind::rate, "dps", "dps", "rad/s", rad_per_deg},
     Unit{Kind::rate, "rad_s", "rad_s", "rad/s", 1.0},
+    Unit{Kind::rate, "deg_h", "deg_h", "rad/s", rad_per_deg / 3600.0},
+    Unit{Kind::rate, "mdps", "mdps", "rad/s", 1e-3 * rad_per_deg},
     Unit{Kind::rate, "lsb", "lsb", "rad/s", 1.0},
     Unit{Kind::angle, "deg", "dps", "rad/s", rad_per_deg},
     Unit{Kind::angle, "rad", "rad_s", "rad/s", 1.0},
@@ -29,10 +31,19 @@ constexpr std::array units = {
     Unit{Kind::angle_increment, "rad", "rad_s", "rad/s", 1.0},
     Unit{Kind::force, "g", "g", "m/s^2", standard_gravity_m_s2},
     Unit{Kind::force, "m_s2", "m_s2", "m/s^2", 1.0},
+    Unit{Kind::force, "mg", "mg", "m/s^2", 1e-3 * standard_gravity_m_s2},
     Unit{Kind::force, "lsb", "lsb", "m/s^2", 1.0},
     Unit{Kind::reference, "dps", "dps", "rad/s", rad_per_deg},
     Unit{Kind::reference, "rad_s", "rad_s", "rad/s", 1.0},
 };
+
+// A division by these gives the nearest number of seconds, which a product with their inverse does not.
+struct StampUnit {
+    std::string_view header;
+    double per_s;
+};
+constexpr std::array stamp_units = {StampUnit{"t_s", 1.0}, StampUnit{"t_ms", 1e3}, StampUnit{"t_us", 1e6},
+                                    StampUnit{"t_ns", 1e9}};
 
 bool is_axis(char c) { return c >= 'x' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -53,7 +64,11 @@ std::optional<CsvColumn> with_unit(std::string name, std::string_view written,
 }  // namespace
 
 std::optional<CsvColumn> csv_column(std::string_view header) {
-    if (header == "t_s") { return CsvColumn{Kind::time_stamp, "t", "s", "s", 1.0}; }
+    for (const StampUnit& unit : stamp_units) {
+        if (header == unit.header) {
+            return CsvColumn{Kind::time_stamp, "t", "s", std::string(header.substr(2)), 1.0, unit.per_s};
+        }
+    }
     if (header == stopped_column) { return CsvColumn{Kind::stop, "stopped", "s", "s", 1.0}; }
     if (header == "temp_C") { return CsvColumn{Kind::temperature, "temp", "degC", "C", 1.0}; }
     constexpr std::array quaternion = {"ref_qw", "ref_qx", "ref_qy", "ref_qz"};

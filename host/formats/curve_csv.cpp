@@ -68,8 +68,7 @@ Status judge_header(std::vector<CsvTableColumn>& columns) {
         } else if (!deviation) {
             continue;
         } else if (std::ranges::find(names, deviation->name) != names.end()) {
-            return malformed("line 1: curve " + in_quotes(deviation->name) +
-                             " appears twice, in different units");
+            return malformed("curve " + in_quotes(deviation->name) + " appears twice, in different units");
         } else {
             sensors.insert(deviation->unit->sensor);
             names.push_back(deviation->name);
@@ -78,15 +77,12 @@ Status judge_header(std::vector<CsvTableColumn>& columns) {
         column.lowest = smallest_read;
         column.highest = largest_read;
     }
-    if (!tau) {
-        return malformed(fmt::format("line 1: no column tau_s; it must name the columns, {}", example));
-    }
+    if (!tau) { return malformed(fmt::format("no column tau_s; it must name the columns, {}", example)); }
     if (names.empty()) {
-        return malformed(
-            fmt::format("line 1: no deviation; it must name the columns with their units, {}", example));
+        return malformed(fmt::format("no deviation; it must name the columns with their units, {}", example));
     }
     if (sensors.size() > 1) {
-        return malformed("line 1: curves of a gyro and of an accelerometer; give each a file");
+        return malformed("curves of a gyro and of an accelerometer; give each a file");
     }
     return {};
 }
@@ -130,7 +126,11 @@ Result<PrintedCurves> curves_of(std::vector<CsvTableColumn>& columns, std::strin
     return curves;
 }
 
-CsvTable curve_table() { return {"tau_s,x_dps,y_dps,z_dps", judge_header}; }
+CsvTable curve_table() {
+    CsvTableForm form;
+    form.example = "tau_s,x_dps,y_dps,z_dps";
+    return {std::move(form), judge_header};
+}
 
 Result<PrintedCurves> read_file(const std::string& path) {
     CsvTable table = curve_table();

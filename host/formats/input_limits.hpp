@@ -11,6 +11,10 @@ struct InputLimits {
     std::size_t line_bytes_most = std::size_t{1} << 20;
     // Of text: a thousand gyros with three axes, a temperature and a stamp each are 5000.
     std::size_t columns_most = 10'000;
+    // Of the header of an .npy: a thousand names in a structured type take 30 kB.
+    std::size_t npy_header_bytes_most = std::size_t{1} << 20;
+    // Of numbers in an .npy or in one variable of a .mat: a day of four columns at 8 kHz is 2.8 billion.
+    std::size_t numbers_most = std::size_t{1} << 32;
     // Of a model: one with 33 effects on three axes and all their uncertainties takes 200 kB and 3000 keys.
     std::size_t json_bytes_most = std::size_t{16} << 20;
     std::size_t json_keys_most = 10'000;

@@ -1,8 +1,7 @@
-// A recording as text: one header line, then one line per sample; the unit stands in the column's name.
+// A recording as text: a line that names the columns, then one line per sample.
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,39 +9,15 @@
 
 #include "analysis/recording/recording.hpp"
 #include "host/base/result.hpp"
+#include "host/formats/recording_columns.hpp"
 #include "host/formats/text_file.hpp"
 
 namespace gyrolog {
 
-struct CsvReadOptions {
-    std::optional<double> rate_hz{};  // given by the user: time stamps in the file are then ignored
-    std::optional<double> lsb_dps{};  // scale of gyro columns in counts
-    std::optional<double>
-        lsb_g{};  // scale of accelerometer columns in counts; without it they stay in counts
-    // Gyro counts without lsb_dps are an error, because every unit would be wrong; with this they come as
-    // unit "lsb".
-    bool allow_unscaled_counts = false;
-    // Reading ends soon after so many.
-    std::size_t rows_most = std::numeric_limits<std::size_t>::max() - 1;
-    // More: means of so many lines, whether or not samples are missing between them, of those that have
-    // all; a row is missing where fewer than half have. Otherwise as means_of() has them. Only rows take
-    // memory.
-    std::size_t samples_per_row = 1;
-    bool with_accelerometer = true;  // without it, its columns are not read
-    bool needs_gyro = true;          // text without a gyro column is an error, even with an accelerometer
-};
+using CsvReadOptions = RecordingReadOptions;
 
-// Numbers keep the unit and the digits that the text has (Column::source_unit). Counts that are whole numbers
-// of 16 bits become counts. An angle becomes a rate: its difference from the sample before, times the rate;
-// so does an increment. The first sample after a hole then has no rate and counts as missing.
-//
-// A row where any gyro field is empty or NaN is a missing sample; in other columns such a field stays NaN.
-// Without a gyro column the accelerometer's fields decide.
-// Columns of unknown name are ignored, with one warning that lists them.
-//
-// A hole is a loss, unless a column stopped_s says behind it, in its first sample, that the user had stopped
-// the board meanwhile, and for how long: that is a dropout of the cause stopped_cause, and nobody misses it.
-// It is not looked at where rows are means.
+// The text may be of any dialect: names by column_dialect.hpp, separators and comments by csv_table.hpp; the
+// columns become a recording by recording_of().
 //
 // Errors: malformed (names the line and the column), invalid_argument (what the text lacks and which option
 // gives it), and those of reading a file.

@@ -56,6 +56,13 @@ std::string noise(std::size_t bytes) {
     return text;
 }
 
+// Three rows of two numbers, all zero.
+std::string npy(const std::string& type) {
+    std::string header = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (3, 2), }";
+    header.resize(117, ' ');
+    return std::string("\x93NUMPY\x01\0v\0", 10) + header + '\n' + std::string(48, '\0');
+}
+
 // All tests run in one folder with these files, by names without a path.
 class WrongInput : public testing::Test {
 protected:
@@ -99,9 +106,21 @@ protected:
         std::string returns = whole;
         std::ranges::replace(returns, '\n', '\r');
         write("cr.csv", returns);
-        std::string semicolons = whole;
-        std::ranges::replace(semicolons, ',', ';');
-        write("semicolons.csv", semicolons);
+        write("mixed.csv", "t_s;gx_dps\n0,1;1\n0.2;1\n");
+        write("nounit.csv", "time,gyr_x,gyr_y\n0,1,2\n0.1,2,3\n0.2,3,4\n");
+        write("noname.csv", "0,1\n0.1,2\n0.2,3\n");
+        write("anytime.csv", "time,gx (deg/s)\n0,1\n10,2\n20,1\n30,2\n");
+        write("both.csv", "t_s,gx_dps,gx_rad_s\n0,1,1\n1,1,1\n");
+        std::string scaled = "t_s,gx_lsb\n";
+        for (int i = 0; i < 100; ++i) {
+            scaled += std::to_string(0.01 * i) + "," + std::to_string(90 + i % 5) + "\n";
+        }
+        write("scaled.csv", scaled);
+        write("cut.npy", std::string("\x93NUMPY\x01\0v\0", 10) + "{'descr': '<f8',");
+        write("big.npy", npy(">f8"));
+        write("plain.npy", npy("<f8"));
+        write("cut.mat", "MATLAB 5.0 MAT-file");
+        write("a.npz", "PK\x03\x04 and more");
         write("utf16.csv", std::string("\xFF\xFEt\0_\0s\0", 8));
         write("word.csv", "t_s,gx_dps\n0,1\n1,two\n2,3\n");
         write("short.csv", "t_s,gx_dps,gy_dps\n0,1,2\n1,2\n2,3,4\n");
@@ -311,8 +330,33 @@ TEST_F(WrongInput, OfAnalyze) {
         {"analyze m.json", 1, "read 'm.json': this is JSON, a model or a report perhaps, and no table"},
         {"analyze torn.csv.xz", 1, "read 'torn.csv.xz': its compressed text is damaged or cut off"},
         {"analyze cr.csv", 1, "line 1: the lines end in carriage returns alone: end them in line feeds"},
-        {"analyze semicolons.csv", 1,
-         "line 1: the columns are separated by semicolons: separate them by commas"},
+        {"analyze mixed.csv", 1, "line 3, column 't_s': '0.2' has a decimal point where line 2 has a comma"},
+        {"analyze nounit.csv", 2, "no unit in the name of gyr_x, gyr_y: give it with --unit (deg/s, rad/s,"},
+        {"analyze nounit.csv --unit furlong", 2,
+         "--unit: 'furlong' is no unit of a gyro: write deg/s, rad/s"},
+        {"analyze nounit.csv --acc-unit dps", 2,
+         "--acc-unit: 'dps' is no unit of an accelerometer: write g,"},
+        {"analyze nounit.csv --columns gyr_z=gx_dps", 2, "no column 'gyr_z' among time, gyr_x, gyr_y"},
+        {"analyze nounit.csv --columns t,gx_dps,gy_dps,gz_dps", 1, "has 3 columns, and --columns names 4"},
+        {"analyze nounit.csv --columns t,,gx", 2, "--columns 't,,gx': a name is empty; write _ for a column"},
+        {"analyze nounit.csv --columns t,warp", 2,
+         "--columns: 'warp' is no name of a column: write t, gx, gy"},
+        {"analyze noname.csv", 1, "line 1 holds numbers, and no line before it names the columns: put"},
+        {"analyze noname.csv --columns t,gx", 2, "line 1: no unit in the name of gx: give it with --unit"},
+        {"analyze anytime.csv", 2,
+         "may be 0.1 Hz in s or 100 Hz in ms: name it with --columns time=t_s (or t_ms,"},
+        {"analyze both.csv", 1, "line 1: columns 'gx_dps' and 'gx_rad_s' are both gx: leave one out"},
+        {"analyze scaled.csv --lsb-dps 65.5", 2,
+         "a data sheet's 65.5 LSB per deg/s is --lsb-dps 0.0152672 (1/65.5)"},
+        {"analyze cut.npy", 1, "read 'cut.npy': no whole .npy: it is cut off in its header"},
+        {"analyze big.npy", 1,
+         "read 'big.npy': its numbers are big endian ('>f8'): save it as a.astype('<f8')"},
+        {"analyze plain.npy", 2,
+         "an .npy does not name its columns, and this has 2: name them with --columns"},
+        {"analyze plain.npy --columns gx,gy", 2, "gx, gy: give it with --unit"},
+        {"analyze cut.mat", 1, "read 'cut.mat': no MAT-file that libmatio can read"},
+        {"analyze a.npz", 1,
+         "read 'a.npz': this is an archive (.npz, .zip, .xlsx): take one table out of it"},
         {"analyze utf16.csv", 1, "read 'utf16.csv': the text is UTF-16: save it as UTF-8 or ASCII"},
         {"analyze word.csv", 1, "line 3, column 'gx_dps': 'two' is no number; leave the field empty"},
         {"analyze short.csv", 1,
@@ -320,7 +364,8 @@ TEST_F(WrongInput, OfAnalyze) {
          "'gy_dps'"},
         {"analyze long.csv", 1,
          "line 3: 4 fields where line 1 names 3 columns; the last of them is column 'gy_dps'"},
-        {"analyze unit.csv", 1, "line 1: no gyro column"},
+        {"analyze unit.csv", 1,
+         "line 1: no gyro column and none of an accelerometer, but t_s, gx_furlong: name"},
         {"analyze nostamps.csv", 2, "no column t_s: give the sampling rate with --rate"},
         {"analyze backwards.csv", 1, "the time stamps step back by 1 s at row 3: cut the recording there"},
         {"analyze header.csv", 1, "read 'header.csv': no samples after the header line"},
@@ -356,6 +401,7 @@ TEST_F(WrongInput, OfAnalyze) {
         {"analyze --curve fewpoints.csv", 1, "column 'x_dps': 2 points; a model needs"},
         {"analyze --curve curve.csv c.csv", 2, "give a RECORDING or --curve, not both"},
         {"analyze --curve curve.csv --m 1", 2, "--curve excludes --m"},
+        {"analyze --curve curve.csv --unit deg/s", 2, "--curve excludes --unit"},
     });
 }
 
@@ -406,6 +452,12 @@ TEST_F(WrongInput, OfCompareDiagnoseAndDenoise) {
         {"compare none.csv m.json", 1, "read 'none.csv': no such file"},
         {"compare c.csv dir", 1, "read 'dir': it is a directory"},
         {"compare c.csv word.csv", 1, "read 'word.csv': line 3, column 'gx_dps'"},
+        {"compare nounit.csv m.json", 2, "gyr_x, gyr_y: give it with --unit"},
+        {"compare nostamps.csv m.json", 2, "no column t_s: give the sampling rate with --rate"},
+        {"diagnose nostamps.csv --model m.json", 2, "no column t_s: give the sampling rate with --rate"},
+        {"diagnose noname.csv --model m.json", 1, "line 1 holds numbers"},
+        {"denoise nounit.csv", 2, "gyr_x, gyr_y: give it with --unit"},
+        {"report nounit.csv -o r.html", 2, "gyr_x, gyr_y: give it with --unit"},
         {"compare c.csv future.json", 1, "model 'future.json': schema is 'gyrolog-model/9'"},
         {"compare c.csv m.json --simulations 1", 2, "--simulations: '1' is no whole number from"},
         {"compare c.csv m.json --duration soon", 2, duration_forms},
@@ -446,7 +498,14 @@ TEST_F(WrongInput, OfExportAndConform) {
         {"export c.csv", 2, "--output is required"},
         {"export none.csv -o e.csv", 1, "read 'none.csv': no such file"},
         {"export dir -o e.csv", 1, "read 'dir': it is a directory"},
-        {"export unit.csv -o e.csv", 1, "line 1: no gyro column"},
+        {"export unit.csv -o e.csv", 1,
+         "line 1: no gyro column, but t_s, gx_furlong: name columns by --columns"},
+        {"export counts.csv -o out/e.csv --lsb-dps 16.4", 0,
+         "makes each count 16.4 deg/s, coarser than any gyro's; a data sheet's 16.4 LSB per deg/s is "
+         "--lsb-dps"},
+        {"export c.pcapng -o out/e.csv --unit deg/s", 0,
+         "warning: --columns, --unit and --acc-unit are ignored"},
+        {"export nounit.csv -o e.csv", 2, "gyr_x, gyr_y: give it with --unit"},
         {"export counts.csv -o e.yaml", 2, "give the scale of counts with --lsb-dps"},
         {"export c.csv -o e", 2, "'e' has none of the endings that tell the format: .csv"},
         {"export c.csv -o e.xls", 2, "'e.xls' has none of the endings that tell the format: .csv"},

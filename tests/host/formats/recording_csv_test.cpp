@@ -206,12 +206,12 @@ TEST(RecordingCsv, AMalformedLineIsNamedWithItsColumn) {
 
 TEST(RecordingCsv, AnAccelerometerAloneIsARecordingWhereNoGyroIsNeeded) {
     const std::string text = "t_s,ax_g,az_g\n0,0.1,1\n1,0.2,1\n2,,1\n3,0.4,1\n";
-    EXPECT_THAT(refusal(text), HasSubstr("line 1: no gyro column;"));
+    EXPECT_THAT(refusal(text), HasSubstr("line 1: no gyro column, but t_s, ax_g, az_g: "));
     const Recording recording = parsed(text, {.needs_gyro = false});
     EXPECT_THAT(reals(recording, "ax"), ElementsAre(0.1, 0.2, 0.4));
     EXPECT_EQ(recording.missing_samples(), 1);
     EXPECT_THAT(refusal("t_s,ax_m\n0,1\n", {.needs_gyro = false}),
-                HasSubstr("line 1: no gyro column and none of an accelerometer"));
+                HasSubstr("line 1: no gyro column and none of an accelerometer, but t_s, ax_m: "));
 }
 
 TEST(RecordingCsv, AnAccelerometerThatIsNotWantedIsNotReadAtAll) {
@@ -223,7 +223,7 @@ TEST(RecordingCsv, AnAccelerometerThatIsNotWantedIsNotReadAtAll) {
 
 TEST(RecordingCsv, SaysWhatIsMissingAndWhatGivesIt) {
     EXPECT_THAT(refusal(""), HasSubstr("empty"));
-    EXPECT_THAT(refusal("0,1\n1,2\n"), HasSubstr("line 1: no gyro column"));
+    EXPECT_THAT(refusal("0,1\n1,2\n"), HasSubstr("line 1 holds numbers"));
     EXPECT_THAT(refusal("gx_dps\n1\n"), HasSubstr("--rate"));
     EXPECT_THAT(refusal("t_s,gx_lsb\n0,1\n1,2\n"), HasSubstr("--lsb-dps"));
     EXPECT_THAT(refusal("t_s,gx_dps,gx_dps\n0,1,1\n"), HasSubstr("'gx_dps' appears twice"));

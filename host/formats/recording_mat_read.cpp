@@ -1,0 +1,295 @@
+#include "host/formats/recording_mat_read.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <matio.h>
+
+#include "host/base/printable.hpp"
+#include "host/formats/column_dialect.hpp"
+#include "host/formats/input_limits.hpp"
+
+namespace gyrolog {
+namespace {
+
+struct CloseReadFile {
+    void operator()(mat_t* file) const { Mat_Close(file); }
+};
+struct FreeReadVariable {
+    void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+using ReadVariable = std::unique_ptr<matvar_t, FreeReadVariable>;
+
+struct Matrix {
+    std::string name;
+    std::size_t rows = 0;
+    std::size_t columns = 0;
+    std::vector<double> values;  // column by column
+};
+
+struct Variables {
+    std::vector<Matrix> matrices;
+    std::vector<std::pair<std::string, double>> scalars;
+    std::string gyro_axes;            // of gyrolog's own files
+    std::vector<std::string> others;  // names of what is no matrix of numbers
+};
+
+template <typename Number>
+std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
+    const auto* data = static_cast<const Number*>(variable.data);
+    return {data, data + count};
+}
+
+// Empty for what is no real number.
+std::vector<double> values_of(const matvar_t& variable, std::size_t count) {
+    switch (variable.class_type) {
+        case MAT_C_DOUBLE:
+            return numbers<double>(variable, count);
+        case MAT_C_SINGLE:
+            return numbers<float>(variable, count);
+        case MAT_C_INT8:
+            return numbers<std::int8_t>(variable, count);
+        case MAT_C_UINT8:
+            return numbers<std::uint8_t>(variable, count);
+        case MAT_C_INT16:
+            return numbers<std::int16_t>(variable, count);
+        case MAT_C_UINT16:
+            return numbers<std::uint16_t>(variable, count);
+        case MAT_C_INT32:
+            return numbers<std::int32_t>(variable, count);
+        case MAT_C_UINT32:
+            return numbers<std::uint32_t>(variable, count);
+        case MAT_C_INT64:
+            return numbers<std::int64_t>(variable, count);
+        case MAT_C_UINT64:
+            return numbers<std::uint64_t>(variable, count);
+        default:
+            return {};
+    }
+}
+
+bool is_numeric(const matvar_t& variable) {
+    return variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64 &&
+           variable.isComplex == 0 && variable.rank == 2;
+}
+
+std::string text_of(const matvar_t& variable) {
+    if (variable.class_type != MAT_C_CHAR || variable.data == nullptr || variable.data_size != 1) {
+        return {};
+    }
+    return {static_cast<const char*>(variable.data), variable.nbytes};
+}
+
+Status take(Variables& variables, mat_t* file, matvar_t& variable) {
+    const std::string name = variable.name == nullptr ? "" : variable.name;
+    const bool is_axes = name == "gyro_axes" && variable.class_type == MAT_C_CHAR;
+    if (!is_axes && !is_numeric(variable)) {
+        variables.others.push_back(name);
+        return {};
+    }
+    const std::size_t rows = variable.rank == 2 ? variable.dims[0] : 0;
+    const std::size_t columns = variable.rank == 2 ? variable.dims[1] : 0;
+    if (rows == 0 || columns == 0) { return {}; }
+    if (rows > input_limits.numbers_most / columns) {
+        return malformed(fmt::format("variable {} has {} x {} numbers, more than any recording",
+                                     in_quotes(name), rows, columns));
+    }
+    if (Mat_VarReadDataAll(file, &variable) != 0 || variable.data == nullptr ||
+        variable.nbytes < rows * columns * static_cast<std::size_t>(variable.data_size)) {
+        return malformed("variable " + in_quotes(name) + " is damaged or cut off");
+    }
+    if (is_axes) {
+        variables.gyro_axes = text_of(variable);
+        return {};
+    }
+    std::vector<double> values = values_of(variable, rows * columns);
+    if (values.size() == 1) {
+        variables.scalars.emplace_back(name, values.front());
+    } else {
+        variables.matrices.push_back({name, rows, columns, std::move(values)});
+    }
+    return {};
+}
+
+// Samples go down a matrix; one that is wider than high lies on its side.
+void stand_up(Matrix& matrix) {
+    if (matrix.columns <= matrix.rows) { return; }
+    std::vector<double> turned(matrix.values.size());
+    for (std::size_t r = 0; r < matrix.rows; ++r) {
+        for (std::size_t c = 0; c < matrix.columns; ++c) {
+            turned[r * matrix.columns + c] = matrix.values[c * matrix.rows + r];
+        }
+    }
+    matrix.values = std::move(turned);
+    std::swap(matrix.rows, matrix.columns);
+}
+
+bool is_understood(const std::string& name) { return csv_column(name) || dialect_name(name); }
+
+std::string name_of_column(const Matrix& matrix, std::size_t column) {
+    constexpr std::string_view axes = "xyz";
+    if (matrix.columns == 1 && (is_understood(matrix.name) || !is_understood(matrix.name + "_x"))) {
+        return matrix.name;
+    }
+    if (matrix.columns <= axes.size()) { return matrix.name + "_" + axes[column]; }
+    return fmt::format("{}_{}", matrix.name, column + 1);
+}
+
+// gyrolog's own: SI units, which the names do not tell.
+std::vector<std::string> own_names(const Matrix& matrix, const std::string& gyro_axes) {
+    if (matrix.name == "gyro") {
+        std::vector<std::string> names;
+        std::size_t at = 0;
+        while (at < gyro_axes.size()) {
+            const std::size_t blank = std::min(gyro_axes.find(' ', at), gyro_axes.size());
+            names.push_back("g" + gyro_axes.substr(at, blank - at) + "_rad_s");
+            at = blank + 1;
+        }
+        return names;
+    }
+    if (matrix.name == "t") { return {"t_s"}; }
+    if (matrix.name == "temperature_degC") { return {"temp_C"}; }
+    for (const char* unit : {"_m_s2", "_rad_s", ""}) {
+        const auto meaning = csv_column(matrix.name + unit);
+        if (meaning && meaning->kind != CsvColumn::Kind::rate) { return {matrix.name + unit}; }
+    }
+    return {matrix.name};
+}
+
+std::vector<NumberColumn> columns_of(std::vector<Matrix>& matrices, const std::string& gyro_axes) {
+    std::vector<NumberColumn> columns;
+    for (Matrix& matrix : matrices) {
+        stand_up(matrix);
+        std::vector<std::string> names;
+        if (!gyro_axes.empty()) { names = own_names(matrix, gyro_axes); }
+        if (names.size() != matrix.columns) {
+            names.clear();
+            for (std::size_t c = 0; c < matrix.columns && c < input_limits.columns_most; ++c) {
+                names.push_back(name_of_column(matrix, c));
+            }
+        }
+        for (std::size_t c = 0; c < names.size(); ++c) {
+            const auto begin = matrix.values.begin() + static_cast<std::ptrdiff_t>(c * matrix.rows);
+            columns.push_back({names[c], {begin, begin + static_cast<std::ptrdiff_t>(matrix.rows)}});
+        }
+    }
+    return columns;
+}
+
+bool names_gyro(const std::string& name) {
+    const auto meaning = csv_column(name);
+    if (meaning) { return meaning->is_gyro(); }
+    const auto told = dialect_name(name);
+    return told && told->quantity[0] == 'g';
+}
+
+bool names_time(const std::string& name) {
+    const auto meaning = csv_column(name);
+    if (meaning) { return meaning->kind == CsvColumn::Kind::time_stamp; }
+    const auto told = dialect_name(name);
+    return told && told->quantity == "t";
+}
+
+// As many samples as the gyro has, or else the longest; what has another length is something else.
+Status keep_samples(std::vector<NumberColumn>& columns) {
+    if (columns.empty()) { return {}; }
+    const auto longest = std::ranges::max_element(
+        columns, {}, [](const NumberColumn& column) { return column.values.size(); });
+    const auto gyro = std::ranges::find_if(columns, names_gyro, &NumberColumn::header);
+    const NumberColumn& samples = gyro != columns.end() ? *gyro : *longest;
+    const std::size_t rows = samples.values.size();
+    for (const NumberColumn& column : columns) {
+        if (column.values.size() == rows || !(names_gyro(column.header) || names_time(column.header))) {
+            continue;
+        }
+        return malformed(fmt::format("{} has {} numbers, and {} has {}", in_quotes(column.header),
+                                     column.values.size(), in_quotes(samples.header), rows));
+    }
+    std::erase_if(columns, [&](const NumberColumn& column) { return column.values.size() != rows; });
+    return {};
+}
+
+std::optional<double> rate_of(const Variables& variables) {
+    constexpr std::array names = {"rate_hz",       "Fs",          "fs",
+                                  "fs_hz",         "Fs_Hz",       "rate",
+                                  "sampling_rate", "sample_rate", "sampling_frequency",
+                                  "samplingRate",  "sampleRate"};
+    for (const auto& [name, value] : variables.scalars) {
+        if (std::ranges::find(names, name) != names.end() && std::isfinite(value) && value > 0.0) {
+            return value;
+        }
+    }
+    return std::nullopt;
+}
+
+// Level 5: a chain of elements, each with its length, from byte 128 to the end. libmatio takes a cut one for
+// the end of the file.
+Status check_whole(const std::string& path) {
+    constexpr std::size_t header_bytes = 128;
+    std::error_code failure;
+    const std::uintmax_t size = std::filesystem::file_size(path, failure);
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, header_bytes> header{};
+    if (failure || !file.read(header.data(), header.size())) { return {}; }
+    if (!std::string_view(header.data(), header.size()).starts_with("MATLAB 5.0")) { return {}; }
+    const bool swapped = header[126] == 'M';
+    for (std::uintmax_t at = header_bytes; at < size;) {
+        std::array<unsigned char, 8> tag{};
+        file.seekg(static_cast<std::streamoff>(at));
+        file.read(reinterpret_cast<char*>(tag.data()), tag.size());
+        std::uint32_t bytes = 0;
+        for (std::size_t i = 0; i < 4; ++i) { bytes = bytes << 8U | tag[swapped ? 4 + i : 7 - i]; }
+        at += tag.size() + bytes;
+        if (!file || at > size) {
+            return malformed(fmt::format("its last variable ends {} bytes behind the file: it is cut off",
+                                         file ? at - size : tag.size()));
+        }
+    }
+    return {};
+}
+
+Result<Variables> read_variables(const std::string& path) {
+    GYROLOG_CHECK(check_whole(path));
+    const std::unique_ptr<mat_t, CloseReadFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+    if (!file) { return malformed("no MAT-file that libmatio can read"); }
+    Variables variables;
+    while (const ReadVariable variable{Mat_VarReadNextInfo(file.get())}) {
+        GYROLOG_CHECK(take(variables, file.get(), *variable));
+    }
+    return variables;
+}
+
+Result<Recording> read_mat_file(const std::string& path, RecordingReadOptions options) {
+    GYROLOG_TRY(Variables variables, read_variables(path));
+    std::vector<NumberColumn> columns = columns_of(variables.matrices, variables.gyro_axes);
+    GYROLOG_CHECK(keep_samples(columns));
+    if (columns.empty()) {
+        return malformed(variables.others.empty()
+                             ? "it holds no variable of numbers"
+                             : "it holds no matrix of numbers, but " + some_names(variables.others) +
+                                   ": save vectors, such as omega and Fs");
+    }
+    const bool has_time = std::ranges::any_of(columns, names_time, &NumberColumn::header);
+    if (!options.rate_hz && !has_time) { options.rate_hz = rate_of(variables); }
+    return recording_of_numbers(std::move(columns), path.substr(path.find_last_of('/') + 1), options);
+}
+
+}  // namespace
+
+Result<Recording> read_recording_mat(const std::string& path, const RecordingReadOptions& options) {
+    Result<Recording> recording = read_mat_file(path, options);
+    if (!recording.ok()) { return in_context("read '" + path + "'", std::move(recording).error()); }
+    return recording;
+}
+
+}  // namespace gyrolog

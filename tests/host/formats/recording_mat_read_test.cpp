@@ -1,0 +1,142 @@
+// MAT-files written by libmatio in the form of MathWorks' example, and by gyrolog itself.
+
+#include "host/formats/recording_mat_read.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <matio.h>
+
+#include "analysis/noise/analyze.hpp"
+#include "analysis/noise/noise_model.hpp"
+#include "host/formats/export_source.hpp"
+#include "host/formats/recording_csv.hpp"
+#include "host/formats/recording_file.hpp"
+#include "host/formats/recording_mat.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+class RecordingMat : public testing::Test {
+protected:
+    struct Variable {
+        const char* name;
+        std::vector<double> values;  // column by column
+        std::size_t columns = 1;
+    };
+
+    std::string written(const std::string& name, std::vector<Variable> variables) const {
+        const std::string path = folder_.path(name);
+        mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
+        EXPECT_NE(file, nullptr);
+        for (Variable& variable : variables) {
+            std::size_t size[] = {variable.values.size() / variable.columns, variable.columns};
+            matvar_t* made =
+                Mat_VarCreate(variable.name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size, variable.values.data(), 0);
+            EXPECT_EQ(Mat_VarWrite(file, made, MAT_COMPRESSION_NONE), 0);
+            Mat_VarFree(made);
+        }
+        Mat_Close(file);
+        return path;
+    }
+
+    static Recording read(const std::string& path, const RecordingReadOptions& options = {}) {
+        auto recording = read_recording_file(path, options);
+        EXPECT_TRUE(recording.ok()) << (recording.ok() ? "" : recording.error().message);
+        return recording.ok() ? std::move(recording).value() : Recording{};
+    }
+    static std::string refusal(const std::string& path, const RecordingReadOptions& options = {}) {
+        const auto recording = read_recording_file(path, options);
+        return recording.ok() ? "accepted" : recording.error().message;
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(RecordingMat, IsReadInTheFormOfMathWorksExample) {
+    const Recording r = read(written("logged.mat", {{"Fs", {100.0}}, {"omega", {0.1, 0.2, 0.3, 0.4}}}));
+    EXPECT_EQ(r.rate_hz, 100.0);
+    EXPECT_EQ(r.rows(), 4U);
+    EXPECT_DOUBLE_EQ(r.find("gx")->value(2), 0.3);
+    EXPECT_EQ(r.find("gx")->unit, "rad/s");
+    EXPECT_THAT(r.warnings, Contains("omega_x is taken for gx_rad_s"));
+    const Recording rated = read(folder_.path("logged.mat"), {.rate_hz = 50.0});
+    EXPECT_EQ(rated.rate_hz, 50.0);
+}
+
+TEST_F(RecordingMat, ItsMatricesAreAxesWhicheverWayTheyLie) {
+    RecordingReadOptions options;
+    options.choice.gyro_unit = "deg/s";
+    const std::string stands = written(
+        "a.mat", {{"time", {0.0, 0.1, 0.2, 0.3}}, {"gyro", {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, 3}});
+    const std::string lies = written(
+        "b.mat", {{"time", {0.0, 0.1, 0.2, 0.3}}, {"gyro", {1, 5, 9, 2, 6, 10, 3, 7, 11, 4, 8, 12}, 4}});
+    for (const std::string& path : {stands, lies}) {
+        const Recording r = read(path, options);
+        EXPECT_NEAR(r.rate_hz, 10.0, 1e-9);
+        EXPECT_DOUBLE_EQ(r.find("gx")->value(3), 4.0 * rad_per_deg);
+        EXPECT_DOUBLE_EQ(r.find("gz")->value(0), 9.0 * rad_per_deg);
+    }
+    EXPECT_THAT(refusal(stands), HasSubstr("gyro_x, gyro_y, gyro_z: give it with --unit"));
+}
+
+TEST_F(RecordingMat, GyrologsOwnComesBackAsItWent) {
+    std::string text = "t_s,gx_dps,gy_dps,ax_g,temp_C\n";
+    for (int i = 0; i < 400; ++i) {
+        if (i == 200) { continue; }
+        text += fmt::format("{},{},{},{},{}\n", 0.01 * i, 0.01 * (i % 7), 0.02 * (i % 5),
+                            1.0 + 0.001 * (i % 3), 25);
+    }
+    const auto before = parse_recording_csv(text, "run.csv");
+    ASSERT_TRUE(before.ok());
+    const AnalysisReport report = analyze(*before);
+    const std::string path = folder_.path("own.mat");
+    ASSERT_TRUE(write_recording_mat(export_source(*before, report), path).ok());
+    const Recording after = read(path);
+    EXPECT_NEAR(after.rate_hz, before->rate_hz, 1e-9);
+    EXPECT_EQ(after.missing_samples(), 1);
+    ASSERT_EQ(after.rows(), before->rows());
+    for (const Column& column : before->columns) {
+        const Column* same = after.find(column.name);
+        ASSERT_NE(same, nullptr) << column.name;
+        EXPECT_EQ(same->unit, column.unit);
+        EXPECT_EQ(same->values(), column.values()) << column.name;
+    }
+}
+
+TEST_F(RecordingMat, SaysWhatItCannotRead) {
+    const std::string whole =
+        written("whole.mat", {{"Fs", {100.0}}, {"omega", std::vector<double>(500, 0.1)}});
+    const std::string bytes = read_whole_file(whole);
+    const std::string cut = folder_.path("cut.mat");
+    std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size() - 100);
+    EXPECT_THAT(refusal(cut), HasSubstr("its last variable ends 100 bytes behind the file: it is cut off"));
+    for (std::size_t size = 0; size < bytes.size(); size += 97) {
+        std::ofstream(cut, std::ios::binary) << bytes.substr(0, size);
+        EXPECT_NE(refusal(cut), "accepted") << size;
+    }
+    EXPECT_THAT(refusal(written("c.mat", {{"omega", {1, 2, 3}}})), HasSubstr("--rate"));
+    EXPECT_THAT(refusal(written("d.mat", {{"Fs", {1}}})), HasSubstr("it holds no variable of numbers"));
+    EXPECT_THAT(refusal(written("e.mat", {{"t", {0, 1}}, {"omega", {1, 2, 3}}})),
+                HasSubstr("'t' has 2 numbers, and 'omega_x' has 3"));
+    EXPECT_THAT(refusal(written("f.mat", {{"pressure", {1, 2, 3}}})),
+                HasSubstr("no gyro column, but pressure"));
+}
+
+TEST_F(RecordingMat, OfTextIsText) {
+    const std::string path = folder_.path("ascii.mat");
+    std::ofstream(path) << "  0.0e+00   1.0e+00\n  1.0e-01   2.0e+00\n";
+    RecordingReadOptions options;
+    options.choice = {.columns = "t,gx", .gyro_unit = "rad/s"};
+    EXPECT_DOUBLE_EQ(read(path, options).find("gx")->value(1), 2.0);
+}
+
+}  // namespace
+}  // namespace gyrolog
