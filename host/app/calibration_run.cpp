@@ -48,6 +48,7 @@ Result<std::vector<Recording>> read_recordings(const CalibrationRequest& request
         input.rate_hz = request.rate_hz;
         input.lsb_dps = request.lsb_dps;
         input.lsb_g = request.lsb_g;
+        input.text = request.text;
         input.needs_gyro = false;
         GYROLOG_TRY(Recording recording, read_recording(input));
         GYROLOG_CHECK(check_scales(recording, path));

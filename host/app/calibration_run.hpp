@@ -7,6 +7,7 @@
 
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
+#include "host/app/text_options.hpp"
 
 namespace gyrolog {
 
@@ -15,6 +16,7 @@ struct CalibrationRequest {
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
     std::optional<double> lsb_g;
+    TextChoice text{};
     std::optional<double> turn_deg;
     std::optional<double> turn_sd_deg;
     std::optional<double> gravity_m_s2;

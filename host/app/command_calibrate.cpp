@@ -42,9 +42,8 @@ Action setup_calibrate(CLI::App& app) {
     app.add_option("--gravity", request->gravity_m_s2, "Gravity where it was recorded; 9.80665 without")
         ->type_name("M/S2")
         ->check(number_from_to(9.7, 9.9, "m/s^2"));
-    app.add_option("--lsb-dps", request->lsb_dps, "Scale of gyro columns that are counts (_lsb)")
-        ->type_name("DPS")
-        ->check(positive_number());
+    add_text_options(app, request->text);
+    app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
     app.add_option("--lsb-g", request->lsb_g, "Scale of accelerometer columns that are counts (_lsb)")
         ->type_name("G")
         ->check(positive_number());

@@ -14,8 +14,7 @@ using TextChoice = ColumnChoice;
 void add_text_options(CLI::App& app, TextChoice& choice);
 
 inline constexpr const char* lsb_dps_help =
-    "Scale of gyro columns that are counts (_lsb), in deg/s per count: for a data sheet's 65.5 LSB per deg/s "
-    "it "
-    "is 1/65.5 = 0.015267";
+    "Scale of gyro columns that are counts (_lsb), in deg/s per count: 0.015267 where a data sheet says "
+    "65.5 LSB per deg/s";
 
 }  // namespace gyrolog
