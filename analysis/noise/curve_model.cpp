@@ -349,15 +349,16 @@ NoiseModel model_of(const std::vector<CurveTerm>& terms) {
     return model;
 }
 
-// The square of an absent term at which the curve would lie as many standard deviations below as the
-// confidence says; its scatter is that of a curve that holds it.
-double upper_limit(const FittedCurve& target, const TermSearch& search, Kind kind, double sigmas) {
+// What an absent term would be: the best estimate of its square, and the square at which the curve would lie
+// as many standard deviations below as the confidence says; its scatter is that of a curve that holds it.
+FittedCoefficient absent_term(const FittedCurve& target, const TermSearch& search, Kind kind, double sigmas) {
     const Candidate& fit = search.result().candidate;
     const Matrix covariance = search.scatter().covariance(search.result().smooth_sd_db);
     CurveTerm term = below_curve(target, kind, 0.0);
     const double scale = term.size * term.size;
     double estimate = 0.0;
     double square = 1e-6;  // in units of `scale`
+    FittedCoefficient absent;
     for (int pass = 0; pass < 8; ++pass) {
         std::vector<CurveTerm> terms = fit.terms;
         term.size = std::sqrt(square * scale);
@@ -367,11 +368,16 @@ double upper_limit(const FittedCurve& target, const TermSearch& search, Kind kin
         slopes.col(column) /= square;  // by the square itself, not its logarithm
         const Matrix estimators = estimators_of(slopes);
         const VectorXd estimator = view_of(estimators).row(column);
-        if (pass == 0) { estimate = std::max(0.0, estimator.dot(fit.residuals)); }
         const std::vector<double> pulled = transposed_product(covariance, values_of(estimator));
-        square = estimate + sigmas * std::sqrt(dot(pulled, values_of(estimator)));
+        const double sd = std::sqrt(dot(pulled, values_of(estimator)));
+        if (pass == 0) {
+            estimate = std::max(0.0, estimator.dot(fit.residuals));
+            set_estimate(absent, estimate * scale, sd * scale);
+        }
+        square = estimate + sigmas * sd;
     }
-    return std::sqrt(square * scale);
+    absent.upper = std::sqrt(square * scale);
+    return absent;
 }
 
 void report_coefficients(const FittedCurve& target, const TermSearch& search, CurveModelFit& fit) {
@@ -395,19 +401,18 @@ void report_coefficients(const FittedCurve& target, const TermSearch& search, Cu
         } else {
             at[static_cast<std::size_t>(term.kind)] = j;
             const double factor = std::exp(sigmas * size_sd / term.size);
-            fit.noise.terms[static_cast<std::size_t>(term.kind)] = {FittedCoefficient::State::identified,
-                                                                    term.size,
-                                                                    size_sd,
-                                                                    term.size / factor,
-                                                                    term.size * factor,
-                                                                    term.size * factor,
-                                                                    0.0};
+            FittedCoefficient& found = fit.noise.terms[static_cast<std::size_t>(term.kind)];
+            found.state = FittedCoefficient::State::identified;
+            found.value = found.estimate = term.size;
+            found.sd = found.estimate_sd = size_sd;
+            found.lo = term.size / factor;
+            found.hi = found.upper = term.size * factor;
         }
     }
     for (const Kind kind : linear_kinds) {
         const auto row = static_cast<std::size_t>(kind);
         if (!at[row]) {
-            fit.noise.terms[row].upper = upper_limit(target, search, kind, sigmas);
+            fit.noise.terms[row] = absent_term(target, search, kind, sigmas);
             continue;
         }
         for (std::size_t column = 0; column < noise_terms; ++column) {
