@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -57,6 +58,13 @@ Result<Recording> comparable_recording(const CompareRequest& request, const std:
     return recording;
 }
 
+// What reading a file had to say.
+void tell_of_reading(Comparison& comparison, const std::string& path, std::span<const std::string> warnings) {
+    for (const std::string& warning : warnings) {
+        comparison.warnings.push_back(fmt::format("'{}': {}", path, warning));
+    }
+}
+
 Result<Comparison> with_model(Console& console, const CompareRequest& request) {
     GYROLOG_TRY(ModelFile file, read_model_file(request.other_path, 1));
     if (file.is_drawn) {
@@ -72,6 +80,8 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
     GYROLOG_TRY(Recording recording, comparable_recording(request, request.recording_path, request.part));
     const std::size_t of_reading = recording.warnings.size();
     recording = with_known_motion(std::move(recording));
+    const std::vector<std::string> read(recording.warnings.begin(),
+                                        recording.warnings.begin() + static_cast<std::ptrdiff_t>(of_reading));
     const std::vector<std::string> left_out(
         recording.warnings.begin() + static_cast<std::ptrdiff_t>(of_reading), recording.warnings.end());
     if (const auto refusal = comparison_refusal(recording)) {
@@ -93,6 +103,7 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
     if (console.progress) { console.drawing() << "\r\x1b[K" << std::flush; }
     comparison->notes = file.notes;
     comparison->warnings.insert(comparison->warnings.begin(), left_out.begin(), left_out.end());
+    tell_of_reading(*comparison, request.recording_path, read);
     return *std::move(comparison);
 }
 
@@ -104,6 +115,8 @@ Result<Comparison> with_recording(const CompareRequest& request) {
     if (comparison.axes.empty()) {
         return Error{ErrorCode::failed, "the two recordings have no axis in common"};
     }
+    tell_of_reading(comparison, request.recording_path, recording.warnings);
+    tell_of_reading(comparison, request.other_path, other.warnings);
     return comparison;
 }
 

@@ -294,8 +294,9 @@ Status CsvTable::first_row(std::string_view text) {
             break;
         }
     }
-    header_number_ = names.empty() ? number_ - 1 : comment_number_;
-    if (names.empty()) {
+    const bool names_are_own = !names.empty();
+    header_number_ = names_are_own ? comment_number_ : number_ - 1;
+    if (!names_are_own) {
         if (form_.names.empty()) {
             return malformed(
                 fmt::format("line {} holds numbers, and no line before it names the columns: put {} before "
@@ -304,7 +305,7 @@ Status CsvTable::first_row(std::string_view text) {
         }
         for (std::size_t c = 0; c < fields; ++c) { names.push_back(fmt::format("column {}", c + 1)); }
     }
-    GYROLOG_CHECK(name_columns(std::move(names)));
+    GYROLOG_CHECK(name_columns(std::move(names), names_are_own));
     return separator_ == ',' ? comma_row(text) : other_row(text);
 }
 
@@ -314,10 +315,10 @@ Status CsvTable::header(std::string_view text, std::size_t number) {
     split_fields(text, separator_, fields_);
     std::vector<std::string> names(fields_.size());
     std::ranges::transform(fields_, names.begin(), unquoted);
-    return name_columns(std::move(names));
+    return name_columns(std::move(names), true);
 }
 
-Status CsvTable::name_columns(std::vector<std::string> names) {
+Status CsvTable::name_columns(std::vector<std::string> names, bool names_are_own) {
     if (names.size() < form_.names.size()) {
         return malformed(fmt::format("line {} has {}, and --columns names {}", number_,
                                      counted(names.size(), "column"), form_.names.size()));
@@ -326,7 +327,10 @@ Status CsvTable::name_columns(std::vector<std::string> names) {
     if (names.size() > input_limits.columns_most) {
         return malformed(fmt::format("{} names more than {} columns", line, input_limits.columns_most));
     }
-    std::ranges::copy(form_.names, names.begin());
+    for (std::size_t c = 0; c < form_.names.size(); ++c) {
+        if (names_are_own) { replaced_names_.push_back(std::move(names[c])); }
+        names[c] = form_.names[c];
+    }
     std::set<std::string_view> seen;
     for (const std::string& name : names) {
         const bool may_repeat = name.empty() || name == "_" || name == "-";

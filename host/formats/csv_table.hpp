@@ -55,6 +55,8 @@ public:
     Status finish();
 
     std::vector<CsvTableColumn>& columns() { return columns_; }
+    // Those of the file's own that the form's names stand for.
+    const std::vector<std::string>& replaced_names() const { return replaced_names_; }
     // Whole ones from that of the names on.
     std::size_t lines() const { return columns_.empty() ? 0 : number_ - header_number_ + 1; }
 
@@ -67,7 +69,7 @@ private:
     Status beginning(std::string_view text);
     Status first_row(std::string_view text);
     Status header(std::string_view text, std::size_t number);
-    Status name_columns(std::vector<std::string> names);
+    Status name_columns(std::vector<std::string> names, bool names_are_own);
     Status field(CsvTableColumn& column, const char*& at, const char* end) const;
     Status quoted_field(CsvTableColumn& column, const char* begin, const char*& at, const char* end) const;
     Status unfit(const CsvTableColumn& column, double value) const;
@@ -82,6 +84,7 @@ private:
     HeaderRule rule_;
     std::size_t lines_of_row_ = 0;  // of the last row, while it is not whole: each has its values yet
     std::vector<CsvTableColumn> columns_;
+    std::vector<std::string> replaced_names_;
     char separator_ = ',';  // ' ': runs of blanks
     DecimalMark decimal_mark_ = DecimalMark::any;
     std::size_t decimal_mark_number_ = 0;   // of the line that showed it

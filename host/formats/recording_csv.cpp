@@ -24,6 +24,15 @@ struct RecordingTable {
         }
         return columns;
     }
+
+    Result<Recording> recording(std::string name, const CsvReadOptions& options) {
+        Result<Recording> made = recording_of(columns(), std::move(name), options);
+        if (made.ok() && !table.replaced_names().empty()) {
+            made->warnings.insert(made->warnings.begin(),
+                                  "names replaced by --columns: " + some_names(table.replaced_names()));
+        }
+        return made;
+    }
 };
 
 void use(CsvTableColumn& column, const UnderstoodColumn& understood, const CsvReadOptions& options) {
@@ -68,7 +77,7 @@ Result<RecordingTable> recording_table(const CsvReadOptions& options) {
 Result<Recording> read_file(const std::string& path, const CsvReadOptions& options) {
     GYROLOG_TRY(RecordingTable table, recording_table(options));
     GYROLOG_CHECK(read_csv_file(table.table, path, options.rows_most + 1));
-    return recording_of(table.columns(), path.substr(path.find_last_of('/') + 1), options);
+    return table.recording(path.substr(path.find_last_of('/') + 1), options);
 }
 
 }  // namespace
@@ -84,7 +93,7 @@ Result<Recording> parse_recording_csv(std::string_view text, std::string name,
     GYROLOG_TRY(RecordingTable table, recording_table(options));
     GYROLOG_CHECK(table.table.feed(text));
     GYROLOG_CHECK(table.table.finish());
-    return recording_of(table.columns(), std::move(name), options);
+    return table.recording(std::move(name), options);
 }
 
 }  // namespace gyrolog
