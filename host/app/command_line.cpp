@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "host/app/command.hpp"
+#include "host/app/nearest_name.hpp"
 #include "host/base/program_name.hpp"
 
 namespace gyrolog {
@@ -44,6 +46,33 @@ std::string name_of_empty(const CLI::App& app) {
     return {};
 }
 
+std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
+    const std::string meant = nearest_name(word, names);
+    return meant.empty() ? std::string() : "; did you mean " + meant + "?";
+}
+
+std::string command_meant(const std::string& word) {
+    std::vector<std::string> names;
+    names.reserve(commands.size());
+    for (const Command& command : commands) { names.emplace_back(command.name); }
+    return suggestion(word, names);
+}
+
+// Of the first of the words that looks like an option and is none of the command's.
+std::string option_meant(const CLI::App& app, const std::vector<std::string>& words) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) { names.push_back("--" + name); }
+    }
+    for (const std::string& word : words) {
+        const std::string given = word.substr(0, word.find('='));
+        if (given.starts_with("--") && std::ranges::find(names, given) == names.end()) {
+            return suggestion(given, names);
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 std::string program_and(const char* command) {
@@ -65,7 +94,8 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
     if (!arguments.empty() && !arguments.front().starts_with('-')) {
         const auto is_named = [&](const Command& command) { return arguments.front() == command.name; };
         if (std::ranges::none_of(commands, is_named)) {
-            return refuse("there is no command '" + arguments.front() + "'");
+            return refuse("there is no command '" + arguments.front() + "'" +
+                          command_meant(arguments.front()));
         }
         called = program_and(arguments.front().c_str());
     }
@@ -85,12 +115,16 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
         actions.push_back(command.setup(*sub));
         sub->callback([&action, &actions, i = actions.size() - 1] { action = actions[i]; });
     }
+    const std::vector<std::string> words = arguments;
     try {
         std::reverse(arguments.begin(), arguments.end());  // CLI11 takes its vector back to front
         app.parse(std::move(arguments));
     } catch (const CLI::Success& wanted) {  // --help, --version
         app.exit(wanted, console.out, console.err);
         return ExitCode::ok;
+    } catch (const CLI::ExtrasError& wrong) {
+        const std::vector<CLI::App*> chosen = app.get_subcommands();
+        return refuse(wrong.what() + option_meant(chosen.empty() ? app : *chosen.front(), words));
     } catch (const CLI::ParseError& wrong) { return refuse(wrong.what()); }
     if (const std::string name = name_of_empty(app); !name.empty()) {
         return refuse(name + " is given and empty: fill it in, or leave it out");

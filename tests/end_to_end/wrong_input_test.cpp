@@ -202,9 +202,9 @@ constexpr const char* device_forms =
 TEST_F(WrongInput, OfTheProgramAndOfAnyCommand) {
     expect_told({
         {"frobnicate", 2, "gyrolog: there is no command 'frobnicate'\nrun `gyrolog --help`"},
-        {"analyse c.csv", 2, "there is no command 'analyse'"},
+        {"analyse c.csv", 2, "there is no command 'analyse'; did you mean analyze?\nrun"},
         {"\"\"", 2, "there is no command ''"},
-        {"--plott", 2, "gyrolog: The following argument was not expected: --plott"},
+        {"--plott", 2, "gyrolog: The following argument was not expected: --plott\nrun"},
         {"--device nonsense", 2, "nonsense has no ':'; a device is usb:"},
         {"-o x.csv", 2, "--output 'x.csv' has none of the endings of a capture: .pcapng"},
         {"--duration -5", 2, duration_forms},
@@ -212,7 +212,7 @@ TEST_F(WrongInput, OfTheProgramAndOfAnyCommand) {
         {"list --json", 2, "--json: 1 required FILE missing"},
         {"list --json \"\"", 2, "--json is given and empty: fill it in, or leave it out"},
         {"list --json dir", 1, "write 'dir': it is a directory"},
-        {"analyze --plott", 2, "not expected: --plott\nrun `gyrolog analyze --help`"},
+        {"analyze --plott", 2, "not expected: --plott; did you mean --plot?\nrun `gyrolog analyze --help`"},
     });
 }
 
