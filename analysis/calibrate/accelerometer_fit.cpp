@@ -141,12 +141,13 @@ private:
     // Of the mean's size: its axes' deviations along the force.
     double sd_m_s2(const Sensor& s, const Vector3& force, double duration_s) const {
         const Vector3 along = difference(force, s.bias);
+        const Vector3 sd = scatter_->force_sd_m_s2(duration_s);
         double variance = 0.0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double share = along[axis] / norm(along);
-            variance += share * share * scatter_->force_m_s2_sqrt_s[axis] * scatter_->force_m_s2_sqrt_s[axis];
+            variance += share * share * sd[axis] * sd[axis];
         }
-        return std::sqrt(variance / duration_s);
+        return std::sqrt(variance);
     }
 
     const MeanScatter* scatter_;

@@ -11,12 +11,8 @@
 namespace gyrolog {
 namespace {
 
-double step_of(const Column& column) {
-    return column.is_counts() ? column.scale : grid_step(column.values());
-}
-
 // Of a chi-squared variance.
-double noise_sd_rel(const MeanScatter& scatter) { return 1.0 / std::sqrt(2.0 * scatter.degrees); }
+double noise_sd_rel(double degrees) { return 1.0 / std::sqrt(2.0 * degrees); }
 
 double root_mean_square(const Matrix3& sd) {
     double sum = 0.0;
@@ -82,10 +78,10 @@ AccelerometerModel accelerometer_model(const Calibration& calibration, const Rec
     AccelerometerModel model;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         model.axes[axis].noise.N_rad_per_sqrt_s = calibration.phases.scatter.force_m_s2_sqrt_s[axis];
-        model.axes[axis].sd_rel["N"] = noise_sd_rel(calibration.phases.scatter);
+        model.axes[axis].sd_rel["N"] = noise_sd_rel(calibration.phases.scatter.force_degrees);
         if (const Column* column = recording.find(std::string("a") + axis_names[axis])) {
             const RecordedConverter converter =
-                recorded_converter(*column, step_of(*column), axis == 0 ? 0.0 : model.full_scale_m_s2,
+                recorded_converter(*column, grid_step(*column), axis == 0 ? 0.0 : model.full_scale_m_s2,
                                    SensorKind::accelerometer);
             model.lsb_m_s2 = converter.step_rad_s;
             model.full_scale_m_s2 = converter.full_scale_rad_s;
@@ -117,9 +113,9 @@ SensorModel calibrated_model(const Calibration& calibration, const Recording& re
         model.saturation_rad_s = converter->saturation_rad_s;
     }
     const MeanScatter& scatter = calibration.phases.scatter;
-    for (std::size_t axis = 0; axis < 3 && scatter.degrees > 0.0; ++axis) {
+    for (std::size_t axis = 0; axis < 3 && scatter.rate_degrees > 0.0; ++axis) {
         model.axes[axis].noise.N_rad_per_sqrt_s = scatter.rate_rad_s_sqrt_s[axis];
-        model.axes[axis].sd_rel["N"] = noise_sd_rel(scatter);
+        model.axes[axis].sd_rel["N"] = noise_sd_rel(scatter.rate_degrees);
     }
     if (calibration.gyro.calibration) {
         const GyroCalibration& gyro = *calibration.gyro.calibration;
@@ -132,7 +128,7 @@ SensorModel calibrated_model(const Calibration& calibration, const Recording& re
         const TemperatureCalibration& temperature = *calibration.gyro_temperature.calibration;
         add_temperature(temperature, "dps", deg_per_rad, model.effects);
     }
-    if (calibration.has_accelerometer && scatter.degrees > 0.0) {
+    if (calibration.has_accelerometer && scatter.force_degrees > 0.0) {
         model.accelerometer = accelerometer_model(calibration, recording);
     }
     return model;

@@ -55,8 +55,10 @@ void take_out(const std::optional<TemperatureCalibration>& temperature, const st
 // Rests of recordings with an accelerometer.
 std::vector<Rest> rests_with_force(const Phases& phases, const std::vector<InertialSignals>& recordings) {
     std::vector<Rest> rests;
-    std::ranges::copy_if(phases.rests, std::back_inserter(rests),
-                         [&](const Rest& rest) { return recordings[rest.recording].has_force(); });
+    std::ranges::copy_if(phases.rests, std::back_inserter(rests), [&](const Rest& rest) {
+        // Nothing but zeros is a sensor that is off.
+        return recordings[rest.recording].has_force() && norm(rest.force_m_s2) > 0.0;
+    });
     return rests;
 }
 

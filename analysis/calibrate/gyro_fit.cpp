@@ -352,7 +352,7 @@ bool weight_again(Equations& equations, const std::vector<ObservationFit>& fits,
     double by_most = 0.0;
     for (std::size_t k = 0; k < fits.size(); ++k) {
         // Less than one equation that is spare tells no size.
-        if (fits[k].redundancy < 1.0) { continue; }
+        if (!(fits[k].redundancy >= 1.0)) { continue; }
         const bool is_raised = fits[k].sd_factor > 1.0;
         const bool is_unlikely =
             chi_squared[k] > chi_squared_upper_quantile(fits[k].redundancy, chance_least);

@@ -50,9 +50,7 @@ private:
         return signals.has_force() ? true_force(mean_of(signals.force_m_s2, first, rows)) : Vector3{};
     }
 
-    Vector3 noise_of_mean(double duration_s) const {
-        return scaled(phases_.scatter.rate_rad_s_sqrt_s, 1.0 / std::sqrt(duration_s));
-    }
+    Vector3 noise_of_mean(double duration_s) const { return phases_.scatter.rate_sd_rad_s(duration_s); }
 
     void add_rest(const Rest& rest) {
         const InertialSignals& signals = recordings_[rest.recording];
@@ -69,8 +67,9 @@ private:
         Vector3 sd{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const Column* column = signals.recording.find(std::string("g") + axis_names[axis]);
-            sd[axis] =
-                neighbour_scatter(*column, signals.recording.segments) / std::sqrt(static_cast<double>(rows));
+            sd[axis] = std::hypot(
+                neighbour_scatter(*column, signals.recording.segments) / std::sqrt(static_cast<double>(rows)),
+                phases_.scatter.rate_floor_rad_s[axis]);
         }
         for (const Segment& segment : signals.recording.segments) {
             for (std::size_t i = segment.first; i + rows <= segment.first + segment.count; i += rows) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "analysis/calibrate/sensor_matrix.hpp"
+#include "analysis/recording/grid_step.hpp"
 #include "analysis/recording/still_runs.hpp"
 
 namespace gyrolog {
@@ -53,46 +55,102 @@ Rest rest_of(const InertialSignals& signals, std::size_t recording, const Segmen
     return rest;
 }
 
-void drop_constant_rates(std::vector<Rest>& rests, double most_rad_s) {
-    if (rests.empty()) { return; }
-    const Vector3 slowest = std::ranges::min_element(rests, {}, [](const Rest& rest) {
-                                return norm(rest.rate_rad_s);
-                            })->rate_rad_s;
-    std::erase_if(rests,
-                  [&](const Rest& rest) { return norm(difference(rest.rate_rad_s, slowest)) > most_rad_s; });
+// Of recordings that have a gyro.
+void drop_constant_rates(std::vector<Rest>& rests, std::span<const InertialSignals> recordings,
+                         double most_rad_s) {
+    const Rest* slowest = nullptr;
+    for (const Rest& rest : rests) {
+        if (!recordings[rest.recording].has_rate()) { continue; }
+        if (slowest == nullptr || norm(rest.rate_rad_s) < norm(slowest->rate_rad_s)) { slowest = &rest; }
+    }
+    if (slowest == nullptr) { return; }
+    const Vector3 slowest_rad_s = slowest->rate_rad_s;
+    std::erase_if(rests, [&](const Rest& rest) {
+        return recordings[rest.recording].has_rate() &&
+               norm(difference(rest.rate_rad_s, slowest_rad_s)) > most_rad_s;
+    });
 }
 
-// The squares of the parts' means about the rest's, times the seconds of a part.
-void add_scatter(const VectorTrack& track, const Rest& rest, double row_s, Vector3& sums) {
-    const std::size_t rows = rest.rows / parts_of_a_rest;
-    for (std::size_t axis = 0; axis < sums.size(); ++axis) {
-        const double mean = mean_of(track[axis], rest.first, rows * parts_of_a_rest);
-        for (std::size_t part = 0; part < parts_of_a_rest; ++part) {
-            const double error = mean_of(track[axis], rest.first + part * rows, rows) - mean;
-            sums[axis] += error * error * static_cast<double>(rows) * row_s;
+// Of one sensor, over the rests of all recordings that have it.
+class SensorScatter {
+public:
+    // The squares of the parts' means about the rest's, times the seconds of a part; and of the rows.
+    void add(const VectorTrack& track, const Rest& rest, double row_s) {
+        const std::size_t rows = rest.rows / parts_of_a_rest;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double mean = mean_of(track[axis], rest.first, rows * parts_of_a_rest);
+            for (std::size_t part = 0; part < parts_of_a_rest; ++part) {
+                const double error = mean_of(track[axis], rest.first + part * rows, rows) - mean;
+                parts_[axis] += error * error * static_cast<double>(rows) * row_s;
+            }
+            for (std::size_t row = rest.first; row < rest.first + rest.rows; ++row) {
+                rows_[axis] += (track[axis][row] - mean) * (track[axis][row] - mean);
+            }
+        }
+        degrees_ += static_cast<double>(parts_of_a_rest - 1);
+        row_count_ += static_cast<double>(rest.rows);
+    }
+
+    void add_steps(const Recording& recording, const std::string& prefix) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            step_[axis] = std::max(step_[axis], grid_step(*recording.find(prefix + axis_names[axis])));
         }
     }
-}
 
-MeanScatter scatter_of(std::span<const InertialSignals> recordings, const std::vector<Rest>& rests) {
-    MeanScatter scatter;
+    double degrees() const { return degrees_; }
+    Vector3 density() const {
+        Vector3 density{};
+        for (std::size_t axis = 0; axis < 3 && degrees_ > 0.0; ++axis) {
+            density[axis] = std::sqrt(parts_[axis] / degrees_);
+        }
+        return density;
+    }
+    Vector3 floor(double sd_least) const {
+        constexpr double moves_over_steps = 0.4;  // of a step, the noise (Widrow and Kollar)
+        Vector3 floor{sd_least, sd_least, sd_least};
+        for (std::size_t axis = 0; axis < 3 && row_count_ > 0.0; ++axis) {
+            if (std::sqrt(rows_[axis] / row_count_) >= moves_over_steps * step_[axis]) { continue; }
+            floor[axis] = std::max(sd_least, step_[axis] / std::sqrt(12.0));
+        }
+        return floor;
+    }
+
+private:
+    Vector3 parts_{};
+    Vector3 rows_{};
+    Vector3 step_{};
+    double degrees_ = 0.0;
+    double row_count_ = 0.0;
+};
+
+MeanScatter scatter_of(std::span<const InertialSignals> recordings, const std::vector<Rest>& rests,
+                       const RestOptions& options) {
+    SensorScatter force;
+    SensorScatter rate;
+    for (const InertialSignals& signals : recordings) {
+        if (signals.has_force()) { force.add_steps(signals.recording, "a"); }
+        if (signals.has_rate()) { rate.add_steps(signals.recording, "g"); }
+    }
     for (const Rest& rest : rests) {
         const InertialSignals& signals = recordings[rest.recording];
         if (rest.rows < parts_of_a_rest) { continue; }
-        if (signals.has_force()) {
-            add_scatter(signals.force_m_s2, rest, signals.row_s(), scatter.force_m_s2_sqrt_s);
-        }
-        if (signals.has_rate()) {
-            add_scatter(signals.rate_rad_s, rest, signals.row_s(), scatter.rate_rad_s_sqrt_s);
-        }
-        scatter.degrees += static_cast<double>(parts_of_a_rest - 1);
+        if (signals.has_force()) { force.add(signals.force_m_s2, rest, signals.row_s()); }
+        if (signals.has_rate()) { rate.add(signals.rate_rad_s, rest, signals.row_s()); }
     }
-    for (std::size_t axis = 0; axis < 3 && scatter.degrees > 0.0; ++axis) {
-        for (Vector3* sums : {&scatter.force_m_s2_sqrt_s, &scatter.rate_rad_s_sqrt_s}) {
-            (*sums)[axis] = std::sqrt((*sums)[axis] / scatter.degrees);
-        }
+    return {force.density(),
+            rate.density(),
+            force.floor(options.force_sd_least_m_s2),
+            rate.floor(options.rate_sd_least_rad_s),
+            force.degrees(),
+            rate.degrees()};
+}
+
+Vector3 sd_of_mean(const Vector3& density, const Vector3& floor, double duration_s) {
+    Vector3 sd{};
+    for (std::size_t axis = 0; axis < sd.size(); ++axis) {
+        sd[axis] = std::hypot(density[axis] / std::sqrt(duration_s), floor[axis]);
     }
-    return scatter;
+    return sd;
 }
 
 // Rows that follow each other on the grid from the end of one rest to the begin of the next.
@@ -104,6 +162,14 @@ bool is_whole(const Recording& recording, const Rest& before, const Rest& after)
 
 }  // namespace
 
+Vector3 MeanScatter::force_sd_m_s2(double duration_s) const {
+    return sd_of_mean(force_m_s2_sqrt_s, force_floor_m_s2, duration_s);
+}
+
+Vector3 MeanScatter::rate_sd_rad_s(double duration_s) const {
+    return sd_of_mean(rate_rad_s_sqrt_s, rate_floor_rad_s, duration_s);
+}
+
 Phases find_phases(std::span<const InertialSignals> recordings, const RestOptions& options) {
     Phases phases;
     for (std::size_t i = 0; i < recordings.size(); ++i) {
@@ -113,7 +179,7 @@ Phases find_phases(std::span<const InertialSignals> recordings, const RestOption
             phases.rests.push_back(rest_of(recordings[i], i, run));
         }
     }
-    drop_constant_rates(phases.rests, options.rate_most_rad_s);
+    drop_constant_rates(phases.rests, recordings, options.rate_most_rad_s);
     for (std::size_t i = 1; i < phases.rests.size(); ++i) {
         const Rest& before = phases.rests[i - 1];
         const Rest& after = phases.rests[i];
@@ -122,7 +188,7 @@ Phases find_phases(std::span<const InertialSignals> recordings, const RestOption
             phases.moves.push_back({i - 1, i});
         }
     }
-    phases.scatter = scatter_of(recordings, phases.rests);
+    phases.scatter = scatter_of(recordings, phases.rests, options);
     return phases;
 }
 

@@ -23,6 +23,9 @@ struct RestOptions {
     // proportion where they are farther apart than that. What the temperature does to the bias is slower.
     double tilt_most_rad = 0.5 * rad_per_deg;
     double tilt_s = 10.0;
+    // No mean is known better: the resolution of the best part of that class, 1 ug and 0.2 deg/h.
+    double force_sd_least_m_s2 = 1e-5;
+    double rate_sd_least_rad_s = 1e-6;
 };
 
 struct Rest {
@@ -47,7 +50,16 @@ struct Move {
 struct MeanScatter {
     Vector3 force_m_s2_sqrt_s{};
     Vector3 rate_rad_s_sqrt_s{};
-    double degrees = 0.0;  // of freedom, an axis
+    // What no averaging takes off: where the noise hardly moves the numbers over the converter's steps, a
+    // mean is off by as much as one sample is, step / sqrt(12) (Widrow and Kollar, Quantization Noise, 2008).
+    Vector3 force_floor_m_s2{};
+    Vector3 rate_floor_rad_s{};
+    double force_degrees = 0.0;  // of freedom, an axis
+    double rate_degrees = 0.0;
+
+    // Of a mean, one sigma.
+    Vector3 force_sd_m_s2(double duration_s) const;
+    Vector3 rate_sd_rad_s(double duration_s) const;
 };
 
 struct Phases {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
-#include <vector>
 
 #include "analysis/recording/grid_step.hpp"
 
@@ -24,9 +22,7 @@ double first_difference_sd(const Column& column) {
 
 double converter_step(const Column& column) {
     if (column.size() < 2) { return 0.0; }
-    const auto* reals = std::get_if<std::vector<double>>(&column.data);
-    const double step =
-        reals != nullptr ? grid_step(*reals) * std::abs(column.scale) : std::abs(column.scale);
+    const double step = grid_step(column);
     return first_difference_sd(column) > least_sd_in_steps * step ? step : 0.0;
 }
 

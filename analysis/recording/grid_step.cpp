@@ -43,4 +43,9 @@ double grid_step(std::span<const double> values) {
     return range / std::round(range / refined);
 }
 
+double grid_step(const Column& column) {
+    const auto* reals = std::get_if<std::vector<double>>(&column.data);
+    return std::abs(column.scale) * (reals != nullptr ? grid_step(*reals) : 1.0);
+}
+
 }  // namespace gyrolog

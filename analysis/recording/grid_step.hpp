@@ -3,11 +3,16 @@
 
 #include <span>
 
+#include "analysis/recording/recording.hpp"
+
 namespace gyrolog {
 
 // The step that all values are whole multiples of apart, to the rounding of printed decimals (a twentieth of
 // the step). 0: there is none, or there are fewer than four different values, or values hardly repeat. NaN is
 // passed over.
 double grid_step(std::span<const double> values);
+
+// Of a column's values, in its unit: of counts their scale.
+double grid_step(const Column& column);
 
 }  // namespace gyrolog
