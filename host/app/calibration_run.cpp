@@ -73,6 +73,14 @@ std::string refusal_of(const Calibration& calibration) {
 }
 
 Status check_paths(const CalibrationRequest& request) {
+    for (std::size_t i = 0; i < request.recordings.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (!same_file(request.recordings[j], request.recordings[i])) { continue; }
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("'{}' and '{}' are the same recording: it would count twice",
+                                     request.recordings[j], request.recordings[i])};
+        }
+    }
     std::vector<NamedPath> read;
     for (const std::string& path : request.recordings) { read.push_back({"RECORDING", path}); }
     const NamedPath outputs[] = {{"--json", request.json_path},

@@ -19,18 +19,6 @@ bool takes_anything(const std::string& path) {
            !std::filesystem::is_directory(there);
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-    if (a.empty() || b.empty() || a == "-" || b == "-") { return false; }
-    if (takes_anything(a)) { return false; }
-    if (a == b) { return true; }
-    std::error_code none;
-    if (std::filesystem::equivalent(a, b, none)) { return true; }
-    // Not there yet: two ways to write one name.
-    const auto place_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a, none), none);
-    const auto place_b = std::filesystem::weakly_canonical(std::filesystem::absolute(b, none), none);
-    return !place_a.empty() && place_a == place_b;
-}
-
 Error same(const NamedPath& a, const NamedPath& b, const char* advice) {
     return {ErrorCode::invalid_argument,
             fmt::format("{} and {} are the same file '{}'{}", a.option, b.option, b.path, advice)};
@@ -50,6 +38,18 @@ Status try_to_write(const std::string& path) {
 }
 
 }  // namespace
+
+bool same_file(const std::string& a, const std::string& b) {
+    if (a.empty() || b.empty() || a == "-" || b == "-") { return false; }
+    if (takes_anything(a)) { return false; }
+    if (a == b) { return true; }
+    std::error_code none;
+    if (std::filesystem::equivalent(a, b, none)) { return true; }
+    // Not there yet: two ways to write one name.
+    const auto place_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a, none), none);
+    const auto place_b = std::filesystem::weakly_canonical(std::filesystem::absolute(b, none), none);
+    return !place_a.empty() && place_a == place_b;
+}
 
 Status check_output_paths(std::span<const NamedPath> read, std::span<const NamedPath> written) {
     for (const NamedPath& source : read) {

@@ -9,6 +9,9 @@
 
 namespace gyrolog {
 
+// By whatever name or link; also where it is not there yet. A stream is no file.
+bool same_file(const std::string& a, const std::string& b);
+
 struct NamedPath {
     const char* option;       // "--json", "RECORDING"
     const std::string& path;  // empty: not given

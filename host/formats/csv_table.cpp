@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -331,8 +332,10 @@ Status CsvTable::name_columns(std::vector<std::string> names, bool names_are_own
         if (names_are_own) { replaced_names_.push_back(std::move(names[c])); }
         names[c] = form_.names[c];
     }
+    // Those beyond the form's names are not looked at.
+    const std::size_t looked_at = form_.names.empty() ? names.size() : form_.names.size();
     std::set<std::string_view> seen;
-    for (const std::string& name : names) {
+    for (const std::string& name : std::span(names).first(looked_at)) {
         const bool may_repeat = name.empty() || name == "_" || name == "-";
         if (!may_repeat && !seen.insert(name).second) {
             return malformed(line + ": column " + in_quotes(name) + " appears twice");

@@ -200,7 +200,10 @@ bool names_time(const std::string& name) {
     return told && told->quantity == "t";
 }
 
-// As many samples as the gyro has, or else the longest; what has another length is something else.
+bool names_quantity(const std::string& name) { return csv_column(name) || dialect_name(name); }
+
+// As many samples as the gyro has, or else the longest; what has another length and no name of a quantity is
+// something else.
 Status keep_samples(std::vector<NumberColumn>& columns) {
     if (columns.empty()) { return {}; }
     const auto longest = std::ranges::max_element(
@@ -209,9 +212,7 @@ Status keep_samples(std::vector<NumberColumn>& columns) {
     const NumberColumn& samples = gyro != columns.end() ? *gyro : *longest;
     const std::size_t rows = samples.values.size();
     for (const NumberColumn& column : columns) {
-        if (column.values.size() == rows || !(names_gyro(column.header) || names_time(column.header))) {
-            continue;
-        }
+        if (column.values.size() == rows || !names_quantity(column.header)) { continue; }
         return malformed(fmt::format("{} has {} numbers, and {} has {}", in_quotes(column.header),
                                      column.values.size(), in_quotes(samples.header), rows));
     }

@@ -152,9 +152,10 @@ private:
             }
             const auto [first, is_new] = seen.emplace(column.meaning->name, &column);
             if (is_new) { continue; }
-            return malformed("columns " + in_quotes(first->second->header) + " and " +
-                             in_quotes(column.header) + " are both " + column.meaning->name +
-                             ": leave one out with --columns " + printable(column.header) + "=_");
+            const std::string both = "columns " + in_quotes(first->second->header) + " and " +
+                                     in_quotes(column.header) + " are both " + column.meaning->name;
+            if (user_named_ > 0) { return invalid_argument(both + ": write _ in --columns for one of them"); }
+            return malformed(both + ": leave one out with --columns " + printable(column.header) + "=_");
         }
         return {};
     }
@@ -209,7 +210,11 @@ Result<ColumnNames> parse_column_names(const std::string& columns) {
         if (equals == std::string::npos) {
             names.by_position.emplace_back(item);
         } else {
-            names.by_name[std::string(trimmed(item.substr(0, equals)))] = trimmed(item.substr(equals + 1));
+            std::string name(trimmed(item.substr(0, equals)));
+            if (!names.by_name.emplace(name, trimmed(item.substr(equals + 1))).second) {
+                return invalid_argument("--columns " + in_quotes(columns) + ": " + in_quotes(name) +
+                                        " is named twice");
+            }
         }
         if (comma == std::string_view::npos) { break; }
         rest.remove_prefix(comma + 1);

@@ -405,6 +405,23 @@ TEST(CurveDialect, CurvesHaveSeparatorsAndCommentsToo) {
     EXPECT_DOUBLE_EQ(curves->curves.at(0).curve.points.at(1).deviation, 0.08 * rad_per_deg);
 }
 
+// Columns beyond those that are named are nobody's, whatever their own names are.
+TEST(NamedColumns, ThoseBeyondMayHaveTheSameNames) {
+    CsvReadOptions options;
+    options.choice = {.columns = "t,gx", .gyro_unit = "deg/s"};
+    const auto r = parse_recording_csv("time,wx,note,gx\n0,1,7,7\n0.1,2,7,7\n0.2,1,7,7\n", "r.csv", options);
+    ASSERT_TRUE(r.ok()) << r.error().message;
+    EXPECT_DOUBLE_EQ(r->find("gx")->value(1), 2.0 * rad_per_deg);
+}
+
+TEST(NamedColumns, OfOneQuantityTwiceAreRefusedWithAdviceThatWorks) {
+    CsvReadOptions options;
+    options.choice = {.columns = "t,gx,gx_dps", .gyro_unit = "deg/s"};
+    const auto r = parse_recording_csv("0,1,7\n0.1,2,7\n0.2,1,7\n", "r.csv", options);
+    ASSERT_FALSE(r.ok());
+    EXPECT_THAT(r.error().message, HasSubstr("are both gx: write _ in --columns for one of them"));
+}
+
 // NilsPod: a header of its own, without units, time or rate.
 TEST(RealDialect, NilspodIsReadWithItsUnitAndRate) {
     if (!has_shared_data()) { GTEST_SKIP() << needs_shared_data; }

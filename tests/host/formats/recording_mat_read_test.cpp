@@ -138,5 +138,16 @@ TEST_F(RecordingMat, OfTextIsText) {
     EXPECT_DOUBLE_EQ(read(path, options).find("gx")->value(1), 2.0);
 }
 
+// A sensor that would be left out without a word costs whoever calibrates it a measurement.
+TEST_F(RecordingMat, SensorsOfTwoLengthsAreNoRecording) {
+    const std::string path =
+        written("lengths.mat", {{"t", {0.0, 0.1, 0.2, 0.3}},
+                                {"gyro", {1.0, 2.0, 1.0, 2.0, 1.0, 2.0, 1.0, 2.0, 1.0, 2.0, 1.0, 2.0}, 3},
+                                {"acc", {1.0, 2.0, 1.0, 2.0, 1.0, 2.0}, 3}});
+    RecordingReadOptions options;
+    options.choice = {.gyro_unit = "deg/s", .accelerometer_unit = "m/s^2"};
+    EXPECT_THAT(refusal(path, options), HasSubstr("'acc_x' has 3 numbers, and 'gyro_x' has 4"));
+}
+
 }  // namespace
 }  // namespace gyrolog
