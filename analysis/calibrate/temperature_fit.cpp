@@ -11,7 +11,8 @@ namespace gyrolog {
 namespace {
 
 struct Block {
-    double temperature_C = 0.0;
+    double temperature_C = 0.0;  // smooth
+    double read_C = 0.0;         // as the thermometer had it
     Vector3 mean{};
 };
 
@@ -52,18 +53,51 @@ std::vector<HeldPose> poses_of(std::span<const InertialSignals> recordings, std:
     return poses;
 }
 
+// Of what the thermometer read in these rows; `otherwise` where it read nothing.
+double mean_reading_C(const Column* column, std::size_t first, std::size_t rows, double otherwise) {
+    double sum_C = 0.0;
+    double known = 0.0;
+    for (std::size_t row = first; column != nullptr && row < first + rows; ++row) {
+        const double value_C = column->value(row);
+        if (!std::isfinite(value_C)) { continue; }
+        sum_C += value_C;
+        known += 1.0;
+    }
+    return known > 0.0 ? sum_C / known : otherwise;
+}
+
+// About a jump of the temperature the smooth one is what the sensor never had.
+void leave_out_jumps(std::vector<Block>& blocks, double jump_share) {
+    if (blocks.empty()) { return; }
+    std::vector<double> errors_C;
+    for (const Block& block : blocks) { errors_C.push_back(std::abs(block.read_C - block.temperature_C)); }
+    const auto [low, high] = std::ranges::minmax_element(blocks, {}, &Block::read_C);
+    const double range_C = high->read_C - low->read_C;
+    const auto middle = errors_C.begin() + static_cast<std::ptrdiff_t>(errors_C.size() / 2);
+    std::ranges::nth_element(errors_C, middle);
+    constexpr double sd_of_median = 1.4826;  // of a normal distribution's absolute values
+    constexpr double sigmas = 4.0;
+    const double most_C = sigmas * sd_of_median * *middle + jump_share * range_C;
+    std::erase_if(blocks,
+                  [&](const Block& block) { return std::abs(block.read_C - block.temperature_C) > most_C; });
+}
+
 void cut(HeldPose& pose, const InertialSignals& signals, std::span<const Rest> rests,
          const VectorTrack& track, const TemperatureFitOptions& options) {
     const double block_s =
         std::max(options.block_s, pose.duration_s / static_cast<double>(options.blocks_most));
     const std::size_t rows =
         std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(block_s / signals.row_s())));
+    const Column* const read = signals.recording.find("temp");
     for (const std::size_t i : pose.rests) {
         const Rest& rest = rests[i];
         for (std::size_t first = rest.first; first + rows <= rest.first + rest.rows; first += rows) {
-            pose.blocks.push_back({mean_of(signals.temperature_C, first, rows), mean_of(track, first, rows)});
+            const double smooth_C = mean_of(signals.temperature_C, first, rows);
+            pose.blocks.push_back(
+                {smooth_C, mean_reading_C(read, first, rows, smooth_C), mean_of(track, first, rows)});
         }
     }
+    leave_out_jumps(pose.blocks, options.jump_share);
 }
 
 // A least-squares line of one axis: columns are a constant a pose, then powers of t.
@@ -75,9 +109,10 @@ struct Regression {
     double degrees = 0.0;
 };
 
-// Powers are of t / span, so that none is large; back to degC at the end.
-Regression regress(std::span<const HeldPose> poses, std::size_t axis, std::size_t order, double reference_C,
-                   double span_C) {
+// Powers are of t / span, so that none is large; back to degC at the end. Nothing where the temperatures do
+// not tell the powers apart.
+std::optional<Regression> regress(std::span<const HeldPose> poses, std::size_t axis, std::size_t order,
+                                  double reference_C, double span_C) {
     const std::size_t size = poses.size() + order;
     Matrix normal(size, size);
     std::vector<double> right(size, 0.0);
@@ -106,6 +141,7 @@ Regression regress(std::span<const HeldPose> poses, std::size_t axis, std::size_
     });
     result.degrees -= static_cast<double>(size);
     const CholeskyFactor factor(normal);
+    if (!factor.is_positive_definite()) { return std::nullopt; }
     const std::vector<double> at = factor.solve(right);
     each_block([&](double value) {
         for (std::size_t i = 0; i < size; ++i) { value -= row[i] * at[i]; }
@@ -145,13 +181,16 @@ TemperaturePolynomial fit_axis(std::span<const HeldPose> poses, std::size_t axis
     const auto of_order = [&](std::size_t order) {
         return regress(poses, axis, order, range.reference_C, span_C);
     };
-    // Of the fullest of the fits: what an order lacks would look like slow noise.
-    polynomial.correlation = neighbour_correlation(of_order(order_most).residuals);
-    const double share = independent_share(polynomial.correlation);
     std::size_t order = order_most;
-    Regression fit = of_order(order);
+    std::optional<Regression> fullest = of_order(order);
+    while (!fullest && order > 0) { fullest = of_order(--order); }
+    if (!fullest) { return polynomial; }
+    Regression fit = *std::move(fullest);
+    // Of the fullest of the fits: what an order lacks would look like slow noise.
+    polynomial.correlation = neighbour_correlation(fit.residuals);
+    const double share = independent_share(polynomial.correlation);
     while (order > 0) {
-        Regression lower = of_order(order - 1);
+        Regression lower = *of_order(order - 1);
         const double nu = std::max(1.0, fit.degrees * share);
         const double t = students_t_upper_quantile(nu, chance_least / 2.0);
         polynomial.F[order - 1] = (lower.squares - fit.squares) / (fit.squares / nu);

@@ -30,6 +30,9 @@ struct TemperatureFitOptions {
     double pose_rad = 2.0 * rad_per_deg;  // what is nearer is the same pose
     std::array<double, temperature_orders> range_C{5.0, 10.0, 20.0};
     double chance_least = 0.01;  // of F, for a term to stay
+    // Of the range, beyond the thermometer's own scatter: where the smooth temperature is farther from what
+    // was read, it jumped, and the block is left out. A line's error is then as small a share.
+    double jump_share = 0.01;
 };
 
 struct TemperaturePolynomial {

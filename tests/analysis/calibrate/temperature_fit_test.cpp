@@ -53,6 +53,22 @@ TEST(TemperatureFit, TheOrderIsWhatTheDataSupport) {
     EXPECT_NEAR(x.F_needed[0], 6.7, 0.2);
 }
 
+// A thermometer that is read seldom, or two files in one: what lies between the two temperatures never was.
+TEST(TemperatureFit, AJumpOfTheTemperatureMakesNoCubic) {
+    FaultySensor line;
+    line.gyro_c = {2e-4, 0.0, 0.0};
+    MovedSensor moved(line, 22, 20.0);
+    moved.set_temperature_C(20.0);
+    moved.rest(200.0);
+    moved.set_temperature_C(70.0);
+    moved.rest(200.0);
+    const Calibration calibration = calibrate({moved.recording("jump.csv", true)});
+    ASSERT_TRUE(calibration.gyro_temperature.calibration);
+    const TemperaturePolynomial& x = calibration.gyro_temperature.calibration->axes[0];
+    EXPECT_EQ(x.order, 1U);
+    EXPECT_NEAR(x.c[0], line.gyro_c[0], 4.0 * x.c_sd[0]);
+}
+
 TEST(TemperatureFit, ASmallRangeTellsNothing) {
     const Calibration calibration = warmed(cubic(), 24.0, 27.0);
     EXPECT_FALSE(calibration.gyro_temperature.calibration);
