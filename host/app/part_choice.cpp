@@ -12,10 +12,15 @@ namespace gyrolog {
 Result<TimeSpan> chosen_span(const Recording& recording, const PartChoice& part, const std::string& path) {
     const double duration_s = recording.segments.empty() ? 0.0 : recording.duration_s();
     TimeSpan span{part.from_s.value_or(0.0), std::min(part.to_s.value_or(duration_s), duration_s)};
-    if (segments_within(recording.segments, recording.rate_hz, span).empty()) {
+    std::size_t samples = 0;
+    for (const Segment& segment : segments_within(recording.segments, recording.rate_hz, span)) {
+        samples += segment.count;
+    }
+    if (samples < 2) {
         return Error{ErrorCode::invalid_argument,
-                     fmt::format("'{}' has no sample from {:.6g} s to {:.6g} s; it lasts {:.6g} s", path,
-                                 span.from_s, part.to_s.value_or(duration_s), duration_s)};
+                     fmt::format("'{}' has {} sample from {:.6g} s to {:.6g} s; it lasts {:.6g} s", path,
+                                 samples == 0 ? "no" : "only one", span.from_s,
+                                 part.to_s.value_or(duration_s), duration_s)};
     }
     if (!part.is_still) { return span; }
     const TimeSpan still = still_part_of(part_of(recording, span));

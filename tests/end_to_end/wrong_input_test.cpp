@@ -375,6 +375,7 @@ TEST_F(WrongInput, OfAnalyze) {
         {"analyze --jsonl l.jsonl", 2, "give a RECORDING, or --curve"},
         {"analyze c.csv --from soon", 2, "--from: 'soon' is no duration"},
         {"analyze c.csv --from 99", 2, "'c.csv' has no sample from 99 s to"},
+        {"analyze c.csv --from 19.991", 2, "'c.csv' has only one sample from 19.991 s"},
         {"analyze c.csv --from 5 --to 3s", 2, "'c.csv' has no sample from 5 s to 3 s; it lasts 20"},
         {"analyze counts.csv --still auto", 1,
          "'counts.csv' has no part of a few seconds in which nothing turns"},
