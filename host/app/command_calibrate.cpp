@@ -26,9 +26,10 @@ void setup_outputs(CLI::App& app, CalibrationRequest& request) {
 
 Action setup_calibrate(CLI::App& app) {
     auto request = std::make_shared<CalibrationRequest>();
-    app.add_option("RECORDING", request->recordings,
-                   "Captures (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy of one sensor: rests in six poses or "
-                   "more, turns, ramps of temperature")
+    app.add_option(
+           "RECORDING", request->recordings,
+           "Captures (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy of one sensor: rests in six poses or "
+           "more, turns, ramps of temperature")
         ->required();
     CLI::Option* const turn =
         app.add_option("--turn", request->turn_deg,

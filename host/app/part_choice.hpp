@@ -17,7 +17,8 @@ struct PartChoice {
     bool is_whole() const { return !from_s && !to_s && !is_still; }
 };
 
-// The times that are meant. Errors: fewer than two samples there; nothing rests for long enough (still_part_of()).
+// The times that are meant. Errors: fewer than two samples there; nothing rests for long enough
+// (still_part_of()).
 Result<TimeSpan> chosen_span(const Recording& recording, const PartChoice& choice, const std::string& path);
 
 // The part as part_of() has it, with a warning that says which it is; the recording where it is whole.
