@@ -70,6 +70,7 @@ double mean_reading_C(const Column* column, std::size_t first, std::size_t rows,
 void leave_out_jumps(std::vector<Block>& blocks, double jump_share) {
     if (blocks.empty()) { return; }
     std::vector<double> errors_C;
+    errors_C.reserve(blocks.size());
     for (const Block& block : blocks) { errors_C.push_back(std::abs(block.read_C - block.temperature_C)); }
     const auto [low, high] = std::ranges::minmax_element(blocks, {}, &Block::read_C);
     const double range_C = high->read_C - low->read_C;
