@@ -18,7 +18,7 @@ namespace gyrolog::resolution {
 // Bounds on the time only: what more is called for stays in the gap that is left.
 constexpr std::size_t causes_most = 16;
 // Of each estimator's best, so many are tried as the first cause, or as the next.
-constexpr std::size_t candidates_most = 4;
+constexpr std::size_t tried_most = 4;
 // Two causes of like size must not take turns for ever.
 constexpr int main_causes_most = 3;
 // Of what one response leaves, to fit it together with others.
@@ -143,7 +143,7 @@ private:
         found.reserve(best.size());
         for (auto& [method, finding] : best) { found.push_back(std::move(finding)); }
         std::ranges::sort(found, std::greater{}, &Finding::evidence_nats);
-        if (found.size() > resolution::candidates_most) { found.resize(resolution::candidates_most); }
+        if (found.size() > resolution::tried_most) { found.resize(resolution::tried_most); }
         return found;
     }
 

@@ -16,7 +16,7 @@ namespace gyrolog::resolution {
 constexpr int steps_most = 8;
 constexpr int shortenings_most = 4;
 // What a further step would gain.
-constexpr double settled_nats = 0.2;
+constexpr double refit_settled_nats = 0.2;
 // Of a parameter's size, over which the answer is taken for straight.
 constexpr double straight = 1e-3;
 // In one step a parameter falls to half at the most, or grows to three times: what was found beside others
@@ -73,7 +73,7 @@ public:
         for (int step = 0; step < resolution::steps_most; ++step) {
             const NormalEquations equations = linearised(seen);
             const std::vector<double> by = equations.solution();
-            if (!(equations.gain_nats(by) > resolution::settled_nats)) { break; }
+            if (!(equations.gain_nats(by) > resolution::refit_settled_nats)) { break; }
             bool better = false;
             for (int i = 0; i < resolution::shortenings_most && !better; ++i) {
                 const std::vector<Finding> moved = moved_by(by, std::ldexp(1.0, -i));

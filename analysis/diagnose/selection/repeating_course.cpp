@@ -16,7 +16,7 @@ namespace gyrolog::resolution {
 // A period shorter than some seconds is a few lines that stand alone.
 constexpr double block_s = 0.1;
 constexpr std::size_t blocks_least = 64;
-constexpr std::size_t blocks_most = 1'000'000;
+constexpr std::size_t course_blocks_most = 1'000'000;
 
 }  // namespace gyrolog::resolution
 
@@ -56,7 +56,7 @@ std::optional<NonparametricFit> find_repeating_course(const Observation& without
     const Prediction& prediction = without.prediction();
     const auto length =
         std::max<std::size_t>({1, static_cast<std::size_t>(resolution::block_s * prediction.rate_hz()),
-                               prediction.length() / resolution::blocks_most});
+                               prediction.length() / resolution::course_blocks_most});
     if (prediction.length() / length < resolution::blocks_least) { return std::nullopt; }
     std::vector<std::vector<float>> series;
     double lost_nats = 0.0;
