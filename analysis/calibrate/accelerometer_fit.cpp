@@ -8,6 +8,7 @@
 #include "analysis/numerics/cholesky.hpp"
 #include "analysis/numerics/distributions.hpp"
 #include "analysis/numerics/least_squares.hpp"
+#include "analysis/numerics/robust_spread.hpp"
 
 namespace gyrolog {
 namespace {
@@ -115,16 +116,8 @@ public:
         return derivatives;
     }
 
-    // As long as the rests that there are.
-    double usual_duration_s() const {
-        std::vector<double> durations_s = durations_s_;
-        const auto middle = durations_s.begin() + static_cast<std::ptrdiff_t>(durations_s.size() / 2);
-        std::nth_element(durations_s.begin(), middle, durations_s.end());
-        return *middle;
-    }
-
     std::vector<PoseAdvice> advice(const Sensor& s, const Matrix& information) const {
-        const double duration_s = usual_duration_s();
+        const double duration_s = median_of(durations_s_);  // as long as the rests that there are
         std::vector<PoseAdvice> advice = advise_poses(
             information, prior_sd(), options_->tolerance.share_most,
             [&](const Vector3& up) {
@@ -132,7 +125,7 @@ public:
                 for (std::size_t axis = 0; axis < 3; ++axis) { force[axis] += s.bias[axis]; }
                 return row(s, force, duration_s);
             },
-            options_->poses_advised);
+            options_->poses_advised, options_->poses_most);
         for (PoseAdvice& pose : advice) { pose.symbol = symbol(pose.parameter); }
         return advice;
     }

@@ -34,6 +34,7 @@ struct AccelerometerFitOptions {
     // is then that of the residuals (Birge's ratio; R. T. Birge, Phys. Rev. 40 (1932) 207).
     double chance_least = 0.01;
     std::size_t poses_advised = 3;
+    std::size_t poses_most = 12;  // nine parameters ask for nine poses; more is no advice
 };
 
 struct AccelerometerCalibration {

@@ -14,16 +14,13 @@ std::string joined(const std::vector<std::string>& words) {
     return text;
 }
 
-// Ten times a data sheet's tolerance is no sensor's. A scale that is off by 3 % misses by 3 deg in a right
-// angle.
-void warn_of_nonsense(Calibration& calibration, double scale_tolerance) {
-    constexpr double miss_most_rad = 5.0 * rad_per_deg;
+void warn_of_nonsense(Calibration& calibration, const CalibrationOptions& options) {
     const std::string question = ": are the sampling rate and the axes right?";
     if (!calibration.gyro.calibration) { return; }
     const GyroCalibration& gyro = *calibration.gyro.calibration;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double off = gyro.M[axis][axis] - 1.0;
-        if (!gyro.has_scale[axis] || std::abs(off) < 10.0 * scale_tolerance) { continue; }
+        if (!gyro.has_scale[axis] || std::abs(off) < options.scale_off_least) { continue; }
         const std::string percent = std::to_string(std::lround(100.0 * off));
         calibration.warnings.push_back(std::string("the gyro's scale about ")
                                            .append(axis_names[axis])
@@ -33,7 +30,7 @@ void warn_of_nonsense(Calibration& calibration, double scale_tolerance) {
                                            .append(question));
     }
     for (const ObservationFit& fit : gyro.fits) {
-        if (fit.kind != ObservationKind::gravity || fit.rms < miss_most_rad) { continue; }
+        if (fit.kind != ObservationKind::gravity || fit.rms < options.miss_least_rad) { continue; }
         const std::string deg = std::to_string(std::lround(fit.rms * deg_per_rad));
         calibration.warnings.push_back(std::string("gravity does not go where the gyro says (rms ")
                                            .append(deg)
@@ -180,7 +177,7 @@ Calibration calibrate(std::vector<Recording> recordings, const CalibrationOption
     calibration.warnings.insert(calibration.warnings.end(), observations.notes.begin(),
                                 observations.notes.end());
     calibration.gyro = fit_gyro(observations, options.gyro);
-    warn_of_nonsense(calibration, options.gyro.tolerance.scale);
+    warn_of_nonsense(calibration, options);
     add_accelerometer_gaps(calibration);
     add_gyro_gaps(calibration);
     add_temperature_gaps(calibration, options);

@@ -22,6 +22,11 @@ struct CalibrationOptions {
     AccelerometerFitOptions accelerometer;
     GyroObservationOptions observations;
     GyroFitOptions gyro;
+    // A wrong sampling rate or axis is warned of: where a gyro's scale is off by ten times a data sheet's
+    // tolerance, and where gravity ends farther from where the gyro carries it (root mean square of the
+    // moves) than a scale within 3 % lets it, 3 deg in a right angle.
+    double scale_off_least = 10.0 * SensorTolerance{}.scale;
+    double miss_least_rad = 5.0 * rad_per_deg;
 };
 
 // What is not known, and what to record for it.

@@ -8,6 +8,7 @@
 #include "analysis/numerics/cholesky.hpp"
 #include "analysis/numerics/distributions.hpp"
 #include "analysis/numerics/least_squares.hpp"
+#include "analysis/numerics/robust_spread.hpp"
 
 namespace gyrolog {
 namespace {
@@ -79,7 +80,8 @@ std::array<Vector3, 2> across(const Vector3& up) {
 
 class Equations {
 public:
-    explicit Equations(const GyroObservations& observations) : of_(observations) {
+    Equations(const GyroObservations& observations, const GyroFitOptions& options)
+        : of_(observations), options_(options) {
         active_.resize(all_parameters);
         std::iota(active_.begin(), active_.end(), 0U);
         sd_factor_.fill(1.0);
@@ -129,7 +131,8 @@ public:
         return gyro;
     }
 
-    std::vector<double> prior_sd(const SensorTolerance& tolerance) const {
+    std::vector<double> prior_sd() const {
+        const SensorTolerance& tolerance = options_.tolerance;
         std::vector<double> sd;
         for (const std::size_t parameter : active_) {
             const std::size_t axis = parameter / of_an_axis;
@@ -164,7 +167,7 @@ public:
         }
     }
 
-    void differentiate(std::span<const double> at, const SensorTolerance& tolerance, Matrix& J) const {
+    void differentiate(std::span<const double> at, Matrix& J) const {
         std::ranges::fill(J.values(), 0.0);
         for (std::size_t i = 0; i < active_.size(); ++i) {
             const std::size_t axis = active_[i] / of_an_axis;
@@ -180,7 +183,7 @@ public:
                 J(3 * m + axis, i) = -by / sd(3 * m + axis);
             }
         }
-        if (!of_.moves.empty()) { differentiate_moves(at, tolerance, J); }
+        if (!of_.moves.empty()) { differentiate_moves(at, J); }
     }
 
 private:
@@ -189,14 +192,11 @@ private:
         ++n;
     }
 
-    // By differences: a step of a thousandth of what one knows before is far above rounding, and far below
-    // what bends.
-    void differentiate_moves(std::span<const double> at, const SensorTolerance& tolerance, Matrix& J) const {
-        constexpr double share_of_prior = 1e-3;
-        const std::vector<double> prior = prior_sd(tolerance);
+    void differentiate_moves(std::span<const double> at, Matrix& J) const {
+        const std::vector<double> prior = prior_sd();
         std::vector<double> moved(at.begin(), at.end());
         for (std::size_t i = 0; i < active_.size(); ++i) {
-            const double step = share_of_prior * prior[i];
+            const double step = options_.step_of_prior * prior[i];
             moved[i] = at[i] + step;
             const std::vector<double> above = ends(moved);
             moved[i] = at[i] - step;
@@ -226,20 +226,18 @@ private:
         for (const MeanRate& mean : of_.means) {
             if (mean.kind == ObservationKind::rest) { rates.push_back(mean.measured_rad_s[axis]); }
         }
-        if (rates.empty()) { return 0.0; }
-        const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2);
-        std::nth_element(rates.begin(), middle, rates.end());
-        return *middle;
+        return rates.empty() ? 0.0 : median_of(rates);
     }
 
     const GyroObservations& of_;
+    const GyroFitOptions& options_;
     std::vector<std::size_t> active_;
     std::array<double, observation_kinds.size()> sd_factor_{};
 };
 
-Matrix derivatives(const Equations& equations, std::span<const double> at, const SensorTolerance& tolerance) {
+Matrix derivatives(const Equations& equations, std::span<const double> at) {
     Matrix J(equations.size(), at.size());
-    equations.differentiate(at, tolerance, J);
+    equations.differentiate(at, J);
     return J;
 }
 
@@ -269,10 +267,10 @@ void keep_determined(Equations& equations, const GyroFitOptions& options, GyroRe
     std::vector<std::size_t> dropped;
     for (;;) {
         const std::vector<double> at = equations.start();
-        const Matrix information = information_of(derivatives(equations, at, options.tolerance));
+        const Matrix information = information_of(derivatives(equations, at));
         std::vector<std::size_t> open;
         for (const std::size_t i :
-             undetermined(information, equations.prior_sd(options.tolerance), options.tolerance.share_most)) {
+             undetermined(information, equations.prior_sd(), options.tolerance.share_most)) {
             open.push_back(equations.active()[i]);
         }
         // A bias that is open alone is what it is: K, and then M, are dropped before it.
@@ -290,16 +288,13 @@ void keep_determined(Equations& equations, const GyroFitOptions& options, GyroRe
     name_open(dropped, result);
 }
 
-std::vector<double> solve(const Equations& equations, std::span<const double> start,
-                          const SensorTolerance& tolerance) {
+std::vector<double> solve(const Equations& equations, std::span<const double> start) {
     LeastSquaresProblem problem;
     problem.residuals = equations.size();
     problem.evaluate = [&](std::span<const double> at, std::span<double> values) {
         equations.residuals(at, values);
     };
-    problem.differentiate = [&](std::span<const double> at, Matrix& J) {
-        equations.differentiate(at, tolerance, J);
-    };
+    problem.differentiate = [&](std::span<const double> at, Matrix& J) { equations.differentiate(at, J); };
     LeastSquaresLimits limits;
     limits.tolerance = 1e-10;
     return least_squares(problem, start, limits);
@@ -344,10 +339,9 @@ std::vector<ObservationFit> fits_of(const Equations& equations, const std::vecto
     return fits;
 }
 
-// The kind that is off most by itself: others may be off because of it. True: something has changed.
+// Raises the sigmas of the kind that is off most: others may be off because of it. Whether it raised any.
 bool weight_again(Equations& equations, const std::vector<ObservationFit>& fits,
-                  const std::vector<double>& chi_squared, double chance_least) {
-    constexpr double is_settled = 0.02;  // of a factor
+                  const std::vector<double>& chi_squared, const GyroFitOptions& options) {
     std::size_t most = fits.size();
     double by_most = 0.0;
     for (std::size_t k = 0; k < fits.size(); ++k) {
@@ -355,12 +349,12 @@ bool weight_again(Equations& equations, const std::vector<ObservationFit>& fits,
         if (!(fits[k].redundancy >= 1.0)) { continue; }
         const bool is_raised = fits[k].sd_factor > 1.0;
         const bool is_unlikely =
-            chi_squared[k] > chi_squared_upper_quantile(fits[k].redundancy, chance_least);
+            chi_squared[k] > chi_squared_upper_quantile(fits[k].redundancy, options.chance_least);
         if (!is_raised && !is_unlikely) { continue; }
         // What was raised may fall again, to what was stated.
         const double by =
             std::log(std::max(1.0 / fits[k].sd_factor, std::sqrt(chi_squared[k] / fits[k].redundancy)));
-        if (std::abs(by) > std::max(std::abs(by_most), is_settled)) {
+        if (std::abs(by) > std::max(std::abs(by_most), options.factor_settled)) {
             by_most = by;
             most = k;
         }
@@ -399,21 +393,21 @@ void fill(GyroCalibration& result, const Equations& equations, const std::vector
 
 GyroResult fit_gyro(const GyroObservations& observations, const GyroFitOptions& options) {
     GyroResult result;
-    Equations equations(observations);
+    Equations equations(observations, options);
     if (observations.means.empty()) { return result; }
     keep_determined(equations, options, result);
     std::vector<double> at = equations.start();
     Matrix covariance;
     GyroCalibration calibration;
     for (int weighting = 0; weighting < options.weightings_most; ++weighting) {
-        at = solve(equations, at, options.tolerance);
-        const Matrix J = derivatives(equations, at, options.tolerance);
+        at = solve(equations, at);
+        const Matrix J = derivatives(equations, at);
         const CholeskyFactor factor(information_of(J));
         if (!factor.is_positive_definite()) { return result; }
         covariance = factor.inverse();
         std::vector<double> chi_squared;
         calibration.fits = fits_of(equations, at, J, covariance, chi_squared);
-        if (!weight_again(equations, calibration.fits, chi_squared, options.chance_least)) { break; }
+        if (!weight_again(equations, calibration.fits, chi_squared, options)) { break; }
     }
     fill(calibration, equations, at, covariance);
     result.calibration = std::move(calibration);

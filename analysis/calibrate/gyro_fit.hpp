@@ -33,6 +33,11 @@ namespace gyrolog {
 struct GyroFitOptions {
     SensorTolerance tolerance;
     double chance_least = 0.01;
+    // Of a parameter's prior deviation, the step of derivatives by differences: far above rounding, and far
+    // below what bends.
+    double step_of_prior = 1e-3;
+    // Of the logarithm of a factor of sigmas: less is no reason to weight again.
+    double factor_settled = 0.02;
     int weightings_most = 40;  // each makes the sigmas of one kind right to first order
 };
 

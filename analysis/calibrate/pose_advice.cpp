@@ -11,8 +11,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::size_t poses_most = 12;  // nine parameters ask for nine; more is no advice
-
 struct BoxPose {
     Vector3 up;
     std::string words;
@@ -61,8 +59,8 @@ double foreseen_variance(const Matrix& covariance, std::span<const double> prior
 }  // namespace
 
 std::vector<PoseAdvice> advise_poses(const Matrix& information, std::span<const double> prior_sd,
-                                     double share_most, const PoseDerivatives& derivatives,
-                                     std::size_t poses) {
+                                     double share_most, const PoseDerivatives& derivatives, std::size_t poses,
+                                     std::size_t poses_most) {
     const std::size_t size = prior_sd.size();
     Matrix known = information;
     const Matrix before = covariance_left(known, prior_sd);

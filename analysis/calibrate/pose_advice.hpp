@@ -33,9 +33,9 @@ struct PoseAdvice {
 using PoseDerivatives = std::function<std::vector<double>(const Vector3& up)>;
 
 // `information`: of the rests that there are, at least one parameter. As many poses as `poses`, or more until
-// no parameter is undetermined (knowledge.hpp), twelve at most.
+// no parameter is undetermined (knowledge.hpp), `poses_most` at most.
 std::vector<PoseAdvice> advise_poses(const Matrix& information, std::span<const double> prior_sd,
-                                     double share_most, const PoseDerivatives& derivatives,
-                                     std::size_t poses);
+                                     double share_most, const PoseDerivatives& derivatives, std::size_t poses,
+                                     std::size_t poses_most);
 
 }  // namespace gyrolog

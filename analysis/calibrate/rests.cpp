@@ -11,8 +11,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::size_t parts_of_a_rest = 8;
-
 std::vector<Segment> runs_of(const InertialSignals& signals, const RestOptions& options) {
     std::vector<std::vector<double>> tracks;
     for (const VectorTrack* track : {&signals.rate_rad_s, &signals.force_m_s2}) {
@@ -74,12 +72,14 @@ void drop_constant_rates(std::vector<Rest>& rests, std::span<const InertialSigna
 // Of one sensor, over the rests of all recordings that have it.
 class SensorScatter {
 public:
+    explicit SensorScatter(const RestOptions& options) : options_(options) {}
+
     // The squares of the parts' means about the rest's, times the seconds of a part; and of the rows.
     void add(const VectorTrack& track, const Rest& rest, double row_s) {
-        const std::size_t rows = rest.rows / parts_of_a_rest;
+        const std::size_t rows = rest.rows / options_.parts;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double mean = mean_of(track[axis], rest.first, rows * parts_of_a_rest);
-            for (std::size_t part = 0; part < parts_of_a_rest; ++part) {
+            const double mean = mean_of(track[axis], rest.first, rows * options_.parts);
+            for (std::size_t part = 0; part < options_.parts; ++part) {
                 const double error = mean_of(track[axis], rest.first + part * rows, rows) - mean;
                 parts_[axis] += error * error * static_cast<double>(rows) * row_s;
             }
@@ -87,7 +87,7 @@ public:
                 rows_[axis] += (track[axis][row] - mean) * (track[axis][row] - mean);
             }
         }
-        degrees_ += static_cast<double>(parts_of_a_rest - 1);
+        degrees_ += static_cast<double>(options_.parts - 1);
         row_count_ += static_cast<double>(rest.rows);
     }
 
@@ -106,16 +106,16 @@ public:
         return density;
     }
     Vector3 floor(double sd_least) const {
-        constexpr double moves_over_steps = 0.4;  // of a step, the noise (Widrow and Kollar)
         Vector3 floor{sd_least, sd_least, sd_least};
         for (std::size_t axis = 0; axis < 3 && row_count_ > 0.0; ++axis) {
-            if (std::sqrt(rows_[axis] / row_count_) >= moves_over_steps * step_[axis]) { continue; }
+            if (std::sqrt(rows_[axis] / row_count_) >= options_.sd_in_steps_least * step_[axis]) { continue; }
             floor[axis] = std::max(sd_least, step_[axis] / std::sqrt(12.0));
         }
         return floor;
     }
 
 private:
+    const RestOptions& options_;
     Vector3 parts_{};
     Vector3 rows_{};
     Vector3 step_{};
@@ -125,15 +125,15 @@ private:
 
 MeanScatter scatter_of(std::span<const InertialSignals> recordings, const std::vector<Rest>& rests,
                        const RestOptions& options) {
-    SensorScatter force;
-    SensorScatter rate;
+    SensorScatter force(options);
+    SensorScatter rate(options);
     for (const InertialSignals& signals : recordings) {
         if (signals.has_force()) { force.add_steps(signals.recording, "a"); }
         if (signals.has_rate()) { rate.add_steps(signals.recording, "g"); }
     }
     for (const Rest& rest : rests) {
         const InertialSignals& signals = recordings[rest.recording];
-        if (rest.rows < parts_of_a_rest) { continue; }
+        if (rest.rows < options.parts) { continue; }
         if (signals.has_force()) { force.add(signals.force_m_s2, rest, signals.row_s()); }
         if (signals.has_rate()) { rate.add(signals.rate_rad_s, rest, signals.row_s()); }
     }

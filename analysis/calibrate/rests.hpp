@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/calibrate/inertial_signals.hpp"
+#include "analysis/noise/converter_step.hpp"
 #include "analysis/noise/noise_model.hpp"
 
 namespace gyrolog {
@@ -23,6 +24,12 @@ struct RestOptions {
     // proportion where they are farther apart than that. What the temperature does to the bias is slower.
     double tilt_most_rad = 0.5 * rad_per_deg;
     double tilt_s = 10.0;
+    // Parts of a rest, whose means tell how well its mean is known: noise as slow as an eighth of a rest, and
+    // seven degrees of freedom of each.
+    std::size_t parts = 8;
+    // Of the converter's step: noise of less leaves an error of rounding that no averaging takes off
+    // (converter_step.hpp).
+    double sd_in_steps_least = least_sd_in_steps;
     // No mean is known better: the resolution of the best part of that class, 1 ug and 0.2 deg/h.
     double force_sd_least_m_s2 = 1e-5;
     double rate_sd_least_rad_s = 1e-6;

@@ -6,6 +6,7 @@
 #include "analysis/calibrate/sensor_matrix.hpp"
 #include "analysis/numerics/cholesky.hpp"
 #include "analysis/numerics/distributions.hpp"
+#include "analysis/numerics/robust_spread.hpp"
 
 namespace gyrolog {
 namespace {
@@ -67,18 +68,15 @@ double mean_reading_C(const Column* column, std::size_t first, std::size_t rows,
 }
 
 // About a jump of the temperature the smooth one is what the sensor never had.
-void leave_out_jumps(std::vector<Block>& blocks, double jump_share) {
+void leave_out_jumps(std::vector<Block>& blocks, const TemperatureFitOptions& options) {
     if (blocks.empty()) { return; }
     std::vector<double> errors_C;
     errors_C.reserve(blocks.size());
     for (const Block& block : blocks) { errors_C.push_back(std::abs(block.read_C - block.temperature_C)); }
     const auto [low, high] = std::ranges::minmax_element(blocks, {}, &Block::read_C);
     const double range_C = high->read_C - low->read_C;
-    const auto middle = errors_C.begin() + static_cast<std::ptrdiff_t>(errors_C.size() / 2);
-    std::ranges::nth_element(errors_C, middle);
-    constexpr double sd_of_median = 1.4826;  // of a normal distribution's absolute values
-    constexpr double sigmas = 4.0;
-    const double most_C = sigmas * sd_of_median * *middle + jump_share * range_C;
+    const double most_C = options.jump_sigmas * per_median_absolute_deviation * median_of(errors_C) +
+                          options.jump_share * range_C;
     std::erase_if(blocks,
                   [&](const Block& block) { return std::abs(block.read_C - block.temperature_C) > most_C; });
 }
@@ -98,7 +96,7 @@ void cut(HeldPose& pose, const InertialSignals& signals, std::span<const Rest> r
                 {smooth_C, mean_reading_C(read, first, rows, smooth_C), mean_of(track, first, rows)});
         }
     }
-    leave_out_jumps(pose.blocks, options.jump_share);
+    leave_out_jumps(pose.blocks, options);
 }
 
 // A least-squares line of one axis: columns are a constant a pose, then powers of t.

@@ -30,8 +30,10 @@ struct TemperatureFitOptions {
     double pose_rad = 2.0 * rad_per_deg;  // what is nearer is the same pose
     std::array<double, temperature_orders> range_C{5.0, 10.0, 20.0};
     double chance_least = 0.01;  // of F, for a term to stay
-    // Of the range, beyond the thermometer's own scatter: where the smooth temperature is farther from what
-    // was read, it jumped, and the block is left out. A line's error is then as small a share.
+    // Where the smooth temperature is farther from what was read than so many deviations of the thermometer
+    // and this share of the range, it jumped, and the block is left out. A normal deviation is beyond four
+    // once in 16 000 times; what is within the share puts a line off by as small a share.
+    double jump_sigmas = 4.0;
     double jump_share = 0.01;
 };
 

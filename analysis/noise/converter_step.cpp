@@ -9,7 +9,6 @@ namespace gyrolog {
 namespace {
 
 constexpr std::size_t enough_samples = 20000;
-constexpr double least_sd_in_steps = 0.4;
 
 double first_difference_sd(const Column& column) {
     double sum = 0.0;

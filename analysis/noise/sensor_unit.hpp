@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/recording/standard_gravity.hpp"
@@ -12,6 +13,12 @@ enum class SensorKind { gyro, accelerometer };
 
 // Which sensors of a recording are wanted.
 enum class Sensors { gyro, accelerometer, all };
+
+// "gyro", "accelerometer"; whatever else: all.
+constexpr Sensors sensors_named(std::string_view name) {
+    if (name == "gyro") { return Sensors::gyro; }
+    return name == "accelerometer" ? Sensors::accelerometer : Sensors::all;
+}
 
 constexpr bool includes(Sensors sensors, SensorKind kind) {
     return sensors == Sensors::all ||

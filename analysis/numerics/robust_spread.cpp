@@ -10,7 +10,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr double per_median_absolute_deviation = 1.482602218505602;
 constexpr double gaussian_efficiency = 0.3675;
 
 double unbiasing_factor(std::size_t count) {

@@ -6,6 +6,9 @@
 
 namespace gyrolog {
 
+// Of Gaussian values, the standard deviation over the median absolute deviation: 1 / normal quantile of 3/4.
+inline constexpr double per_median_absolute_deviation = 1.482602218505602;
+
 // In the unit of the values.
 struct RobustSpread {
     std::size_t count = 0;

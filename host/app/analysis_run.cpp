@@ -22,23 +22,18 @@
 namespace gyrolog {
 namespace {
 
-Sensors sensors_of(const AnalysisRequest& request) {
-    if (request.sensor == "gyro") { return Sensors::gyro; }
-    return request.sensor == "accelerometer" ? Sensors::accelerometer : Sensors::all;
-}
-
 RecordingInput input_of(const AnalysisRequest& request) {
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps, request.on_stage};
     input.lsb_g = request.lsb_g;
     input.part = request.part;
     input.text = request.text;
-    input.with_accelerometer = sensors_of(request) != Sensors::gyro;
-    input.needs_gyro = sensors_of(request) == Sensors::gyro;
+    input.with_accelerometer = sensors_named(request.sensor) != Sensors::gyro;
+    input.needs_gyro = sensors_named(request.sensor) == Sensors::gyro;
     return input;
 }
 
 std::string what_lacks(const AnalysisRequest& request) {
-    switch (sensors_of(request)) {
+    switch (sensors_named(request.sensor)) {
         case Sensors::gyro:
             return "there is no angular rate to analyse";
         case Sensors::accelerometer:
@@ -63,7 +58,7 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
     }
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     options.robust = request.robust;
-    options.sensors = sensors_of(request);
+    options.sensors = sensors_named(request.sensor);
     options.on_stage = request.on_stage;
     return options;
 }

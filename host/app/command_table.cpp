@@ -28,11 +28,6 @@ struct TableOptions {
     std::string sensor = "gyro";
 };
 
-Sensors sensors_of(const TableOptions& options) {
-    if (options.sensor == "gyro") { return Sensors::gyro; }
-    return options.sensor == "all" ? Sensors::all : Sensors::accelerometer;
-}
-
 Status check(const TableOptions& options) {
     if (options.output == "-") {
         return invalid_argument(
@@ -88,7 +83,8 @@ ExitCode write_table(Console& console, const TableOptions& options) {
     const Result<FleetRecordings> read = read_recordings(options);
     if (!read.ok()) { return fail(read.error()); }
     const UnitPopulation population = population_of(read->recordings);
-    const FleetTable table = fleet_table(read->recordings, population.outliers, sensors_of(options));
+    const FleetTable table =
+        fleet_table(read->recordings, population.outliers, sensors_named(options.sensor));
     ResultOutput results(console);
     results.file(options.output, [&] {
         return options.output.ends_with(".sqlite") ? write_sqlite(table, options.output)

@@ -39,7 +39,7 @@ CLI::Validator understood_by(Result<Number> (*parse)(std::string_view)) {
             ""};
 }
 
-// What zero of it is, is clear.
+// Zero needs no unit.
 template <typename Number>
 CLI::Validator understood_or_none(Result<Number> (*parse)(std::string_view)) {
     return {[parse](const std::string& text) -> std::string {

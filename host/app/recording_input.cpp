@@ -131,10 +131,7 @@ Result<TimedRecording> read_timed_recording(const RecordingInput& input) {
     RecordingInput all = input;
     all.samples_most = RecordingInput{}.samples_most;
     GYROLOG_TRY(TimedRecording timed, read_whole(all));
-    if (timed.host_start_s) {
-        GYROLOG_TRY(const TimeSpan span, chosen_span(timed.recording, input.part, input.path));
-        *timed.host_start_s += span.from_s;
-    }
+    timed.host_start_s.reset();
     GYROLOG_TRY(timed.recording, take_part(std::move(timed.recording), input.part, input.path));
     return timed;
 }

@@ -41,7 +41,8 @@ Result<RecordingInput> with_known_part(RecordingInput input);
 // With what a capture says beside its samples; of text nothing.
 struct TimedRecording {
     Recording recording;
-    std::optional<double> host_start_s = {};  // of sampling instant 0, by the clock of the host that captured
+    std::optional<double> host_start_s =
+        {};  // of sampling instant 0, by the clock of the host that captured; not known of a part
     std::optional<LoadedCapture> capture = {};
 };
 Result<TimedRecording> read_timed_recording(const RecordingInput& input);

@@ -5,6 +5,7 @@
 
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/recording/standard_gravity.hpp"
+#include "host/formats/stamp_unit.hpp"
 
 namespace gyrolog {
 namespace {
@@ -37,14 +38,6 @@ constexpr std::array units = {
     Unit{Kind::reference, "rad_s", "rad_s", "rad/s", 1.0},
 };
 
-// A division by these gives the nearest number of seconds, which a product with their inverse does not.
-struct StampUnit {
-    std::string_view header;
-    double per_s;
-};
-constexpr std::array stamp_units = {StampUnit{"t_s", 1.0}, StampUnit{"t_ms", 1e3}, StampUnit{"t_us", 1e6},
-                                    StampUnit{"t_ns", 1e9}};
-
 bool is_axis(char c) { return c >= 'x' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -65,7 +58,7 @@ std::optional<CsvColumn> with_unit(std::string name, std::string_view written,
 
 std::optional<CsvColumn> csv_column(std::string_view header) {
     for (const StampUnit& unit : stamp_units) {
-        if (header == unit.header) {
+        if (header.starts_with("t_") && header.substr(2) == unit.name) {
             return CsvColumn{Kind::time_stamp, "t", "s", std::string(header.substr(2)), 1.0, unit.per_s};
         }
     }

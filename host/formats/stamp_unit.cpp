@@ -8,9 +8,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::array units = {StampUnit{"s", 1.0}, StampUnit{"ms", 1e3}, StampUnit{"us", 1e6},
-                              StampUnit{"ns", 1e9}};
-
 // 0: no step rises. Stamps of arrival repeat within a burst.
 double median_step(std::span<const double> stamps) {
     constexpr std::size_t looked_at = 1001;
@@ -30,9 +27,9 @@ double median_step(std::span<const double> stamps) {
 StampUnits plausible_stamp_units(std::span<const double> stamps, double samples_per_row,
                                  const StampUnitOptions& options) {
     const double step = median_step(stamps) / samples_per_row;
-    if (!(step > 0.0)) { return {{units.front()}, 0.0}; }
+    if (!(step > 0.0)) { return {{stamp_units.front()}, 0.0}; }
     std::vector<StampUnit> fitting;
-    for (const StampUnit& unit : units) {
+    for (const StampUnit& unit : stamp_units) {
         const double rate_hz = unit.per_s / step;
         if (rate_hz >= options.rate_least_hz && rate_hz <= options.rate_most_hz) { fitting.push_back(unit); }
     }
@@ -41,7 +38,7 @@ StampUnits plausible_stamp_units(std::span<const double> stamps, double samples_
         const double first_s = stamps.front() / unit.per_s;
         if (first_s >= options.epoch_least_s && first_s <= options.epoch_most_s) { return {{unit}, step}; }
     }
-    if (step < 1.0 && fitting.front().per_s == 1.0) { return {{units.front()}, step}; }
+    if (step < 1.0 && fitting.front().per_s == 1.0) { return {{stamp_units.front()}, step}; }
     return {std::move(fitting), step};
 }
 

@@ -1,6 +1,7 @@
 // The unit of time stamps whose name does not tell it, from their size and their steps.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,10 @@ struct StampUnit {
     std::string_view name;  // "s", "ms", "us", "ns"
     double per_s;
 };
+
+// A division by `per_s` gives the nearest number of seconds, which a product with its inverse does not.
+inline constexpr std::array stamp_units = {StampUnit{"s", 1.0}, StampUnit{"ms", 1e3}, StampUnit{"us", 1e6},
+                                           StampUnit{"ns", 1e9}};
 
 struct StampUnitOptions {
     // Rates that gyros are sampled at: from a logger that keeps a value every ten seconds to the fastest

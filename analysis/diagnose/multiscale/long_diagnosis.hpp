@@ -13,7 +13,7 @@ namespace gyrolog {
 
 namespace resolution {
 
-// With these lengths a diagnosis takes less than 1 GB: 20 min at 1 kHz, and 24 h in means of 0.1 s.
+// With these lengths a diagnosis takes less than 1 GB: 15 min at 1 kHz, and 24 h in means of 0.1 s.
 inline constexpr std::size_t beginning_max = 900'000;
 inline constexpr std::size_t means_max = 900'000;
 

@@ -521,17 +521,14 @@ private:
                                                options_.seed, options_.threads);
             const std::vector<Finding> findings = findings_of(without.findings);
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
-            if (same != findings.end() && is_of_another(*same, i)) {
-                causes_[i].rivals = rivals_of(causes_[i].finding, findings);
-                ++i;
-                continue;
-            }
             const double least_nats =
                 &causes_[i].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
             const double own_nats = same == findings.end() ? 0.0 : same->evidence_nats;
             const auto rival = std::ranges::find_if(findings, [&](const Finding& f) { return is_new(f); });
             const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
-            if (is_of_codes(causes_[i].finding)) {
+            if (same != findings.end() && is_of_another(*same, i)) {
+                // It stays.
+            } else if (is_of_codes(causes_[i].finding)) {
                 if (same != findings.end()) { causes_[i].finding = *same; }
             } else if (rivals == Rivals::may_replace && rival_nats > own_nats + decisions.strong_nats &&
                        rival_nats >= least_nats) {
