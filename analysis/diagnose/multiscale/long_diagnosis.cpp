@@ -25,8 +25,8 @@ namespace gyrolog::resolution {
 
 // Of the highest frequency: what is above is nearly white.
 constexpr double white_from = 0.25;
-// Two threads' of a beginning.
-constexpr double beginning_bytes_most = 0.4e9;
+// One simulation at a time: two do not fit into a gigabyte beside what is held.
+constexpr double beginning_bytes_most = 0.25e9;
 
 }  // namespace gyrolog::resolution
 
