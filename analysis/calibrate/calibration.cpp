@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "analysis/calibrate/sensor_matrix.hpp"
+
 namespace gyrolog {
 namespace {
 

@@ -20,7 +20,6 @@ constexpr std::size_t K_at = 1;
 constexpr std::size_t M_at = 4;
 
 constexpr std::size_t bias_of(std::size_t axis) { return axis * of_an_axis; }
-constexpr std::size_t K_of(std::size_t axis, std::size_t from) { return axis * of_an_axis + K_at + from; }
 constexpr std::size_t M_of(std::size_t axis, std::size_t from) { return axis * of_an_axis + M_at + from; }
 
 std::string symbol(std::size_t parameter) {
