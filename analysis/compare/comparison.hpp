@@ -21,6 +21,7 @@
 #include "analysis/compare/axis_curves.hpp"
 #include "analysis/compare/compared_curve.hpp"
 #include "analysis/compare/compared_number.hpp"
+#include "analysis/noise/sensor_unit.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
@@ -49,6 +50,7 @@ struct Comparison {
     double duration_s = 0.0;
     std::size_t samples = 0;
     bool less_reference = false;
+    SensorUnit unit = SensorUnit::dps();  // of the sensor's numbers, for readers
     std::size_t simulations = 0;  // 0: with a recording
     double band_probability = 0.0;
     std::uint64_t seed = 0;

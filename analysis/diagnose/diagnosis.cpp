@@ -128,7 +128,7 @@ private:
         }
         if (!seems_to_have_turned(*first.observation)) { return; }
         answer_.warnings.emplace_back(
-            "the rates stray far more than noise does: the sensor seems to have been turned, and without "
+            "the samples stray far more than noise does: the sensor seems to have been turned, and without "
             "a reference rate (columns ref_x_dps ... or ref_qw ...) nothing of that can be judged; use a "
             "part at rest");
     }

@@ -2,7 +2,7 @@
 // was compared, and what stays open. Everything in the diagnosis may include this file; it includes nothing
 // of the diagnosis.
 //
-// Rates are in rad/s, times in s, frequencies in Hz, evidence in nats. Parameters of an effect are in the
+// Rates are in rad/s (of an accelerometer, what stands for them: accelerometer_as_gyro.hpp), times in s, frequencies in Hz, evidence in nats. Parameters of an effect are in the
 // effect's own units, which its names end in. Axes are 0, 1, 2.
 #pragma once
 
@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/noise/sensor_unit.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
@@ -188,6 +189,7 @@ struct Diagnosis {
     double band_probability = 0.95;
     std::uint64_t seed = 1;
     std::vector<std::size_t> axes;
+    SensorUnit unit = SensorUnit::dps();  // of the sensor, for readers
     std::vector<Pass> passes;  // empty: the recording was seen in one
 
     Verdict verdict = Verdict::none;

@@ -12,16 +12,11 @@
 #include "analysis/noise/clipping.hpp"
 #include "analysis/noise/converter_step.hpp"
 #include "analysis/noise/likelihood_fit.hpp"
+#include "analysis/noise/sensor_columns.hpp"
 #include "analysis/parallel/parallel_for.hpp"
 
 namespace gyrolog {
 namespace {
-
-bool is_of(SensorKind sensor, const Column& column) {
-    if (column.name.size() < 2) { return false; }
-    if (sensor == SensorKind::gyro) { return column.name[0] == 'g'; }
-    return column.name[0] == 'a' && column.name[1] >= 'x' && column.name[1] <= 'z';
-}
 
 SensorUnit unit_of(SensorKind sensor, const Column& column) {
     if (column.unit == "lsb") { return SensorUnit::counts_of(sensor); }
@@ -154,31 +149,11 @@ void warn_of_rate(const AnalysisReport& report, std::vector<std::string>& warnin
     warnings.push_back(text.str());
 }
 
-bool is_missing(const Column& column, std::size_t row) {
-    const auto* reals = std::get_if<std::vector<double>>(&column.data);
-    return reals != nullptr && std::isnan((*reals)[row]);
-}
-
-// The rows in which the accelerometer has values; nothing where it has all.
-std::optional<Recording> with_accelerometer(const Recording& recording) {
-    std::vector<const Column*> columns;
-    for (const Column& column : recording.columns) {
-        if (is_of(SensorKind::accelerometer, column) && !column.is_counts()) { columns.push_back(&column); }
-    }
-    const auto is_complete = [&](std::size_t row) {
-        return std::ranges::none_of(columns, [&](const Column* c) { return is_missing(*c, row); });
-    };
-    std::size_t row = 0;
-    while (row < recording.rows() && is_complete(row)) { ++row; }
-    if (row == recording.rows()) { return std::nullopt; }
-    return rows_of(recording, segments_where(recording.segments, is_complete));
-}
-
 // The accelerometer's rows, where they are not the recording's, go to `complete`.
 const Recording* recording_of(SensorKind sensor, const Recording& recording,
                               std::optional<Recording>& complete, AnalysisReport& report) {
     if (sensor == SensorKind::gyro) { return &recording; }
-    complete = with_accelerometer(recording);
+    complete = rows_with_accelerometer(recording);
     if (!complete) { return &recording; }
     report.warnings.push_back("accelerometer: " + std::to_string(recording.rows() - complete->rows()) +
                               " of the rows have no value of it and are missing to it");

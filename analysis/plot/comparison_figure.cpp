@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/noise/noise_model.hpp"
 #include "analysis/plot/number_text.hpp"
 
 namespace gyrolog {
@@ -16,19 +15,13 @@ constexpr int panel_row_px = 350;
 constexpr Colour recording_colour = colours::blue;
 constexpr Colour other_colour = colours::orange;
 
-const char* const unit = "°/s";
-double on_paper(double rate_rad_s) { return rate_rad_s * deg_per_rad; }
-
-std::vector<double> on_paper(std::vector<double> rates_rad_s) {
-    for (double& rate : rates_rad_s) { rate = on_paper(rate); }
-    return rates_rad_s;
-}
-
 class ComparedAxisPanels {
 public:
     ComparedAxisPanels(const Comparison& comparison, const AxisComparison& axis)
         : comparison_(comparison),
           axis_(axis),
+          unit_(comparison.unit.sensor == SensorKind::gyro ? "°/s" : comparison.unit.name),
+          quantity_(comparison.unit.sensor == SensorKind::gyro ? "rate" : "specific force"),
           is_first_(&axis == comparison.axes.data()),
           is_first_outside_(&axis == std::find_if(comparison.axes.data(), &axis + 1, has_outside)) {}
 
@@ -40,14 +33,21 @@ public:
                                        axis_.axis + (simulated ? ": one simulation" : ": the other")));
         figure.panels.push_back(histograms());
         figure.panels.push_back(curves(axis_.allan, "Allan deviation", "averaging time τ (s)",
-                                       std::string("σ(τ) (") + unit + ")"));
+                                       "σ(τ) (" + unit_ + ")"));
         if (is_first_) { add_legend(figure.panels.back()); }
         figure.panels.push_back(curves(axis_.spectrum, "spectrum (root of the density)", "frequency (Hz)",
-                                       std::string("√S ((") + unit + ")/√Hz)"));
+                                       "√S ((" + unit_ + ")/√Hz)"));
         figure.panels.push_back(ratios());
     }
 
 private:
+    double on_paper(double value) const { return value * comparison_.unit.per_column_unit; }
+
+    std::vector<double> on_paper(std::vector<double> values) const {
+        for (double& value : values) { value = on_paper(value); }
+        return values;
+    }
+
     static bool has_outside(const AxisComparison& axis) { return axis.allan.points_outside() > 0; }
 
     // The legend's word for the other curve, and what its band is.
@@ -64,7 +64,7 @@ private:
         const double time_unit_s = longest_s > 7200.0 ? 3600.0 : 1.0;
         panel.caption = caption + ", means of " + rounded_number(averages.block_s) + " s";
         panel.x = {time_unit_s > 1.0 ? "time (h)" : "time (s)", ScaleKind::linear, {}};
-        panel.y = {std::string("rate − mean (") + unit + ")", ScaleKind::linear, common_range()};
+        panel.y = {quantity_ + " − mean (" + unit_ + ")", ScaleKind::linear, common_range()};
         Curve curve;
         for (std::size_t block = 0; block < averages.rate.size(); ++block) {
             curve.x.push_back(averages.middle_s(block) / time_unit_s);
@@ -99,8 +99,8 @@ private:
     Panel histograms() const {
         Panel panel;
         panel.caption = axis_.axis + ": probability density";
-        panel.x = {std::string("rate − mean (") + unit + ")", ScaleKind::linear, {}};
-        panel.y = {std::string("1/(") + unit + ")", ScaleKind::logarithmic, {}};
+        panel.x = {quantity_ + " − mean (" + unit_ + ")", ScaleKind::linear, {}};
+        panel.y = {"1/(" + unit_ + ")", ScaleKind::logarithmic, {}};
         panel.curves.push_back(distribution(axis_.other_histogram, other_colour));
         panel.curves.back().stroke.width_px = 3.5;
         panel.curves.push_back(distribution(axis_.recording_histogram, recording_colour));
@@ -192,6 +192,8 @@ private:
 
     const Comparison& comparison_;
     const AxisComparison& axis_;
+    std::string unit_;
+    std::string quantity_;
     bool is_first_;
     bool is_first_outside_;  // of those with points outside
 };

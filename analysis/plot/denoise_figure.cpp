@@ -120,7 +120,7 @@ private:
     Panel at_rest() const {
         Panel panel;
         panel.x = {"time (s)", ScaleKind::linear, {}};
-        panel.y = {"rate (" + figure_.unit + ")", ScaleKind::linear, {}};
+        panel.y = {figure_.quantity + " (" + figure_.unit + ")", ScaleKind::linear, {}};
         panel.caption = caption(one_unit() + " and what came out, at rest");
         const double length_s = figure_.still.to_s - figure_.still.from_s;
         if (!(length_s > 0.0)) { return panel; }
@@ -139,7 +139,7 @@ private:
         panel.caption = caption("less the reference, around its largest rate");
         const Column* reference = figure_.recording.find("ref_" + axis_.knowledge.axis);
         if (reference == nullptr || !axis_.unit_motion) {
-            panel.y.title = "rate (" + figure_.unit + ")";
+            panel.y.title = figure_.quantity + " (" + figure_.unit + ")";
             panel.caption = caption("the beginning: filters that know nothing yet");
             add_signals(panel, 0.0, shown_at_start_s, [](std::size_t) { return 0.0; });
             return panel;

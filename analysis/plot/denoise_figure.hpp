@@ -19,6 +19,7 @@ struct DenoiseFigure {
     std::vector<std::string> facts;
     std::string unit = "°/s";
     double per_column_unit = 1.0;
+    std::string quantity = "rate";  // that the unit is of
     int width_px = 1800;
 };
 

@@ -15,6 +15,7 @@
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/formats/analysis_json.hpp"
 #include "host/formats/analysis_text.hpp"
 #include "host/formats/model_json.hpp"
@@ -37,8 +38,7 @@ std::string what_lacks(const AnalysisRequest& request) {
         case Sensors::gyro:
             return "there is no angular rate to analyse";
         case Sensors::accelerometer:
-            return "there is no accelerometer in it: a capture has one if its board sends it, and text if it "
-                   "has columns such as ax_g, ay_g, az_g (or _m_s2, _lsb)";
+            return no_accelerometer_text();
         case Sensors::all:
             break;
     }
@@ -94,7 +94,7 @@ void write_figures(ResultOutput& results, const AnalysisReport& report, const st
     std::string own = path;
     if (!report.axes.empty()) {
         if (!path.ends_with(ending)) { return; }  // a pipe takes one figure
-        own.insert(path.size() - ending.size(), ".accelerometer");
+        own = path_of_accelerometer(path);
     }
     results.file(own, [&] { return write(SensorKind::accelerometer, own); });
 }

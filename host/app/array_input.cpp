@@ -7,6 +7,7 @@
 
 #include "analysis/denoise/array_columns.hpp"
 #include "host/app/recording_input.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/decode/stream_decoder.hpp"
 #include "host/session/open_source.hpp"
 #include "host/transport/source_uri.hpp"
@@ -110,12 +111,19 @@ Result<Recording> read_array(const ArrayInput& input) {
                              "'" + path + "' is an array of its own; give it alone, with boards=N"};
             }
             GYROLOG_TRY(recordings, simulated_boards(path, input.simulated_s));
+            for (TimedRecording& timed : recordings) {
+                GYROLOG_TRY(timed.recording,
+                            recording_of_sensor(std::move(timed.recording), input.sensor, path));
+            }
             aligned.align_starts = true;
             break;
         }
         RecordingInput file{path, input.rate_hz, input.lsb_dps};
         file.text = input.text;
+        file.lsb_g = input.lsb_g;
+        file.sensor = input.sensor;
         GYROLOG_TRY(TimedRecording timed, read_timed_recording(file));
+        GYROLOG_TRY(timed.recording, recording_of_sensor(std::move(timed.recording), input.sensor, path));
         recordings.push_back(std::move(timed));
     }
     if (recordings.size() == 1) { return std::move(recordings.front().recording); }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/noise/sensor_unit.hpp"
 #include "analysis/recording/recording.hpp"
 #include "host/app/text_options.hpp"
 #include "host/base/result.hpp"
@@ -16,6 +17,8 @@ struct ArrayInput {
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
     TextChoice text{};
+    std::optional<double> lsb_g{};
+    SensorKind sensor = SensorKind::gyro;  // the accelerometer: as accelerometer_as_gyro() has it
     double simulated_s = 60.0;
     // Several files: by their first samples instead of by their clocks (device time on the host's clock of
     // captures, time stamps of text).

@@ -106,7 +106,7 @@ Action setup_analyze(CLI::App& app) {
         ->type_name("HZ")
         ->check(sampling_rate());
     app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
-    app.add_option("--lsb-g", request->lsb_g, "Scale of accelerometer columns that are counts (_lsb)")
+    app.add_option("--lsb-g", request->lsb_g, lsb_g_help)
         ->type_name("G")
         ->check(positive_number());
     add_text_options(app, request->text);

@@ -10,6 +10,7 @@
 
 #include "analysis/compare/comparison.hpp"
 #include "analysis/plot/comparison_figure.hpp"
+#include "analysis/simulate/accelerometer_as_gyro.hpp"
 #include "analysis/simulate/known_motion.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/app/command.hpp"
@@ -20,6 +21,7 @@
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/base/counted.hpp"
 #include "host/base/file_output.hpp"
 #include "host/formats/comparison_json.hpp"
@@ -37,16 +39,25 @@ struct CompareRequest {
     std::string duration;  // of the recording's beginning; empty: all
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
+    std::optional<double> lsb_g;
+    std::string sensor = "gyro";
     TextChoice text{};
     PartChoice part;  // of the recording, not of another one
     ModelComparisonOptions simulations;
 };
+
+SensorKind sensor_of(const CompareRequest& request) {
+    return sensors_named(request.sensor) == Sensors::accelerometer ? SensorKind::accelerometer
+                                                                   : SensorKind::gyro;
+}
 
 Result<Recording> comparable_recording(const CompareRequest& request, const std::string& path,
                                        const PartChoice& part) {
     RecordingInput input{path, request.rate_hz, request.lsb_dps};
     input.text = request.text;
     input.part = part;
+    input.lsb_g = request.lsb_g;
+    input.sensor = sensor_of(request);
     GYROLOG_TRY(Recording recording, read_recording(input));
     if (!request.duration.empty() && !recording.segments.empty()) {
         GYROLOG_TRY(const double duration_s, parse_duration_s(request.duration));
@@ -77,6 +88,7 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
     if (const auto refusal = simulation_refusal(file.model)) {
         return Error{ErrorCode::failed, "model '" + request.other_path + "': " + *refusal};
     }
+    GYROLOG_TRY(file, model_of_sensor(std::move(file), sensor_of(request), request.other_path));
     GYROLOG_TRY(Recording recording, comparable_recording(request, request.recording_path, request.part));
     const std::size_t of_reading = recording.warnings.size();
     recording = with_known_motion(std::move(recording));
@@ -150,8 +162,11 @@ ExitCode compare_one(Console& console, const CompareRequest& request) {
         return report_error(console, "compare", fine.error());
     }
     const bool is_model = std::filesystem::path(request.other_path).extension() == ".json";
-    const Result<Comparison> comparison = is_model ? with_model(console, request) : with_recording(request);
+    Result<Comparison> comparison = is_model ? with_model(console, request) : with_recording(request);
     if (!comparison.ok()) { return report_error(console, "compare", comparison.error()); }
+    if (sensor_of(request) == SensorKind::accelerometer) {
+        comparison->unit = unit_of_accelerometer_as_gyro();
+    }
     const Status written = write_results(console, request, *comparison);
     return written.ok() ? ExitCode::ok : report_error(console, "compare", written.error());
 }
@@ -209,6 +224,11 @@ Action setup_compare(CLI::App& app) {
     add_part_options(app, request->part);
     add_text_options(app, request->text);
     app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
+    app.add_option("--lsb-g", request->lsb_g, lsb_g_help)->type_name("G")->check(positive_number());
+    app.add_option("--sensor", request->sensor, "Which sensor: gyro, or accelerometer (at rest)")
+        ->check(CLI::IsMember({"gyro", "accelerometer"}))
+        ->type_name("SENSOR")
+        ->capture_default_str();
     return [request, many](Console& console) { return compare(console, *request, *many); };
 }
 

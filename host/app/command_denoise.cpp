@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "analysis/plot/denoise_figure.hpp"
+#include "analysis/simulate/accelerometer_as_gyro.hpp"
 #include "host/app/array_input.hpp"
 #include "host/app/command.hpp"
 #include "host/app/denoise_choice.hpp"
@@ -16,6 +17,7 @@
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/base/file_output.hpp"
 #include "host/formats/denoise_json.hpp"
 #include "host/formats/denoise_text.hpp"
@@ -61,9 +63,14 @@ struct ShownUnit {
     std::string name = "dps";
     double per_column_unit = deg_per_rad;
     std::string on_figure = "°/s";
+    std::string quantity = "rate";
 };
 
-ShownUnit shown_unit(const Column& column) {
+ShownUnit shown_unit(const Column& column, SensorKind sensor) {
+    if (sensor == SensorKind::accelerometer) {
+        const SensorUnit unit = unit_of_accelerometer_as_gyro();
+        return {unit.name, unit.per_column_unit, unit.name, "specific force"};
+    }
     if (column.unit == "lsb") { return {"lsb", 1.0, "lsb"}; }
     if (column.source_unit == "rad_s") { return {"rad_s", 1.0, "rad/s"}; }
     return {};
@@ -93,14 +100,17 @@ public:
     Status write_recording() const {
         CsvWriteOptions options;
         for (const AxisDenoising& axis : report_.axes) {
-            options.resolved.push_back("g" + axis.knowledge.axis);
+            options.resolved.push_back(prefix() + axis.knowledge.axis);
         }
-        return write_recording_csv(denoised_recording(recording_, report_.axes), request_.output, options);
+        Recording denoised = denoised_recording(recording_, report_.axes);
+        if (sensor() == SensorKind::accelerometer) { denoised = accelerometer_of_gyro(std::move(denoised)); }
+        return write_recording_csv(denoised, request_.output, options);
     }
 
     Status write_plot() const {
-        const ShownUnit unit = shown_unit(*array_axes(recording_).front().units.front());
+        const ShownUnit unit = shown_unit(*array_axes(recording_).front().units.front(), sensor());
         DenoiseFigure figure{recording_, report_.axes, still_, {}, unit.on_figure, unit.per_column_unit};
+        figure.quantity = unit.quantity;
         figure.facts = {fmt::format("{:.6g} Hz", recording_.rate_hz), format_duration(report_.duration_s),
                         fmt::format("{} units", array_axes(recording_).front().units.size()),
                         design_text(report_.axes.front().signals.front().design)};
@@ -112,6 +122,10 @@ public:
     }
 
 private:
+    SensorKind sensor() const { return request_.input.sensor; }
+    // Of the names of its columns.
+    std::string prefix() const { return sensor() == SensorKind::gyro ? "g" : "a"; }
+
     Result<Recording> read_input() const {
         ArrayInput input = request_.input;
         input.align_starts = request_.align == "start";
@@ -188,6 +202,8 @@ private:
     Result<Recording> calibration_recording() const {
         RecordingInput input{request_.calibration, request_.input.rate_hz, request_.input.lsb_dps};
         input.text = request_.input.text;
+        input.lsb_g = request_.input.lsb_g;
+        input.sensor = sensor();
         GYROLOG_TRY(Recording other, read_recording(input));
         const std::vector<ArrayAxis> here = array_axes(recording_);
         const std::vector<ArrayAxis> there = array_axes(other);
@@ -208,7 +224,7 @@ private:
         if (!request_.models.empty() && request_.calibration.empty() && !(still_.to_s > still_.from_s) &&
             is_single()) {
             std::vector<AxisKnowledge> known = know_units(recording_, saturation);
-            GYROLOG_CHECK(use_model_files(known, request_.models, recording_.rate_hz));
+            GYROLOG_CHECK(use_model_files(known, request_.models, recording_.rate_hz, sensor()));
             report_.learned_from = "of " + request_.models.front();
             return known;
         }
@@ -235,7 +251,8 @@ private:
             for (const UnitKnowledge& unit : axis.units) {
                 if (unit.variance > 0.0) { continue; }
                 report_.warnings.push_back(fmt::format(
-                    "g{}{} does not change at rest: its noise is not known", axis.axis, unit.name));
+                    "{}{}{} does not change at rest: its noise is not known", prefix(), axis.axis,
+                    unit.name));
             }
         }
         GYROLOG_CHECK(take_models(knowledge));
@@ -250,7 +267,7 @@ private:
 
     Status take_models(std::vector<AxisKnowledge>& knowledge) {
         if (request_.models.empty()) { return {}; }
-        GYROLOG_CHECK(use_model_files(knowledge, request_.models, recording_.rate_hz));
+        GYROLOG_CHECK(use_model_files(knowledge, request_.models, recording_.rate_hz, sensor()));
         report_.learned_from = "of " + fmt::format("{}", fmt::join(request_.models, ", ")) +
                                ", correlation " + report_.learned_from;
         return {};
@@ -269,7 +286,7 @@ private:
         report_.still = still_;
         report_.warnings.insert(report_.warnings.begin(), recording_.warnings.begin(),
                                 recording_.warnings.end());
-        const ShownUnit unit = shown_unit(*array_axes(recording_).front().units.front());
+        const ShownUnit unit = shown_unit(*array_axes(recording_).front().units.front(), sensor());
         report_.unit = unit.name;
         report_.per_column_unit = unit.per_column_unit;
         for (const AxisDenoising& axis : report_.axes) { warn_of(axis); }
@@ -284,7 +301,7 @@ private:
             }
             if (left_out == 0) { continue; }
             report_.warnings.push_back(
-                fmt::format("g{}{} is left out at {} of {} samples (below: why and when)",
+                fmt::format("{}{}{} is left out at {} of {} samples (below: why and when)", prefix(),
                             axis.knowledge.axis, unit.name, left_out, recording_.rows()));
         }
     }
@@ -408,14 +425,25 @@ void add_input_options(CLI::App& app, Request& request) {
     app.add_option("--lsb-dps", request.input.lsb_dps, lsb_dps_help)
         ->type_name("DPS")
         ->check(positive_number());
+    app.add_option("--lsb-g", request.input.lsb_g, lsb_g_help)->type_name("G")->check(positive_number());
+    app.add_option_function<std::string>(
+           "--sensor",
+           [&request](const std::string& name) {
+               request.input.sensor =
+                   name == "gyro" ? SensorKind::gyro : SensorKind::accelerometer;
+           },
+           "Which sensor: gyro, or accelerometer")
+        ->check(CLI::IsMember({"gyro", "accelerometer"}))
+        ->type_name("SENSOR")
+        ->excludes(app.get_option("--saturation"));
 }
 
 }  // namespace
 
 Action setup_denoise(CLI::App& app) {
     auto request = std::make_shared<Request>();
-    add_input_options(app, *request);
     add_filter_options(app, *request);
+    add_input_options(app, *request);
     app.add_option("-o,--output", request->output,
                    "The denoised recording: gx gy gz, with time stamps and other columns as they were (.csv, "
                    ".gz, .xz, .zst)")

@@ -7,6 +7,7 @@
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
 #include "host/app/recording_diagnosis_run.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/app/simulation_count.hpp"
 
 namespace gyrolog {
@@ -20,6 +21,7 @@ struct DiagnoseOptions {
     ManyRecordings many;
     std::string curve_path;
     bool is_plain = false;
+    std::string sensor = "gyro";
 };
 
 ExitCode diagnose_recordings(Console& console, const DiagnoseOptions& options) {
@@ -30,6 +32,7 @@ ExitCode diagnose_recordings(Console& console, const DiagnoseOptions& options) {
                                 {"--model-out", request.model_out_path}};
     const auto run = [&](Console& own, const std::string& recording, bool as_line) {
         RecordingDiagnosisRequest one = request;
+        one.sensors = sensors_named(options.sensor);
         one.recording_path = recording;
         if (as_line) { one.json_path = "-"; }
         return diagnose_recording_to_files(own, one);
@@ -113,10 +116,16 @@ Action setup_diagnose(CLI::App& app) {
         ->check(sampling_rate());
     add_text_options(app, request.text);
     app.add_option("--lsb-dps", request.lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
+    app.add_option("--lsb-g", request.lsb_g, lsb_g_help)->type_name("G")->check(positive_number());
+    app.add_option("--sensor", options->sensor,
+                   "Which sensor: gyro, accelerometer (at rest), or all that the model has")
+        ->check(CLI::IsMember({"gyro", "accelerometer", "all"}))
+        ->type_name("SENSOR")
+        ->capture_default_str();
     add_part_options(app, request.part);
     for (const char* of_recordings : {"--auto", "--unnamed", "--holdout", "--average", "--simulations",
                                       "--seed", "--threads", "--lsb-dps", "--rate", "--columns", "--unit",
-                                      "--acc-unit", "--from", "--to", "--still", "--jsonl"}) {
+                                      "--acc-unit", "--lsb-g", "--sensor", "--from", "--to", "--still", "--jsonl"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "host/app/sensor_choice.hpp"
 #include "host/formats/model_json.hpp"
 
 namespace gyrolog {
@@ -48,10 +49,11 @@ Result<Recording> rows_at_rest(const Recording& recording, const TimeSpan& still
 }
 
 Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<std::string>& paths,
-                       double rate_hz) {
+                       double rate_hz, SensorKind sensor) {
     std::vector<SensorModel> models;
     for (const std::string& path : paths) {
         GYROLOG_TRY(ModelFile file, read_model_file(path, 1));
+        GYROLOG_TRY(file, model_of_sensor(std::move(file), sensor, path));
         models.push_back(std::move(file.model));
     }
     std::vector<std::vector<NoiseModel>> given;

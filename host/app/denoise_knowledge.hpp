@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/denoise/denoise.hpp"
+#include "analysis/noise/sensor_unit.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/recording/still_part.hpp"
 #include "host/base/result.hpp"
@@ -17,8 +18,9 @@ TimeSpan still_part_of(const Recording& recording);
 // The gyro columns of that part, where all units have samples. Error failed when it has too few of them.
 Result<Recording> rows_at_rest(const Recording& recording, const TimeSpan& still);
 
-// Puts the models of these files in place of what is known: one for all units, or one for each.
+// Puts the models of these files in place of what is known: one for all units, or one for each. An
+// accelerometer is known as accelerometer_as_gyro() has it.
 Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<std::string>& paths,
-                       double rate_hz);
+                       double rate_hz, SensorKind sensor);
 
 }  // namespace gyrolog

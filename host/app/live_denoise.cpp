@@ -42,7 +42,7 @@ Recording three_axes(double rate_hz) {
 // Shared by what is learned at rest and what is known from a file.
 Result<std::vector<AxisKnowledge>> knowledge_of_model(const Recording& recording, const std::string& path) {
     std::vector<AxisKnowledge> knowledge = know_units(recording, std::nullopt);
-    GYROLOG_CHECK(use_model_files(knowledge, {path}, recording.rate_hz));
+    GYROLOG_CHECK(use_model_files(knowledge, {path}, recording.rate_hz, SensorKind::gyro));
     return knowledge;
 }
 

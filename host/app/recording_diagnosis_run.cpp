@@ -10,10 +10,12 @@
 
 #include <fmt/format.h>
 
+#include "analysis/diagnose/accelerometer_diagnosis.hpp"
 #include "analysis/diagnose/diagnosis.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "analysis/diagnose/multiscale/means_model.hpp"
+#include "analysis/simulate/accelerometer_as_gyro.hpp"
 #include "analysis/simulate/plain_model.hpp"
 #include "host/app/command.hpp"
 #include "host/app/diagnosis_input.hpp"
@@ -21,6 +23,7 @@
 #include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/result_output.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/formats/diagnosis_json.hpp"
 #include "host/formats/diagnosis_text.hpp"
 #include "host/formats/effect_words.hpp"
@@ -77,7 +80,9 @@ DiagnosisOptions options_of(Console& console, const RecordingDiagnosisRequest& r
 }
 
 // Of the recording's own: what a simulator has that knows of white noise and a bias only.
-Result<ModelFile> read_plain_model(const Recording& recording, const std::string& path) {
+Result<ModelFile> read_plain_model(const Recording& recording, SensorKind sensor, const std::string& path) {
+    const SensorUnit unit =
+        sensor == SensorKind::gyro ? SensorUnit::dps() : unit_of_accelerometer_as_gyro();
     std::optional<PlainModel> plain = plain_model(recording);
     if (!plain) {
         return Error{ErrorCode::failed,
@@ -90,47 +95,85 @@ Result<ModelFile> read_plain_model(const Recording& recording, const std::string
     for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
         if (recording.find(std::string("g") + axis_names[axis]) == nullptr) { continue; }
         noise.push_back(fmt::format(
-            "{:.3g} ({})", plain->model.axes[axis].noise.N_rad_per_sqrt_s * deg_per_rad, axis_names[axis]));
+            "{:.3g} ({})", plain->model.axes[axis].noise.N_rad_per_sqrt_s * unit.per_column_unit,
+            axis_names[axis]));
     }
     file.notes.push_back(
         fmt::format("the model is white noise and a bias, taken from {:.6g} s to {:.6g} s of the recording: "
-                    "N {} dps/sqrt(Hz), read off the Allan deviation at {:.6g} s",
-                    plain->still.from_s, plain->still.to_s, fmt::join(noise, ", "), plain->tau_s));
+                    "N {} {}/sqrt(Hz), read off the Allan deviation at {:.6g} s",
+                    plain->still.from_s, plain->still.to_s, fmt::join(noise, ", "), unit.name,
+                    plain->tau_s));
     file.model = std::move(plain->model);
     return file;
 }
 
-Status write_results(Console& console, const RecordingDiagnosisRequest& request, const Diagnosis& diagnosis) {
+// With the unnamed forms where they are wanted.
+SensorModel model_of(const RecordingDiagnosisRequest& request, const Diagnosis& diagnosis) {
+    return request.with_unnamed ? with_unnamed(diagnosis.corrected, diagnosis) : diagnosis.corrected;
+}
+
+// Of one sensor, or of the gyro and then the accelerometer.
+using Diagnoses = std::vector<Diagnosis>;
+
+SensorModel model_of(const RecordingDiagnosisRequest& request, const Diagnoses& diagnoses) {
+    SensorModel model = model_of(request, diagnoses.front());
+    if (diagnoses.size() > 1) { model.accelerometer = model_of(request, diagnoses.back()).accelerometer; }
+    return model;
+}
+
+std::string text_of(const Diagnoses& diagnoses) {
+    return diagnoses.size() == 1 ? diagnosis_text(diagnoses.front())
+                                 : diagnosis_text(diagnoses.front(), diagnoses.back());
+}
+
+std::string json_of(const Diagnoses& diagnoses) {
+    return diagnoses.size() == 1 ? diagnosis_json(diagnoses.front())
+                                 : diagnosis_json(diagnoses.front(), diagnoses.back());
+}
+
+Status write_results(Console& console, const RecordingDiagnosisRequest& request, const Diagnoses& diagnoses) {
     ResultOutput results(console);
     if (request.json_path != "-") {
-        results.show(diagnosis_text(diagnosis));
+        results.show(text_of(diagnoses));
     } else {
-        tell_warnings(console, diagnosis.warnings);
+        for (const Diagnosis& diagnosis : diagnoses) { tell_warnings(console, diagnosis.warnings); }
     }
-    results.text(request.json_path, [&] { return diagnosis_json(diagnosis); });
-    results.file(request.plot_path, [&] {
-        return write_diagnosis_plot(diagnosis, "recording", diagnosis_facts(diagnosis), request.plot_path);
-    });
-    results.text(request.model_out_path, [&] {
-        return format_model(request.with_unnamed ? with_unnamed(diagnosis.corrected, diagnosis)
-                                                 : diagnosis.corrected);
-    });
+    results.text(request.json_path, [&] { return json_of(diagnoses); });
+    for (const Diagnosis& diagnosis : diagnoses) {
+        if (request.plot_path.empty()) { break; }
+        const bool is_second = &diagnosis != &diagnoses.front();
+        const std::string path = is_second ? path_of_accelerometer(request.plot_path) : request.plot_path;
+        results.file(path, [&, path] {
+            return write_diagnosis_plot(diagnosis, "recording", diagnosis_facts(diagnosis), path);
+        });
+    }
+    results.text(request.model_out_path, [&] { return format_model(model_of(request, diagnoses)); });
     return results.finish();
 }
 
 }  // namespace
 
-Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request) {
+Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request,
+                                     SensorKind sensor) {
     const bool is_plain = request.model_path.empty();
     ModelFile file;
-    if (!is_plain) { GYROLOG_TRY(file, read_single_model(request.model_path)); }
+    SensorModel whole;  // what a plain model of an accelerometer is put in has a gyro of which nothing is known
+    whole.full_scale_rad_s = whole.saturation_rad_s = no_range_rad_s;
+    if (!is_plain) {
+        GYROLOG_TRY(file, read_single_model(request.model_path));
+        whole = file.model;
+        GYROLOG_TRY(file, model_of_sensor(std::move(file), sensor, request.model_path));
+    }
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
+    input.lsb_g = request.lsb_g;
+    input.sensor = sensor;
     input.samples_per_row = request.average;
     input.part = request.part;
     input.text = request.text;
     GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
-    if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, request.recording_path)); }
+    if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, sensor, request.recording_path)); }
     complete_from(*read.samples, file);
+    whole.rate_hz = file.model.rate_hz;
     DiagnosisInput second;
     if (!request.holdout_path.empty()) {
         input.path = request.holdout_path;
@@ -149,7 +192,8 @@ Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisR
     append_warnings(diagnosis->warnings, read);
     append_new(diagnosis->warnings, file.notes);
     append_warnings(diagnosis->warnings, second);
-    return *std::move(diagnosis);
+    return sensor == SensorKind::gyro ? *std::move(diagnosis)
+                                      : diagnosis_of_accelerometer(*std::move(diagnosis), whole);
 }
 
 std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis) {
@@ -172,9 +216,14 @@ ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisR
                                  {"--plot", request.plot_path},
                                  {"--model-out", request.model_out_path}};
     if (const Status fine = check_output_paths(read, written); !fine.ok()) { return fail(fine.error()); }
-    const Result<Diagnosis> diagnosis = diagnose_recording(console, request);
-    if (!diagnosis.ok()) { return fail(diagnosis.error()); }
-    const Status done = write_results(console, request, *diagnosis);
+    Diagnoses diagnoses;
+    for (const SensorKind sensor : {SensorKind::gyro, SensorKind::accelerometer}) {
+        if (!includes(request.sensors, sensor)) { continue; }
+        Result<Diagnosis> diagnosis = diagnose_recording(console, request, sensor);
+        if (!diagnosis.ok()) { return fail(diagnosis.error()); }
+        diagnoses.push_back(*std::move(diagnosis));
+    }
+    const Status done = write_results(console, request, diagnoses);
     return done.ok() ? ExitCode::ok : fail(done.error());
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/diagnose/report.hpp"
+#include "analysis/noise/sensor_unit.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 #include "host/app/part_choice.hpp"
@@ -26,6 +27,8 @@ struct RecordingDiagnosisRequest {
     bool with_unnamed = false;      // and what was modelled without a name
     std::optional<double> rate_hz;  // in place of the one in the file
     std::optional<double> lsb_dps;
+    std::optional<double> lsb_g{};
+    Sensors sensors = Sensors::gyro;
     PartChoice part{};  // of the recording, not of the second one
     TextChoice text{};
     std::size_t average = 1;  // samples of which means are looked at
@@ -34,8 +37,9 @@ struct RecordingDiagnosisRequest {
     unsigned threads = 0;  // 0: all processors
 };
 
-// Reads, diagnoses and shows the progress; writes nothing.
-Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request);
+// Reads, diagnoses one sensor of those that are wanted and shows the progress; writes nothing.
+Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request,
+                                     SensorKind sensor = SensorKind::gyro);
 
 // How it was looked at, and the causes in words: below the title of the figure.
 std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis);

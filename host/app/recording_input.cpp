@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/noise/noise_model.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/base/counted.hpp"
 #include "host/formats/recording_file.hpp"
 #include "host/session/load_capture.hpp"
@@ -101,7 +102,7 @@ Status check_scale(Recording& recording, double lsb_dps, const std::string& path
 
 Result<Recording> read_recording(const RecordingInput& input) {
     GYROLOG_TRY(TimedRecording timed, read_timed_recording(input));
-    return std::move(timed.recording);
+    return recording_of_sensor(std::move(timed.recording), input.sensor, input.path);
 }
 
 namespace {
@@ -117,7 +118,7 @@ Result<TimedRecording> read_whole(const RecordingInput& input) {
     options.samples_per_row = input.samples_per_row;
     options.lsb_g = input.lsb_g;
     options.with_accelerometer = input.with_accelerometer;
-    options.needs_gyro = input.needs_gyro;
+    options.needs_gyro = input.needs_gyro && input.sensor == SensorKind::gyro;
     options.choice = input.text;
     GYROLOG_TRY(Recording recording, read_recording_file(input.path, options));
     if (input.lsb_dps) { GYROLOG_CHECK(check_scale(recording, *input.lsb_dps, input.path)); }
@@ -141,7 +142,8 @@ Result<RecordingInput> with_known_part(RecordingInput input) {
     RecordingInput all = input;
     all.part = {};
     all.samples_most = RecordingInput{}.samples_most;
-    GYROLOG_TRY(const Recording recording, read_recording(all));
+    GYROLOG_TRY(const TimedRecording timed, read_timed_recording(all));
+    const Recording& recording = timed.recording;
     GYROLOG_TRY(const TimeSpan span, chosen_span(recording, input.part, input.path));
     input.part = {span.from_s, span.to_s, false};
     return input;

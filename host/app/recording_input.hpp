@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "analysis/noise/sensor_unit.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/recording/stage_observer.hpp"
 #include "host/app/part_choice.hpp"
@@ -29,10 +30,12 @@ struct RecordingInput {
     bool needs_gyro = true;          // else text with an accelerometer alone is a recording, too
     TextChoice text{};               // what the columns of text are where their names do not say it
     PartChoice part{};
+    // The accelerometer: read_recording() gives it as accelerometer_as_gyro() has it.
+    SensorKind sensor = SensorKind::gyro;
 };
 
-// Errors: those of load_capture(), read_recording_file() and take_part(), and invalid_argument where counts,
-// scaled by lsb_dps, are rates that no gyro has.
+// Errors: those of load_capture(), read_recording_file(), take_part() and recording_of_sensor(), and
+// invalid_argument where counts, scaled by lsb_dps, are rates that no gyro has.
 Result<Recording> read_recording(const RecordingInput& input);
 
 // The same with the times of its part at rest, for a file that is read more than once.

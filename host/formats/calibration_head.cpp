@@ -13,7 +13,7 @@
 namespace gyrolog {
 namespace {
 
-std::string commented(std::string_view sign, std::string_view text) {
+std::string comment_of(std::string_view sign, std::string_view text) {
     const std::string wrapped = wrapped_text("", text);
     std::string lines;
     for (std::size_t begin = 0; begin < wrapped.size();) {
@@ -43,11 +43,11 @@ std::string calibration_head(const Calibration& calibration, std::string_view si
     for (const std::string& name : calibration.recordings) {
         names += (names.empty() ? "" : ", ") + printable(name);
     }
-    std::string head = commented(sign, "Calibration of " + names + ", by " + program_name() + ".");
+    std::string head = comment_of(sign, "Calibration of " + names + ", by " + program_name() + ".");
     head +=
-        commented(sign, "In the axes of the recording: a driver that turns or swaps axes must do so before.");
+        comment_of(sign, "In the axes of the recording: a driver that turns or swaps axes must do so before.");
     for (const Undetermined& one : calibration.undetermined) {
-        head += commented(sign, "Not determined: " + one.what + ".");
+        head += comment_of(sign, "Not determined: " + one.what + ".");
     }
     return head;
 }
@@ -56,14 +56,14 @@ std::string loss_without_matrix(const Calibration& calibration, std::string_view
     std::string loss;
     if (const auto& fitted = calibration.accelerometer.calibration; fitted && fitted->has_misalignment) {
         loss +=
-            commented(sign, fmt::format("Without the accelerometer's misalignment at most {:.3g} % of the "
+            comment_of(sign, fmt::format("Without the accelerometer's misalignment at most {:.3g} % of the "
                                         "force are wrong.",
                                         100.0 * largest_left(fitted->M, axis_scales(fitted->M))));
     }
     const auto& gyro = calibration.gyro.calibration;
     if (gyro && std::ranges::count(gyro->has_scale, true) > 0) {
         loss +=
-            commented(sign, fmt::format("Without the gyro's scale and misalignment at most {:.3g} % of the "
+            comment_of(sign, fmt::format("Without the gyro's scale and misalignment at most {:.3g} % of the "
                                         "rate are wrong.",
                                         100.0 * largest_left(gyro->M, {1.0, 1.0, 1.0})));
     }

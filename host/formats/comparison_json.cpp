@@ -1,6 +1,5 @@
 #include "host/formats/comparison_json.hpp"
 
-#include "analysis/noise/noise_model.hpp"
 #include "host/formats/comparison_text.hpp"
 #include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
@@ -8,23 +7,23 @@
 namespace gyrolog {
 namespace {
 
-Json in_degrees(const std::vector<double>& rates_rad) {
+Json numbers_json(const std::vector<double>& values, double per_unit) {
     Json array = Json::array();
-    for (const double rate : rates_rad) { array.push_back(rate * deg_per_rad); }
+    for (const double value : values) { array.push_back(value * per_unit); }
     return array;
 }
 
-Json curve_json(const ComparedCurve& curve, const char* at) {
+Json curve_json(const ComparedCurve& curve, const char* at, double per_unit) {
     Json json;
     json[at] = curve.at;
-    json["recording"] = in_degrees(curve.recording);
+    json["recording"] = numbers_json(curve.recording, per_unit);
     if (!curve.recording_lo.empty()) {
-        json["recording_lo"] = in_degrees(curve.recording_lo);
-        json["recording_hi"] = in_degrees(curve.recording_hi);
+        json["recording_lo"] = numbers_json(curve.recording_lo, per_unit);
+        json["recording_hi"] = numbers_json(curve.recording_hi, per_unit);
     }
-    json["other"] = in_degrees(curve.other);
-    json["lo"] = in_degrees(curve.lo);
-    json["hi"] = in_degrees(curve.hi);
+    json["other"] = numbers_json(curve.other, per_unit);
+    json["lo"] = numbers_json(curve.lo, per_unit);
+    json["hi"] = numbers_json(curve.hi, per_unit);
     json["ratio_dB"] = Json::array();
     for (std::size_t i = 0; i < curve.at.size(); ++i) { json["ratio_dB"].push_back(curve.ratio_dB(i)); }
     json["outside"] = Json::array();
@@ -60,6 +59,7 @@ Json number_json(const ComparedNumber& number, double per_unit) {
 }  // namespace
 
 std::string comparison_json(const Comparison& comparison) {
+    const bool is_gyro = comparison.unit.sensor == SensorKind::gyro;
     Json json;
     json["schema"] = "gyrolog-compare/1";
     json["recording"] = comparison.recording_name;
@@ -74,13 +74,15 @@ std::string comparison_json(const Comparison& comparison) {
     json["duration_s"] = comparison.duration_s;
     json["samples"] = comparison.samples;
     json["less_reference"] = comparison.less_reference;
+    json["sensor"] = is_gyro ? "gyro" : "accelerometer";
     json["axes"] = Json::object();
+    const double per_unit = comparison.unit.per_column_unit;
     for (const AxisComparison& axis : comparison.axes) {
         Json& one = json["axes"][axis.axis];
         one["sentence"] = outcome_sentence(comparison, axis);
-        one["allan"] = curve_json(axis.allan, "tau_s");
-        one["spectrum"] = curve_json(axis.spectrum, "f_hz");
-        one["standard_deviation"] = number_json(axis.standard_deviation, deg_per_rad);
+        one["allan"] = curve_json(axis.allan, "tau_s", per_unit);
+        one["spectrum"] = curve_json(axis.spectrum, "f_hz", per_unit);
+        one["standard_deviation"] = number_json(axis.standard_deviation, per_unit);
         one["skewness"] = number_json(axis.skewness, 1.0);
         one["excess_kurtosis"] = number_json(axis.excess_kurtosis, 1.0);
     }

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/noise/noise_model.hpp"
 #include "host/formats/text_table.hpp"
 #include "host/formats/uncertain_number.hpp"
 
@@ -88,21 +87,21 @@ std::string distribution_text(const Comparison& comparison, const AxisComparison
     } else {
         heads.emplace_back("other");
     }
-    const std::array rows{number_row("  standard deviation", "dps", axis.standard_deviation, deg_per_rad),
+    const std::array rows{number_row("  standard deviation", comparison.unit.name.c_str(), axis.standard_deviation, comparison.unit.per_column_unit),
                           number_row("  skewness", "", axis.skewness, 1.0),
                           number_row("  excess kurtosis", "", axis.excess_kurtosis, 1.0)};
     return text_table(heads, rows);
 }
 
 // "the samples' excess kurtosis is 61, of simulations -0.016 to 0.019"
-std::string worst_number_text(const AxisComparison& axis, const ComparedNumber& number) {
+std::string worst_number_text(const SensorUnit& unit, const AxisComparison& axis, const ComparedNumber& number) {
     const bool is_rate = &number == &axis.standard_deviation;
     const char* shape = &number == &axis.skewness ? "skewness" : "excess kurtosis";
-    const double per_unit = is_rate ? deg_per_rad : 1.0;
+    const double per_unit = is_rate ? unit.per_column_unit : 1.0;
     return fmt::format("the samples' {} is {:.3g}{unit}, of simulations {:.2g} to {:.2g}{unit}",
                        is_rate ? "standard deviation" : shape, number.recording * per_unit,
                        number.lo.value_or(number.other) * per_unit,
-                       number.hi.value_or(number.other) * per_unit, fmt::arg("unit", is_rate ? " dps" : ""));
+                       number.hi.value_or(number.other) * per_unit, fmt::arg("unit", is_rate ? " " + unit.name : std::string()));
 }
 
 std::string heading_text(const Comparison& comparison) {
@@ -120,6 +119,7 @@ std::string heading_text(const Comparison& comparison) {
         text = fmt::format("{} against {}\n", comparison.recording_name, comparison.other_name);
         text += "outside: the 68.3 % intervals of the two do not meet\n";
     }
+    if (comparison.unit.sensor == SensorKind::accelerometer) { text += "of the accelerometer\n"; }
     if (comparison.less_reference) { text += "curves are of the gyro less the reference rate\n"; }
     return text;
 }
@@ -138,7 +138,7 @@ std::string outcome_sentence(const Comparison& comparison, const AxisComparison&
     std::string number;
     const ComparedNumber* worst = axis.worst_number();
     if (worst != nullptr && (worst != &axis.standard_deviation || curve.empty())) {
-        number = worst_number_text(axis, *worst);
+        number = worst_number_text(comparison.unit, axis, *worst);
     }
     if (!curve.empty() || !number.empty()) {
         return fmt::format("{}: {}{}{}", axis.axis, curve, curve.empty() || number.empty() ? "" : "; ",

@@ -21,16 +21,18 @@ namespace {
 std::string noise_refit_sentence(const Diagnosis& diagnosis) {
     if (diagnosis.noise_refits.empty()) { return {}; }
     std::vector<std::string> changes;
+    const double per_unit = diagnosis.unit.per_column_unit;
     for (const NoiseRefit& one : diagnosis.noise_refits) {
         changes.push_back(fmt::format("{} of {} {:.3g} ± {:.1g} instead of {:.3g}", one.coefficient,
-                                      axis_names.at(one.axis), one.fitted * deg_per_rad,
-                                      one.fitted_sd * deg_per_rad, one.stated * deg_per_rad));
+                                      axis_names.at(one.axis), one.fitted * per_unit,
+                                      one.fitted_sd * per_unit, one.stated * per_unit));
     }
     return fmt::format(
         "The model's noise held part of the causes, as that of a model does which was fitted to a recording "
-        "with the same effects; with the causes in the model it is {} (N in deg/s/√Hz, B in deg/s, K in "
-        "deg/s·√Hz).",
-        fmt::join(changes, ", "));
+        "with the same effects; with the causes in the model it is {0} (N in {1}/√Hz, B in {1}, K in "
+        "{1}·√Hz).",
+        fmt::join(changes, ", "),
+        diagnosis.unit.sensor == SensorKind::gyro ? "deg/s" : diagnosis.unit.name);
 }
 
 // Parameters that were not fitted stand with those that were: the entry needs both.

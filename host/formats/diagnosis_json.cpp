@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "analysis/diagnose/accelerometer_diagnosis.hpp"
 #include "host/formats/effect_words.hpp"
 #include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
@@ -143,14 +144,15 @@ Json domain_json(const GapDomain& domain) {
 }
 
 // In the model file's units.
-Json noise_refits_json(const std::vector<NoiseRefit>& noise_refits) {
+Json noise_refits_json(const Diagnosis& diagnosis) {
     Json json = Json::array();
-    for (const NoiseRefit& one : noise_refits) {
+    const double per_unit = diagnosis.unit.per_column_unit;
+    for (const NoiseRefit& one : diagnosis.noise_refits) {
         json.push_back({{"axis", axis_names.at(one.axis)},
                         {"coefficient", std::string(1, one.coefficient)},
-                        {"stated", one.stated * deg_per_rad},
-                        {"fitted", one.fitted * deg_per_rad},
-                        {"sd", one.fitted_sd * deg_per_rad}});
+                        {"stated", one.stated * per_unit},
+                        {"fitted", one.fitted * per_unit},
+                        {"sd", one.fitted_sd * per_unit}});
     }
     return json;
 }
@@ -196,16 +198,24 @@ std::string_view name_of(Sense sense) {
 
 std::string diagnosis_json(const Diagnosis& diagnosis) { return json_text(diagnosis_object(diagnosis)); }
 
+std::string diagnosis_json(const Diagnosis& gyro, const Diagnosis& accelerometer) {
+    Json json = diagnosis_object(gyro);
+    json["accelerometer"] = diagnosis_object(accelerometer);
+    json["shared"] = shared_causes(gyro, accelerometer);
+    return json_text(json);
+}
+
 Json diagnosis_object(const Diagnosis& diagnosis) {
     Json json;
     json["schema"] = "gyrolog-diagnosis/2";
+    json["sensor"] = diagnosis.unit.sensor == SensorKind::gyro ? "gyro" : "accelerometer";
     json["verdict"] = name_of(diagnosis.verdict);
     json["p_none"] = diagnosis.p_none;
     json["p_left"] = diagnosis.p_left;
     json["causes"] = Json::array();
     for (const Cause& cause : diagnosis.causes) { json["causes"].push_back(cause_json(cause)); }
     if (!diagnosis.noise_refits.empty()) {
-        json["noise_refitted"] = noise_refits_json(diagnosis.noise_refits);
+        json["noise_refitted"] = noise_refits_json(diagnosis);
     }
     if (diagnosis.better_shape) {
         json["better_shape"] = {{"words", diagnosis.better_shape->words},

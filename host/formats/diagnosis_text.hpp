@@ -40,5 +40,7 @@ struct DiagnosisSentences {
 DiagnosisSentences diagnosis_sentences(const Diagnosis& diagnosis);
 
 std::string diagnosis_text(const Diagnosis& diagnosis);
+// Of two sensors of one recording, and what both have.
+std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer);
 
 }  // namespace gyrolog

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/simulate/accelerometer_effect.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "host/formats/uncertain_number.hpp"
 
@@ -66,6 +67,21 @@ constexpr std::array ramps = {
     WrittenUnit{1e-3 * per_hour, per_hour, " deg/s per h"},
     WrittenUnit{0.0, per_hour* per_hour, " deg/h per h"},
 };
+constexpr std::array forces = {
+    WrittenUnit{0.1, 1.0, " g"},
+    WrittenUnit{1e-4, 1e-3, " mg"},
+    WrittenUnit{0.0, 1e-6, " µg"},
+};
+constexpr std::array forces_per_C = {
+    WrittenUnit{1e-4, 1e-3, " mg per degC"},
+    WrittenUnit{0.0, 1e-6, " µg per degC"},
+};
+constexpr std::array forces_per_C2 = {WrittenUnit{0.0, 1e-6, " µg per degC^2"}};
+constexpr std::array forces_per_C3 = {WrittenUnit{0.0, 1e-6, " µg per degC^3"}};
+constexpr std::array force_ramps = {WrittenUnit{0.0, 1e-6 * per_hour, " µg per h"}};
+constexpr std::array speeds = {WrittenUnit{0.0, 1e-6, " µg s"}};
+constexpr std::array velocity_walks = {WrittenUnit{0.0, 1e-6, " µg/sqrt(Hz)"}};
+constexpr std::array force_walks = {WrittenUnit{0.0, 1e-6, " µg*sqrt(Hz)"}};
 constexpr std::array angles = {WrittenUnit{0.0, 1.0, " deg"}};
 constexpr std::array angle_walks = {WrittenUnit{0.0, 1.0, " deg/s/sqrt(Hz)"}};
 constexpr std::array rate_walks = {WrittenUnit{0.0, 1.0, " deg/s*sqrt(Hz)"}};
@@ -92,6 +108,14 @@ constexpr QuantityKind kinds[] = {
     {"_dps_per_s", ramps},
     {"_dps_s", angles},
     {"_dps", rates},
+    {"_g_per_sqrt_hz", velocity_walks},
+    {"_g_sqrt_hz", force_walks},
+    {"_g_per_C3", forces_per_C3},
+    {"_g_per_C2", forces_per_C2},
+    {"_g_per_C", forces_per_C},
+    {"_g_per_s", force_ramps},
+    {"_g_s", speeds},
+    {"_g", forces},
     {"per_C", shares_per_C},
     {"per_hour", counts_per_hour},
     {"_rad", phases},
@@ -128,10 +152,18 @@ struct ValueOfEntry {
     double sd = 0.0;
 };
 
+// The name under which an entry has the parameter: that of an accelerometer is in g.
+std::string name_in(const EffectModel& entry, std::string_view name) {
+    std::string own(name);
+    std::string of_accelerometer = accelerometer_param_name(own);
+    return entry.params.contains(of_accelerometer) ? of_accelerometer : own;
+}
+
 // No value where neither the entry nor the effect has one.
 std::optional<ValueOfEntry> value_in(const Finding& finding, std::size_t entry, std::string_view name) {
     const auto& params = finding.entries[entry].params;
-    const auto given = params.find(std::string(name));
+    const std::string own_name = name_in(finding.entries[entry], name);
+    const auto given = params.find(own_name);
     if (given == params.end()) {
         const EffectParam* param = find_param(finding, name);
         if (param == nullptr || !param->otherwise) { return std::nullopt; }
@@ -139,7 +171,7 @@ std::optional<ValueOfEntry> value_in(const Finding& finding, std::size_t entry, 
     }
     ValueOfEntry found{given->second, 0.0};
     if (entry < finding.sd.size()) {
-        const auto sd = finding.sd[entry].find(std::string(name));
+        const auto sd = finding.sd[entry].find(own_name);
         if (sd != finding.sd[entry].end()) { found.sd = sd->second; }
     }
     return found;
@@ -155,7 +187,8 @@ std::string value_text(const Finding& finding, std::string_view name) {
     for (std::size_t entry = 0; entry < finding.entries.size(); ++entry) {
         const auto value = value_in(finding, entry, name);
         if (!value) { continue; }
-        texts.push_back(quantity_text(name, value->value, value->sd, param));
+        texts.push_back(
+            quantity_text(name_in(finding.entries[entry], name), value->value, value->sd, param));
         by_axis += fmt::format("{}{} ({})", by_axis.empty() ? "" : ", ", texts.back(),
                                axes_of(finding.entries[entry]));
     }
@@ -203,7 +236,7 @@ std::vector<std::string> params_in(std::string_view words) {
 
 bool has_value(const Finding& finding, const std::string& name) {
     return std::ranges::any_of(finding.entries,
-                               [&](const EffectModel& entry) { return entry.params.contains(name); });
+                               [&](const EffectModel& entry) { return entry.params.contains(name_in(entry, name)); });
 }
 
 // "a line at {f_hz}" is "a line".

@@ -1,6 +1,7 @@
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 
 #include <utility>
+#include <vector>
 
 #include "analysis/diagnose/likelihood/noise_refit.hpp"
 
@@ -21,8 +22,10 @@ SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const
 }
 
 SensorModel with_unnamed(SensorModel model, const Diagnosis& diagnosis) {
+    const bool is_gyro = diagnosis.unit.sensor == SensorKind::gyro;
+    std::vector<EffectModel>& effects = is_gyro ? model.effects : model.accelerometer->effects;
     for (const Unnamed& form : diagnosis.unnamed) {
-        model.effects.insert(model.effects.end(), form.entries.begin(), form.entries.end());
+        effects.insert(effects.end(), form.entries.begin(), form.entries.end());
     }
     return model;
 }

@@ -13,7 +13,7 @@ SensorModel with_cause(SensorModel model, const Finding& finding);
 // becomes that of `centred`.
 SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const SensorModel& centred);
 
-// The function adds what the diagnosis modelled without a name.
+// The function adds what the diagnosis modelled without a name, to the sensor that it is of.
 SensorModel with_unnamed(SensorModel model, const Diagnosis& diagnosis);
 
 }  // namespace gyrolog

@@ -122,18 +122,18 @@ double average(const std::vector<double>& grid, std::size_t first, std::size_t m
     return sum / static_cast<double>(m);
 }
 
-double difference(const std::vector<double>& grid, std::size_t k, std::size_t m) {
+double change_of_average(const std::vector<double>& grid, std::size_t k, std::size_t m) {
     return average(grid, k + m, m) - average(grid, k, m);
 }
 
 double windowed(const std::vector<double>& grid, std::size_t k, std::size_t m) {
     double sum = 0.0;
-    for (std::size_t i = k; i < k + m; ++i) { sum += difference(grid, i, m); }
+    for (std::size_t i = k; i < k + m; ++i) { sum += change_of_average(grid, i, m); }
     return sum / static_cast<double>(m);
 }
 
 double second_difference(const std::vector<double>& grid, std::size_t k, std::size_t m) {
-    return difference(grid, k + m, m) - difference(grid, k, m);
+    return change_of_average(grid, k + m, m) - change_of_average(grid, k, m);
 }
 
 struct Definition {

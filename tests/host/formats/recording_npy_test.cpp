@@ -43,20 +43,20 @@ std::string described(const std::string& type, const std::string& order, const s
     return "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }          \n";
 }
 
-RecordingReadOptions asked(const std::string& columns = "t,gx,gy", const std::string& unit = "rad/s") {
+RecordingReadOptions of_columns(const std::string& columns = "t,gx,gy", const std::string& unit = "rad/s") {
     RecordingReadOptions options;
     options.choice.columns = columns;
     options.choice.gyro_unit = unit;
     return options;
 }
 
-Recording npy_read(const std::string& file, const RecordingReadOptions& options = asked()) {
+Recording npy_read(const std::string& file, const RecordingReadOptions& options = of_columns()) {
     auto recording = parse_recording_npy(file, "a.npy", options);
     EXPECT_TRUE(recording.ok()) << (recording.ok() ? "" : recording.error().message);
     return recording.ok() ? std::move(recording).value() : Recording{};
 }
 
-std::string npy_refusal(const std::string& file, const RecordingReadOptions& options = asked()) {
+std::string npy_refusal(const std::string& file, const RecordingReadOptions& options = of_columns()) {
     const auto recording = parse_recording_npy(file, "a.npy", options);
     return recording.ok() ? "accepted" : recording.error().message;
 }
@@ -83,7 +83,7 @@ TEST(RecordingNpy, IsReadInEveryOrderVersionAndType) {
                               bytes_of(std::vector<float>(by_rows.begin(), by_rows.end()))));
     expect_the_array(npy_read(
         with_header("{\"shape\": (4,3), \"fortran_order\": False, \"descr\": \"<f8\"}") + bytes_of(by_rows)));
-    RecordingReadOptions rated = asked("_,gx,gy", "lsb");
+    RecordingReadOptions rated = of_columns("_,gx,gy", "lsb");
     rated.rate_hz = 4.0;
     rated.lsb_dps = deg_per_rad;
     expect_the_array(npy_read(with_header(described("<i2", "False", "(4, 3)")) +
@@ -95,7 +95,7 @@ TEST(RecordingNpy, IsReadInEveryOrderVersionAndType) {
 }
 
 TEST(RecordingNpy, OfOneDimensionIsOneColumn) {
-    RecordingReadOptions options = asked("gz_dps", "");
+    RecordingReadOptions options = of_columns("gz_dps", "");
     options.rate_hz = 100.0;
     const Recording r = npy_read(with_header(described("<f8", "False", "(3,)")) +
                                      bytes_of(std::vector<double>{1.0, std::nan(""), 3.0}),
@@ -106,7 +106,7 @@ TEST(RecordingNpy, OfOneDimensionIsOneColumn) {
 }
 
 TEST(RecordingNpy, GivesMeansAndNoMoreThanWanted) {
-    RecordingReadOptions options = asked("gx", "rad/s");
+    RecordingReadOptions options = of_columns("gx", "rad/s");
     options.rate_hz = 10.0;
     std::vector<double> numbers(100);
     for (std::size_t i = 0; i < numbers.size(); ++i) { numbers[i] = static_cast<double>(i); }
@@ -125,9 +125,9 @@ TEST(RecordingNpy, SaysWhatItCannotRead) {
     EXPECT_THAT(npy_refusal(file, {}),
                 HasSubstr("an .npy does not name its columns, and this has 3: name them with "
                           "--columns, such as t,gx,gy,gz"));
-    EXPECT_THAT(npy_refusal(file, asked("t,gx,gy", "")), HasSubstr("gx, gy: give it with --unit"));
-    EXPECT_THAT(npy_refusal(file, asked("gx,gy,gz")), HasSubstr("--rate"));
-    EXPECT_THAT(npy_refusal(file, asked("t,gx,gy,gz")), HasSubstr("--columns names 4, and there are 3"));
+    EXPECT_THAT(npy_refusal(file, of_columns("t,gx,gy", "")), HasSubstr("gx, gy: give it with --unit"));
+    EXPECT_THAT(npy_refusal(file, of_columns("gx,gy,gz")), HasSubstr("--rate"));
+    EXPECT_THAT(npy_refusal(file, of_columns("t,gx,gy,gz")), HasSubstr("--columns names 4, and there are 3"));
     EXPECT_THAT(npy_refusal(file.substr(0, file.size() - 5)),
                 HasSubstr("4 x 3 numbers take 96 bytes, and 91 are there: it is cut off"));
     EXPECT_THAT(npy_refusal(file + "more"), HasSubstr("take 96 bytes, and 100 are there"));
@@ -157,7 +157,7 @@ TEST(RecordingNpy, SaysWhatItCannotRead) {
 TEST(RecordingNpy, RatesBeyondAnyGyroAreNamed) {
     const std::string file = with_header(described("<f8", "False", "(3, 2)")) +
                              bytes_of(std::vector<double>{0.0, 1.0, 1.0, HUGE_VAL, 2.0, 1.0});
-    EXPECT_THAT(npy_refusal(file, asked("t,gx")),
+    EXPECT_THAT(npy_refusal(file, of_columns("t,gx")),
                 HasSubstr("row 2, column 'gx': inf is beyond what any sensor says"));
 }
 
@@ -166,7 +166,7 @@ TEST(RecordingNpy, IsToldByItsContent) {
     const std::string path = folder.path("night.data");
     std::ofstream(path, std::ios::binary)
         << with_header(described("<f8", "False", "(4, 3)")) + bytes_of(by_rows);
-    const auto recording = read_recording_file(path, asked());
+    const auto recording = read_recording_file(path, of_columns());
     ASSERT_TRUE(recording.ok()) << recording.error().message;
     expect_the_array(*recording);
     EXPECT_EQ(recording->name, "night.data");

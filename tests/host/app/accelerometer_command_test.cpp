@@ -1,0 +1,199 @@
+// compare, diagnose and denoise of an accelerometer.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/simulate/recording_simulator.hpp"
+#include "host/app/command_line.hpp"
+#include "host/formats/model_json.hpp"
+#include "host/formats/recording_csv.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double g = standard_gravity_m_s2;
+
+SensorModel six_axes() {
+    SensorModel model = typical_mpu9250();
+    AccelerometerModel& accelerometer = model.accelerometer.emplace();
+    for (AxisModel& axis : accelerometer.axes) {
+        axis.noise.N_rad_per_sqrt_s = 150e-6 * g;
+        axis.noise.B_rad_per_s = 30e-6 * g;
+    }
+    accelerometer.lsb_m_s2 = g / 16384.0;
+    accelerometer.full_scale_m_s2 = accelerometer.saturation_m_s2 = 2.0 * g;
+    accelerometer.sd_rel = {{"N", 0.01}, {"B", 0.1}};
+    return model;
+}
+
+EffectModel line_at(double f_hz, const char* amplitude, double size) {
+    return {"tone", {"y"}, {{"f_hz", f_hz}, {amplitude, size}, {"phase_rad", 0.4}}, {}};
+}
+
+class AccelerometerCommands : public testing::Test {
+protected:
+    void SetUp() override { ASSERT_TRUE(write_model(six_axes(), model).ok()); }
+
+    ExitCode run(std::vector<std::string> arguments) {
+        out.str("");
+        err.str("");
+        return run_command_line(std::move(arguments), {out, err});
+    }
+
+    void write_recording_of(const SensorModel& sensor, std::size_t samples = 12'000) const {
+        SimulationRequest request;
+        request.samples = samples;
+        request.seed = 5;
+        ASSERT_TRUE(write_recording_csv(simulate_recording(sensor, request), recording).ok());
+    }
+
+    TemporaryFolder folder;
+    std::string model = folder.path("model.json");
+    std::string recording = folder.path("night.csv");
+    std::ostringstream out;
+    std::ostringstream err;
+};
+
+TEST_F(AccelerometerCommands, DiagnoseFindsALineInBothSensorsAndSaysThatTheyShareIt) {
+    SensorModel shaken = six_axes();
+    shaken.effects.push_back(line_at(31.4, "amplitude_dps", 0.03));
+    shaken.accelerometer->effects.push_back(line_at(31.4, "amplitude_g", 800e-6));
+    write_recording_of(shaken, 6000);
+    const std::string corrected = folder.path("corrected.json");
+    const std::string answer_path = folder.path("d.json");
+    ASSERT_EQ(run({"diagnose", recording, "--model", model, "--sensor", "all", "--simulations", "20", "--json",
+                   answer_path, "--plot", folder.path("d.png"), "--model-out", corrected}),
+              ExitCode::ok)
+        << err.str();
+    std::ifstream text(answer_path);
+    const json answer = json::parse(text);
+    EXPECT_EQ(answer["sensor"], "gyro");
+    const json& of_force = answer["accelerometer"];
+    EXPECT_EQ(of_force["sensor"], "accelerometer");
+    EXPECT_EQ(of_force["verdict"], "known");
+    ASSERT_EQ(of_force["causes"].size(), 1U) << of_force["causes"];
+    const json& line = of_force["causes"][0];
+    EXPECT_EQ(line["effect"], "tone");
+    EXPECT_EQ(line["axes"], json({"y"}));
+    EXPECT_NEAR(line["params"]["f_hz"].get<double>(), 31.4, 0.01);
+    EXPECT_NEAR(line["params"]["amplitude_g"].get<double>(), 800e-6,
+                4.0 * line["sd"]["amplitude_g"].get<double>());
+    EXPECT_LT(line["sd"]["amplitude_g"].get<double>(), 50e-6);
+    EXPECT_THAT(line["sentence"].get<std::string>(), HasSubstr("mg high"));
+    EXPECT_EQ(answer["shared"], json({"tone"}));
+    for (const json& one : of_force["untestable"]) { EXPECT_NE(one["effect"], "scale_factor"); }
+    EXPECT_THAT(out.str(), HasSubstr("Both sensors have tone at the same place"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path("d.accelerometer.png")));
+
+    const Result<SensorModel> written = read_model(corrected);
+    ASSERT_TRUE(written.ok());
+    ASSERT_EQ(written->effects.size(), 1U);
+    ASSERT_EQ(written->accelerometer->effects.size(), 1U);
+    EXPECT_NEAR(written->accelerometer->effects[0].params.at("amplitude_g"), 800e-6, 100e-6);
+    EXPECT_NEAR(written->accelerometer->axes[0].noise.N_rad_per_sqrt_s, 150e-6 * g, 15e-6 * g);
+    EXPECT_EQ(written->accelerometer->lsb_m_s2, g / 16384.0);
+}
+
+TEST_F(AccelerometerCommands, DiagnoseSeesNoGapWhereThereIsNone) {
+    write_recording_of(six_axes());
+    ASSERT_EQ(run({"diagnose", recording, "--model", model, "--sensor", "accelerometer", "--simulations", "40",
+                   "--json", "-"}),
+              ExitCode::ok)
+        << err.str();
+    const json answer = json::parse(out.str());
+    EXPECT_EQ(answer["verdict"], "none");
+    EXPECT_FALSE(answer.contains("accelerometer"));
+}
+
+TEST_F(AccelerometerCommands, DiagnoseTakesAPlainModelOfTheRecordingsOwn) {
+    SensorModel shaken = six_axes();
+    shaken.accelerometer->effects.push_back(line_at(20.0, "amplitude_g", 1e-3));
+    write_recording_of(shaken);
+    const std::string corrected = folder.path("corrected.json");
+    ASSERT_EQ(run({"diagnose", recording, "--auto", "--sensor", "accelerometer", "--simulations", "20", "--json",
+                   "-", "--model-out", corrected}),
+              ExitCode::ok)
+        << err.str();
+    const json answer = json::parse(out.str());
+    ASSERT_GE(answer["causes"].size(), 1U);
+    EXPECT_EQ(answer["causes"][0]["effect"], "tone");
+    EXPECT_THAT(err.str(), HasSubstr("g/sqrt(Hz), read off"));
+    const Result<SensorModel> written = read_model(corrected);
+    ASSERT_TRUE(written.ok());
+    EXPECT_NEAR(written->accelerometer->axes[2].noise.N_rad_per_sqrt_s, 150e-6 * g, 30e-6 * g);
+}
+
+TEST_F(AccelerometerCommands, CompareSaysByHowMuchTheSimulationIsTooQuiet) {
+    write_recording_of(six_axes());
+    ASSERT_EQ(run({"compare", recording, model, "--sensor", "accelerometer"}), ExitCode::ok) << err.str();
+    EXPECT_THAT(out.str(), HasSubstr("z: the recording differs no more than simulations do"));
+    EXPECT_THAT(out.str(), Not(HasSubstr("dps")));
+    SensorModel loud = six_axes();
+    loud.accelerometer->axes[2].noise.N_rad_per_sqrt_s *= 2.0;
+    write_recording_of(loud);
+    ASSERT_EQ(run({"compare", recording, model, "--sensor", "accelerometer", "--json", "-"}), ExitCode::ok);
+    const json answer = json::parse(out.str());
+    EXPECT_EQ(answer["sensor"], "accelerometer");
+    // A sample's deviation, N sqrt(rate), in g.
+    EXPECT_NEAR(answer["axes"]["z"]["standard_deviation"]["recording"].get<double>(), 3e-3, 0.1e-3);
+    EXPECT_THAT(answer["axes"]["z"]["sentence"].get<std::string>(), HasSubstr("too quiet by"));
+    EXPECT_THAT(answer["axes"]["x"]["sentence"].get<std::string>(), HasSubstr("no more than simulations"));
+}
+
+// Four equal units have half the noise of one.
+TEST_F(AccelerometerCommands, DenoiseHalvesTheNoiseOfFourUnits) {
+    std::vector<std::string> arguments{"denoise"};
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+        SimulationRequest request;
+        request.samples = 12'000;
+        request.seed = seed;
+        SensorModel unit = six_axes();
+        unit.accelerometer->axes[0].noise.B_rad_per_s = 0.0;
+        arguments.push_back(folder.path("unit" + std::to_string(seed) + ".csv"));
+        ASSERT_TRUE(write_recording_csv(simulate_recording(unit, request), arguments.back()).ok());
+    }
+    const std::string denoised = folder.path("denoised.csv");
+    arguments.insert(arguments.end(), {"--sensor", "accelerometer", "--still", "0,60", "--method", "kalman", "-o",
+                                       denoised, "--json", "-"});
+    ASSERT_EQ(run(arguments), ExitCode::ok) << err.str();
+    std::ifstream text(denoised);
+    std::string head;
+    std::getline(text, head);
+    EXPECT_THAT(head, HasSubstr("ax_m_s2,ay_m_s2,az_m_s2"));
+    const Result<Recording> read = read_recording_csv(denoised, {.needs_gyro = false});
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    const std::vector<double> x = read->find("ax")->values();
+    double squares = 0.0;
+    for (std::size_t i = 1; i < x.size(); ++i) { squares += (x[i] - x[i - 1]) * (x[i] - x[i - 1]); }
+    const double sd_g = std::sqrt(squares / (2.0 * static_cast<double>(x.size() - 1))) / g;
+    // N sqrt(rate) / 2; with 12000 samples its own deviation is 0.8 %.
+    EXPECT_NEAR(sd_g / 0.75e-3, 1.0, 0.03);
+    const std::vector<double> z = read->find("az")->values();
+    EXPECT_NEAR(std::accumulate(z.begin(), z.end(), 0.0) / static_cast<double>(z.size()) / g, 1.0, 1e-4);
+}
+
+TEST_F(AccelerometerCommands, SayWhatIsMissing) {
+    write_recording_of(typical_mpu9250(), 3000);
+    EXPECT_EQ(run({"diagnose", recording, "--model", model, "--sensor", "accelerometer"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("there is no accelerometer in it"));
+    write_recording_of(six_axes(), 3000);
+    ASSERT_TRUE(write_model(typical_mpu9250(), model).ok());
+    EXPECT_EQ(run({"compare", recording, model, "--sensor", "accelerometer"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("has no accelerometer"));
+    EXPECT_EQ(run({"diagnose", recording, "--model", model, "--sensor", "thermometer"}), ExitCode::usage);
+}
+
+}  // namespace
+}  // namespace gyrolog
