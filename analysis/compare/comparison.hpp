@@ -51,7 +51,7 @@ struct Comparison {
     std::size_t samples = 0;
     bool less_reference = false;
     SensorUnit unit = SensorUnit::dps();  // of the sensor's numbers, for readers
-    std::size_t simulations = 0;  // 0: with a recording
+    std::size_t simulations = 0;          // 0: with a recording
     double band_probability = 0.0;
     std::uint64_t seed = 0;
     std::vector<AxisComparison> axes;

@@ -32,8 +32,8 @@ void put_in_g(GapDomain& domain) {
     const std::size_t unit = domain.y_name.find(in_dps);
     if (unit == std::string::npos) { return; }
     domain.y_name.replace(unit, in_dps.size(), "(g)");
-    for (std::vector<double>* values : {&domain.recording, &domain.before_lo, &domain.before_hi,
-                                        &domain.after_lo, &domain.after_hi}) {
+    for (std::vector<double>* values :
+         {&domain.recording, &domain.before_lo, &domain.before_hi, &domain.after_lo, &domain.after_hi}) {
         for (double& value : *values) { value /= dps_per_g(scale); }
     }
 }
@@ -48,8 +48,8 @@ bool overlap(const std::optional<Span>& one, const std::optional<Span>& other) {
     return one && other && one->from <= other->to && other->from <= one->to;
 }
 
-// The same effect by itself is none: two sensors have two noises. A place is, which nothing but what they share
-// would give to both.
+// The same effect by itself is none: two sensors have two noises. A place is, which nothing but what they
+// share would give to both.
 bool is_shared(const Finding& of_gyro, const Finding& of_accelerometer) {
     const EffectDefinition* effect = find_effect(of_gyro.effect);
     if (of_gyro.effect != of_accelerometer.effect || effect == nullptr || effect->signature == nullptr) {

@@ -14,9 +14,9 @@ namespace gyrolog {
 // of the effects that only motion shows.
 Diagnosis diagnosis_of_accelerometer(Diagnosis as_gyro, const SensorModel& model);
 
-// The function returns the gyro's causes that the accelerometer has as well, at the same place: the same line,
-// the same instant, the same fault of the stamps or of the frames. They come from what both share, the board
-// or what it stands on.
+// The function returns the gyro's causes that the accelerometer has as well, at the same place: the same
+// line, the same instant, the same fault of the stamps or of the frames. They come from what both share, the
+// board or what it stands on.
 std::vector<std::string> shared_causes(const Diagnosis& gyro, const Diagnosis& accelerometer);
 
 }  // namespace gyrolog

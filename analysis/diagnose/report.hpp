@@ -2,8 +2,9 @@
 // was compared, and what stays open. Everything in the diagnosis may include this file; it includes nothing
 // of the diagnosis.
 //
-// Rates are in rad/s (of an accelerometer, what stands for them: accelerometer_as_gyro.hpp), times in s, frequencies in Hz, evidence in nats. Parameters of an effect are in the
-// effect's own units, which its names end in. Axes are 0, 1, 2.
+// Rates are in rad/s (of an accelerometer, what stands for them: accelerometer_as_gyro.hpp), times in s,
+// frequencies in Hz, evidence in nats. Parameters of an effect are in the effect's own units, which its names
+// end in. Axes are 0, 1, 2.
 #pragma once
 
 #include <array>
@@ -190,7 +191,7 @@ struct Diagnosis {
     std::uint64_t seed = 1;
     std::vector<std::size_t> axes;
     SensorUnit unit = SensorUnit::dps();  // of the sensor, for readers
-    std::vector<Pass> passes;  // empty: the recording was seen in one
+    std::vector<Pass> passes;             // empty: the recording was seen in one
 
     Verdict verdict = Verdict::none;
     double p_none = 1.0;

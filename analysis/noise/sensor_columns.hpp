@@ -8,7 +8,8 @@
 
 namespace gyrolog {
 
-// By its name: "gx" ... of a gyro, "ax" ... of an accelerometer, with a number behind it of an array's others.
+// By its name: "gx" ... of a gyro, "ax" ... of an accelerometer, with a number behind it of an array's
+// others.
 bool is_of(SensorKind sensor, const Column& column);
 
 // The rows in which every column of the accelerometer that has a scale has a value; nothing where all rows

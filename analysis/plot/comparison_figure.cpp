@@ -32,8 +32,8 @@ public:
         figure.panels.push_back(series(axis_.other_averages, other_colour,
                                        axis_.axis + (simulated ? ": one simulation" : ": the other")));
         figure.panels.push_back(histograms());
-        figure.panels.push_back(curves(axis_.allan, "Allan deviation", "averaging time τ (s)",
-                                       "σ(τ) (" + unit_ + ")"));
+        figure.panels.push_back(
+            curves(axis_.allan, "Allan deviation", "averaging time τ (s)", "σ(τ) (" + unit_ + ")"));
         if (is_first_) { add_legend(figure.panels.back()); }
         figure.panels.push_back(curves(axis_.spectrum, "spectrum (root of the density)", "frequency (Hz)",
                                        "√S ((" + unit_ + ")/√Hz)"));

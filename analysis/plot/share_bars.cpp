@@ -19,7 +19,7 @@ constexpr double panel_min_px = 290.0;  // room for the figure's legend beside t
 constexpr std::size_t bars_most = 12;
 constexpr double half_bar = 0.34;  // of the distance of two bars
 constexpr double half_cap = 0.17;
-constexpr double room_for_words = 0.45;  // of the longest bar, to the right of it
+constexpr double room_for_words = 0.65;  // of the longest bar, behind it: 35 letters beside a legend
 constexpr std::size_t steps_most = 8;
 constexpr double step_least = 0.25;
 

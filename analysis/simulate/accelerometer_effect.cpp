@@ -15,7 +15,8 @@ std::string renamed(const std::string& name, std::string_view unit, std::string_
     return name.substr(0, at) + "_" + std::string(other) + name.substr(end);
 }
 
-EffectModel converted(const EffectModel& effect, std::string_view unit, std::string_view other, double factor) {
+EffectModel converted(const EffectModel& effect, std::string_view unit, std::string_view other,
+                      double factor) {
     EffectModel result = effect;
     result.params.clear();
     result.table.clear();

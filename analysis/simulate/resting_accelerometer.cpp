@@ -16,7 +16,9 @@ SensorModel resting_accelerometer(const SensorModel& model) {
     for (std::size_t axis = 0; axis < sensor.axes.size(); ++axis) {
         sensor.axes[axis].bias_rad_s += accelerometer.M[axis][2] * standard_gravity_m_s2;
     }
-    for (const EffectModel& effect : accelerometer.effects) { sensor.effects.push_back(as_gyro_effect(effect, 1.0)); }
+    for (const EffectModel& effect : accelerometer.effects) {
+        sensor.effects.push_back(as_gyro_effect(effect, 1.0));
+    }
     return sensor;
 }
 

@@ -106,9 +106,7 @@ Action setup_analyze(CLI::App& app) {
         ->type_name("HZ")
         ->check(sampling_rate());
     app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
-    app.add_option("--lsb-g", request->lsb_g, lsb_g_help)
-        ->type_name("G")
-        ->check(positive_number());
+    app.add_option("--lsb-g", request->lsb_g, lsb_g_help)->type_name("G")->check(positive_number());
     add_text_options(app, request->text);
     app.add_option("--sensor", request->sensor, "Which sensor: gyro, accelerometer, or all that there are")
         ->check(CLI::IsMember({"gyro", "accelerometer", "all"}))

@@ -45,9 +45,7 @@ Action setup_calibrate(CLI::App& app) {
         ->check(number_from_to(9.7, 9.9, "m/s^2"));
     add_text_options(app, request->text);
     app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
-    app.add_option("--lsb-g", request->lsb_g, lsb_g_help)
-        ->type_name("G")
-        ->check(positive_number());
+    app.add_option("--lsb-g", request->lsb_g, lsb_g_help)->type_name("G")->check(positive_number());
     app.add_option("--rate", request->rate_hz, "Sampling rate, in place of the file's own")
         ->type_name("HZ")
         ->check(sampling_rate());

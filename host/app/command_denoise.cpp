@@ -250,9 +250,9 @@ private:
         for (const AxisKnowledge& axis : knowledge) {
             for (const UnitKnowledge& unit : axis.units) {
                 if (unit.variance > 0.0) { continue; }
-                report_.warnings.push_back(fmt::format(
-                    "{}{}{} does not change at rest: its noise is not known", prefix(), axis.axis,
-                    unit.name));
+                report_.warnings.push_back(
+                    fmt::format("{}{}{} does not change at rest: its noise is not known", prefix(), axis.axis,
+                                unit.name));
             }
         }
         GYROLOG_CHECK(take_models(knowledge));
@@ -429,8 +429,7 @@ void add_input_options(CLI::App& app, Request& request) {
     app.add_option_function<std::string>(
            "--sensor",
            [&request](const std::string& name) {
-               request.input.sensor =
-                   name == "gyro" ? SensorKind::gyro : SensorKind::accelerometer;
+               request.input.sensor = name == "gyro" ? SensorKind::gyro : SensorKind::accelerometer;
            },
            "Which sensor: gyro, or accelerometer")
         ->check(CLI::IsMember({"gyro", "accelerometer"}))

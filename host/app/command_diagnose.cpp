@@ -123,9 +123,10 @@ Action setup_diagnose(CLI::App& app) {
         ->type_name("SENSOR")
         ->capture_default_str();
     add_part_options(app, request.part);
-    for (const char* of_recordings : {"--auto", "--unnamed", "--holdout", "--average", "--simulations",
-                                      "--seed", "--threads", "--lsb-dps", "--rate", "--columns", "--unit",
-                                      "--acc-unit", "--lsb-g", "--sensor", "--from", "--to", "--still", "--jsonl"}) {
+    for (const char* of_recordings :
+         {"--auto", "--unnamed", "--holdout", "--average", "--simulations", "--seed", "--threads",
+          "--lsb-dps", "--rate", "--columns", "--unit", "--acc-unit", "--lsb-g", "--sensor", "--from", "--to",
+          "--still", "--jsonl"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

@@ -81,8 +81,7 @@ DiagnosisOptions options_of(Console& console, const RecordingDiagnosisRequest& r
 
 // Of the recording's own: what a simulator has that knows of white noise and a bias only.
 Result<ModelFile> read_plain_model(const Recording& recording, SensorKind sensor, const std::string& path) {
-    const SensorUnit unit =
-        sensor == SensorKind::gyro ? SensorUnit::dps() : unit_of_accelerometer_as_gyro();
+    const SensorUnit unit = sensor == SensorKind::gyro ? SensorUnit::dps() : unit_of_accelerometer_as_gyro();
     std::optional<PlainModel> plain = plain_model(recording);
     if (!plain) {
         return Error{ErrorCode::failed,
@@ -94,15 +93,14 @@ Result<ModelFile> read_plain_model(const Recording& recording, SensorKind sensor
     std::vector<std::string> noise;
     for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
         if (recording.find(std::string("g") + axis_names[axis]) == nullptr) { continue; }
-        noise.push_back(fmt::format(
-            "{:.3g} ({})", plain->model.axes[axis].noise.N_rad_per_sqrt_s * unit.per_column_unit,
-            axis_names[axis]));
+        noise.push_back(fmt::format("{:.3g} ({})",
+                                    plain->model.axes[axis].noise.N_rad_per_sqrt_s * unit.per_column_unit,
+                                    axis_names[axis]));
     }
     file.notes.push_back(
         fmt::format("the model is white noise and a bias, taken from {:.6g} s to {:.6g} s of the recording: "
                     "N {} {}/sqrt(Hz), read off the Allan deviation at {:.6g} s",
-                    plain->still.from_s, plain->still.to_s, fmt::join(noise, ", "), unit.name,
-                    plain->tau_s));
+                    plain->still.from_s, plain->still.to_s, fmt::join(noise, ", "), unit.name, plain->tau_s));
     file.model = std::move(plain->model);
     return file;
 }
@@ -157,7 +155,8 @@ Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisR
                                      SensorKind sensor) {
     const bool is_plain = request.model_path.empty();
     ModelFile file;
-    SensorModel whole;  // what a plain model of an accelerometer is put in has a gyro of which nothing is known
+    SensorModel
+        whole;  // what a plain model of an accelerometer is put in has a gyro of which nothing is known
     whole.full_scale_rad_s = whole.saturation_rad_s = no_range_rad_s;
     if (!is_plain) {
         GYROLOG_TRY(file, read_single_model(request.model_path));
@@ -200,6 +199,7 @@ std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis) {
     std::vector<std::string> facts{
         fmt::format("{} simulations, seed {}", diagnosis.simulations, diagnosis.seed),
         fmt::format("{:.6g} Hz, {}", diagnosis.rate_hz, format_duration(diagnosis.duration_s))};
+    if (diagnosis.unit.sensor == SensorKind::accelerometer) { facts.insert(facts.begin(), "the accelerometer"); }
     if (!diagnosis.passes.empty()) { facts.push_back(passes_text(diagnosis)); }
     for (const Cause& cause : diagnosis.causes) {
         facts.push_back(fmt::format("{}: {}", axes_text(cause.finding.where.axes), cause_words(cause)));

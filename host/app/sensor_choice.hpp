@@ -1,5 +1,5 @@
-// The option --sensor of commands that hold a recording against a model: its gyro, or its accelerometer, which
-// is presented to them as a gyro (accelerometer_as_gyro.hpp).
+// The option --sensor of commands that hold a recording against a model: its gyro, or its accelerometer,
+// which is presented to them as a gyro (accelerometer_as_gyro.hpp).
 #pragma once
 
 #include <optional>

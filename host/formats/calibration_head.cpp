@@ -44,8 +44,8 @@ std::string calibration_head(const Calibration& calibration, std::string_view si
         names += (names.empty() ? "" : ", ") + printable(name);
     }
     std::string head = comment_of(sign, "Calibration of " + names + ", by " + program_name() + ".");
-    head +=
-        comment_of(sign, "In the axes of the recording: a driver that turns or swaps axes must do so before.");
+    head += comment_of(sign,
+                       "In the axes of the recording: a driver that turns or swaps axes must do so before.");
     for (const Undetermined& one : calibration.undetermined) {
         head += comment_of(sign, "Not determined: " + one.what + ".");
     }
@@ -57,15 +57,15 @@ std::string loss_without_matrix(const Calibration& calibration, std::string_view
     if (const auto& fitted = calibration.accelerometer.calibration; fitted && fitted->has_misalignment) {
         loss +=
             comment_of(sign, fmt::format("Without the accelerometer's misalignment at most {:.3g} % of the "
-                                        "force are wrong.",
-                                        100.0 * largest_left(fitted->M, axis_scales(fitted->M))));
+                                         "force are wrong.",
+                                         100.0 * largest_left(fitted->M, axis_scales(fitted->M))));
     }
     const auto& gyro = calibration.gyro.calibration;
     if (gyro && std::ranges::count(gyro->has_scale, true) > 0) {
         loss +=
             comment_of(sign, fmt::format("Without the gyro's scale and misalignment at most {:.3g} % of the "
-                                        "rate are wrong.",
-                                        100.0 * largest_left(gyro->M, {1.0, 1.0, 1.0})));
+                                         "rate are wrong.",
+                                         100.0 * largest_left(gyro->M, {1.0, 1.0, 1.0})));
     }
     return loss;
 }

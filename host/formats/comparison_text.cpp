@@ -87,21 +87,24 @@ std::string distribution_text(const Comparison& comparison, const AxisComparison
     } else {
         heads.emplace_back("other");
     }
-    const std::array rows{number_row("  standard deviation", comparison.unit.name.c_str(), axis.standard_deviation, comparison.unit.per_column_unit),
+    const std::array rows{number_row("  standard deviation", comparison.unit.name.c_str(),
+                                     axis.standard_deviation, comparison.unit.per_column_unit),
                           number_row("  skewness", "", axis.skewness, 1.0),
                           number_row("  excess kurtosis", "", axis.excess_kurtosis, 1.0)};
     return text_table(heads, rows);
 }
 
 // "the samples' excess kurtosis is 61, of simulations -0.016 to 0.019"
-std::string worst_number_text(const SensorUnit& unit, const AxisComparison& axis, const ComparedNumber& number) {
+std::string worst_number_text(const SensorUnit& unit, const AxisComparison& axis,
+                              const ComparedNumber& number) {
     const bool is_rate = &number == &axis.standard_deviation;
     const char* shape = &number == &axis.skewness ? "skewness" : "excess kurtosis";
     const double per_unit = is_rate ? unit.per_column_unit : 1.0;
     return fmt::format("the samples' {} is {:.3g}{unit}, of simulations {:.2g} to {:.2g}{unit}",
                        is_rate ? "standard deviation" : shape, number.recording * per_unit,
                        number.lo.value_or(number.other) * per_unit,
-                       number.hi.value_or(number.other) * per_unit, fmt::arg("unit", is_rate ? " " + unit.name : std::string()));
+                       number.hi.value_or(number.other) * per_unit,
+                       fmt::arg("unit", is_rate ? " " + unit.name : std::string()));
 }
 
 std::string heading_text(const Comparison& comparison) {

@@ -31,8 +31,7 @@ std::string noise_refit_sentence(const Diagnosis& diagnosis) {
         "The model's noise held part of the causes, as that of a model does which was fitted to a recording "
         "with the same effects; with the causes in the model it is {0} (N in {1}/√Hz, B in {1}, K in "
         "{1}·√Hz).",
-        fmt::join(changes, ", "),
-        diagnosis.unit.sensor == SensorKind::gyro ? "deg/s" : diagnosis.unit.name);
+        fmt::join(changes, ", "), diagnosis.unit.sensor == SensorKind::gyro ? "deg/s" : diagnosis.unit.name);
 }
 
 // Parameters that were not fitted stand with those that were: the entry needs both.

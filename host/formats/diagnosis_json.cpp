@@ -214,9 +214,7 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
     json["p_left"] = diagnosis.p_left;
     json["causes"] = Json::array();
     for (const Cause& cause : diagnosis.causes) { json["causes"].push_back(cause_json(cause)); }
-    if (!diagnosis.noise_refits.empty()) {
-        json["noise_refitted"] = noise_refits_json(diagnosis);
-    }
+    if (!diagnosis.noise_refits.empty()) { json["noise_refitted"] = noise_refits_json(diagnosis); }
     if (diagnosis.better_shape) {
         json["better_shape"] = {{"words", diagnosis.better_shape->words},
                                 {"than", diagnosis.better_shape->than},

@@ -1,6 +1,7 @@
 // A diagnosis for programs: schema gyrolog-diagnosis/2.
 //
-//   sensor                   "gyro" or "accelerometer". Parameters and noise of an accelerometer are in g where
+//   sensor                   "gyro" or "accelerometer". Parameters and noise of an accelerometer are in g
+//   where
 //                            a gyro has deg/s ("sigma_g" for "sigma_dps")
 //   verdict                  "none", "known", "partly", "unexplained"
 //   p_none, p_left           p-value of "no gap", before and after the causes were added
@@ -31,7 +32,8 @@
 //   domains                  [{name, axis, points, outside_before, outside_after, gap_before, gap_after}]
 //   untestable               [{effect, why}]
 //   next_recordings, warnings               sentences
-//   accelerometer, shared    where both sensors were diagnosed: the same object, and the effects that both have
+//   accelerometer, shared    where both sensors were diagnosed: the same object, and the effects that both
+//   have
 //                            at the same place
 //
 // A number that is not finite is null.

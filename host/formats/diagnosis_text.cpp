@@ -235,12 +235,11 @@ std::vector<std::string> left_items(const Diagnosis& diagnosis) {
 }
 
 std::string heading_text(const Diagnosis& diagnosis) {
-    std::string text =
-        fmt::format("{}{} against {} simulations of {} (seed {}): {} samples at {:.6g} Hz, {}",
-                    diagnosis.recording_name,
-                    diagnosis.unit.sensor == SensorKind::gyro ? "" : ", the accelerometer,",
-                    diagnosis.simulations, diagnosis.model_name, diagnosis.seed,
-                    diagnosis.samples, diagnosis.rate_hz, duration_text(diagnosis.duration_s));
+    std::string text = fmt::format("{}{} against {} simulations of {} (seed {}): {} samples at {:.6g} Hz, {}",
+                                   diagnosis.recording_name,
+                                   diagnosis.unit.sensor == SensorKind::gyro ? "" : ", the accelerometer,",
+                                   diagnosis.simulations, diagnosis.model_name, diagnosis.seed,
+                                   diagnosis.samples, diagnosis.rate_hz, duration_text(diagnosis.duration_s));
     if (!diagnosis.passes.empty()) { text += "; " + passes_text(diagnosis); }
     return text;
 }
@@ -321,13 +320,15 @@ DiagnosisSentences diagnosis_sentences(const Diagnosis& diagnosis) {
 }
 
 std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer) {
-    std::string text = "gyro\n\n" + diagnosis_text(gyro) + "\naccelerometer\n\n" + diagnosis_text(accelerometer);
+    std::string text =
+        "gyro\n\n" + diagnosis_text(gyro) + "\naccelerometer\n\n" + diagnosis_text(accelerometer);
     const std::vector<std::string> shared = shared_causes(gyro, accelerometer);
     if (shared.empty()) { return text; }
     return text + "\n" +
-           wrapped_text("", fmt::format("Both sensors have {} at the same place: what they share makes {}, the "
-                                        "board, its clock, or what it stands on.",
-                                        listed(shared), shared.size() == 1 ? "it" : "them"));
+           wrapped_text("",
+                        fmt::format("Both sensors have {} at the same place: what they share makes {}, the "
+                                    "board, its clock, or what it stands on.",
+                                    listed(shared), shared.size() == 1 ? "it" : "them"));
 }
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {

@@ -78,7 +78,10 @@ constexpr std::array forces_per_C = {
 };
 constexpr std::array forces_per_C2 = {WrittenUnit{0.0, 1e-6, " µg per degC^2"}};
 constexpr std::array forces_per_C3 = {WrittenUnit{0.0, 1e-6, " µg per degC^3"}};
-constexpr std::array force_ramps = {WrittenUnit{0.0, 1e-6 * per_hour, " µg per h"}};
+constexpr std::array force_ramps = {
+    WrittenUnit{1e-4 * per_hour, 1e-3 * per_hour, " mg per h"},
+    WrittenUnit{0.0, 1e-6 * per_hour, " µg per h"},
+};
 constexpr std::array speeds = {WrittenUnit{0.0, 1e-6, " µg s"}};
 constexpr std::array velocity_walks = {WrittenUnit{0.0, 1e-6, " µg/sqrt(Hz)"}};
 constexpr std::array force_walks = {WrittenUnit{0.0, 1e-6, " µg*sqrt(Hz)"}};
@@ -187,8 +190,7 @@ std::string value_text(const Finding& finding, std::string_view name) {
     for (std::size_t entry = 0; entry < finding.entries.size(); ++entry) {
         const auto value = value_in(finding, entry, name);
         if (!value) { continue; }
-        texts.push_back(
-            quantity_text(name_in(finding.entries[entry], name), value->value, value->sd, param));
+        texts.push_back(quantity_text(name_in(finding.entries[entry], name), value->value, value->sd, param));
         by_axis += fmt::format("{}{} ({})", by_axis.empty() ? "" : ", ", texts.back(),
                                axes_of(finding.entries[entry]));
     }
@@ -235,8 +237,9 @@ std::vector<std::string> params_in(std::string_view words) {
 }
 
 bool has_value(const Finding& finding, const std::string& name) {
-    return std::ranges::any_of(finding.entries,
-                               [&](const EffectModel& entry) { return entry.params.contains(name_in(entry, name)); });
+    return std::ranges::any_of(finding.entries, [&](const EffectModel& entry) {
+        return entry.params.contains(name_in(entry, name));
+    });
 }
 
 // "a line at {f_hz}" is "a line".

@@ -18,6 +18,11 @@ double bin_gain_nats(const SpectralBin& bin, double power, double before, double
     return 0.5 * bin.count() * (std::log(before / after) + power / before - power / after);
 }
 
+Span averaging_times_of(const Span& band_hz, double longest_s) {
+    return {std::min(definition::allan_peak_turns / band_hz.to, longest_s),
+            std::min(definition::allan_peak_turns / band_hz.from, longest_s)};
+}
+
 void put_gain_band(const SpectralBins& bins, std::vector<double> gains_nats, Place& where) {
     double sum = 0.0;
     for (double& gain : gains_nats) { sum += gain = std::max(gain, 0.0); }
@@ -29,7 +34,7 @@ void put_gain_band(const SpectralBins& bins, std::vector<double> gains_nats, Pla
         below += gains_nats[i];
     }
     where.freq_hz = band;
-    where.tau_s = {definition::allan_peak_turns / band.to, definition::allan_peak_turns / band.from};
+    where.tau_s = averaging_times_of(band);
 }
 
 }  // namespace gyrolog

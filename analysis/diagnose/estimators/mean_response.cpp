@@ -5,6 +5,7 @@
 #include <map>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/gain_band.hpp"
 #include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
@@ -484,7 +485,7 @@ private:
             if (below < 0.95 * sum) { band.to = bins[i].f_hz; }
             below += weights[i];
         }
-        finding.where.tau_s = {0.37 / band.to, std::min(0.37 / band.from, 0.5 * prediction_->duration_s())};
+        finding.where.tau_s = averaging_times_of(band, 0.5 * prediction_->duration_s());
     }
 
     double most_rate_rad_s(const Finding& finding) const {

@@ -10,6 +10,7 @@
 #include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/axis_subsets.hpp"
+#include "analysis/diagnose/estimators/gain_band.hpp"
 #include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/likelihood/noise_nuisance.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
@@ -375,7 +376,7 @@ private:
         const Span band{std::max(f_hz - 2.0 * width_hz, 1.0 / per_hz()),
                         std::min(f_hz + 2.0 * width_hz, 0.5 * prediction_->rate_hz())};
         finding->where.freq_hz = band;
-        finding->where.tau_s = {0.37 / band.to, 0.37 / band.from};
+        finding->where.tau_s = averaging_times_of(band);
         return finding;
     }
 

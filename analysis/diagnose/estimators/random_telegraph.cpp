@@ -9,6 +9,7 @@
 
 #include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/gain_band.hpp"
 #include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/telegraph_filter.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
@@ -370,8 +371,7 @@ private:
             below += arises[i];
         }
         finding.where.freq_hz = band;
-        // The Allan deviation's filter for tau peaks at 0.37 / tau.
-        finding.where.tau_s = Span{0.37 / band.to, 0.37 / band.from};
+        finding.where.tau_s = averaging_times_of(band);
     }
 
     const EffectDefinition& effect_;

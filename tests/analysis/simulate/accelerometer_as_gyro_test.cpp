@@ -23,8 +23,9 @@ SensorModel six_axes() {
     accelerometer.M[0][1] = 0.02;
     accelerometer.lsb_m_s2 = g / 16384.0;
     accelerometer.full_scale_m_s2 = accelerometer.saturation_m_s2 = 2.0 * g;
-    accelerometer.effects = {{"tone", {"x"}, {{"f_hz", 12.0}, {"amplitude_g", 2e-3}, {"phase_rad", 0.0}}, {}},
-                             {"temperature_table", {"y"}, {}, {}, {{"temp_C", {20.0, 30.0}}, {"bias_g", {0.0, 1e-3}}}}};
+    accelerometer.effects = {
+        {"tone", {"x"}, {{"f_hz", 12.0}, {"amplitude_g", 2e-3}, {"phase_rad", 0.0}}, {}},
+        {"temperature_table", {"y"}, {}, {}, {{"temp_C", {20.0, 30.0}}, {"bias_g", {0.0, 1e-3}}}}};
     return model;
 }
 

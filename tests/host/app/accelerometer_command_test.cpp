@@ -73,8 +73,8 @@ TEST_F(AccelerometerCommands, DiagnoseFindsALineInBothSensorsAndSaysThatTheyShar
     write_recording_of(shaken, 6000);
     const std::string corrected = folder.path("corrected.json");
     const std::string answer_path = folder.path("d.json");
-    ASSERT_EQ(run({"diagnose", recording, "--model", model, "--sensor", "all", "--simulations", "20", "--json",
-                   answer_path, "--plot", folder.path("d.png"), "--model-out", corrected}),
+    ASSERT_EQ(run({"diagnose", recording, "--model", model, "--sensor", "all", "--simulations", "20",
+                   "--json", answer_path, "--plot", folder.path("d.png"), "--model-out", corrected}),
               ExitCode::ok)
         << err.str();
     std::ifstream text(answer_path);
@@ -108,8 +108,8 @@ TEST_F(AccelerometerCommands, DiagnoseFindsALineInBothSensorsAndSaysThatTheyShar
 
 TEST_F(AccelerometerCommands, DiagnoseSeesNoGapWhereThereIsNone) {
     write_recording_of(six_axes());
-    ASSERT_EQ(run({"diagnose", recording, "--model", model, "--sensor", "accelerometer", "--simulations", "40",
-                   "--json", "-"}),
+    ASSERT_EQ(run({"diagnose", recording, "--model", model, "--sensor", "accelerometer", "--simulations",
+                   "40", "--json", "-"}),
               ExitCode::ok)
         << err.str();
     const json answer = json::parse(out.str());
@@ -122,8 +122,8 @@ TEST_F(AccelerometerCommands, DiagnoseTakesAPlainModelOfTheRecordingsOwn) {
     shaken.accelerometer->effects.push_back(line_at(20.0, "amplitude_g", 1e-3));
     write_recording_of(shaken);
     const std::string corrected = folder.path("corrected.json");
-    ASSERT_EQ(run({"diagnose", recording, "--auto", "--sensor", "accelerometer", "--simulations", "20", "--json",
-                   "-", "--model-out", corrected}),
+    ASSERT_EQ(run({"diagnose", recording, "--auto", "--sensor", "accelerometer", "--simulations", "20",
+                   "--json", "-", "--model-out", corrected}),
               ExitCode::ok)
         << err.str();
     const json answer = json::parse(out.str());
@@ -165,8 +165,8 @@ TEST_F(AccelerometerCommands, DenoiseHalvesTheNoiseOfFourUnits) {
         ASSERT_TRUE(write_recording_csv(simulate_recording(unit, request), arguments.back()).ok());
     }
     const std::string denoised = folder.path("denoised.csv");
-    arguments.insert(arguments.end(), {"--sensor", "accelerometer", "--still", "0,60", "--method", "kalman", "-o",
-                                       denoised, "--json", "-"});
+    arguments.insert(arguments.end(), {"--sensor", "accelerometer", "--still", "0,60", "--method", "kalman",
+                                       "-o", denoised, "--json", "-"});
     ASSERT_EQ(run(arguments), ExitCode::ok) << err.str();
     std::ifstream text(denoised);
     std::string head;
