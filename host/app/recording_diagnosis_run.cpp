@@ -199,7 +199,9 @@ std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis) {
     std::vector<std::string> facts{
         fmt::format("{} simulations, seed {}", diagnosis.simulations, diagnosis.seed),
         fmt::format("{:.6g} Hz, {}", diagnosis.rate_hz, format_duration(diagnosis.duration_s))};
-    if (diagnosis.unit.sensor == SensorKind::accelerometer) { facts.insert(facts.begin(), "the accelerometer"); }
+    if (diagnosis.unit.sensor == SensorKind::accelerometer) {
+        facts.insert(facts.begin(), "the accelerometer");
+    }
     if (!diagnosis.passes.empty()) { facts.push_back(passes_text(diagnosis)); }
     for (const Cause& cause : diagnosis.causes) {
         facts.push_back(fmt::format("{}: {}", axes_text(cause.finding.where.axes), cause_words(cause)));
