@@ -21,6 +21,7 @@ struct Command {
     const char* name;
     const char* summary;
     CommandSetup setup;
+    const char* examples;  // lines, as one types them
 };
 
 // Each in its command_NAME.cpp.
@@ -29,6 +30,7 @@ Action setup_calibrate(CLI::App& app);
 Action setup_capture(CLI::App& app);
 Action setup_check(CLI::App& app);
 Action setup_compare(CLI::App& app);
+Action setup_completion(CLI::App& app);
 Action setup_conform(CLI::App& app);
 Action setup_denoise(CLI::App& app);
 Action setup_diagnose(CLI::App& app);

@@ -12,25 +12,44 @@ namespace gyrolog {
 namespace {
 
 constexpr std::array commands{
-    Command{"list", "Show the boards that are plugged in, and why one cannot be used", setup_list},
-    Command{"capture", "Record a board's stream to a file", setup_capture},
-    Command{"info", "Tell what is in a capture", setup_info},
-    Command{"check", "Account for every byte, frame and sample of a capture", setup_check},
-    Command{"recover", "Save the intact part of a damaged capture", setup_recover},
-    Command{"analyze", "Work out Allan deviation, noise coefficients and bias", setup_analyze},
-    Command{"report", "Write one page on a recording: health, noise, bias, and a model's gap", setup_report},
+    Command{"list", "Show the boards that are plugged in, and why one cannot be used", setup_list,
+            "  gyrolog list\n"},
+    Command{"capture", "Record a board's stream to a file", setup_capture,
+            "  gyrolog capture --device usb: --duration 8h -o night.pcapng\n"
+            "  gyrolog capture --device sim:rate=1000,seed=7 --duration 10s -o try.pcapng\n"},
+    Command{"info", "Tell what is in a capture", setup_info, "  gyrolog info night.pcapng\n"},
+    Command{"check", "Account for every byte, frame and sample of a capture", setup_check,
+            "  gyrolog check night.pcapng --json health.json\n"},
+    Command{"recover", "Save the intact part of a damaged capture", setup_recover,
+            "  gyrolog recover night.pcapng -o saved.pcapng\n"},
+    Command{"analyze", "Work out Allan deviation, noise coefficients and bias", setup_analyze,
+            "  gyrolog analyze night.pcapng --plot night.png --model night.model.json\n"
+            "  gyrolog analyze log.csv --columns t,gx,gy,gz --unit deg/s --still auto\n"},
+    Command{"report", "Write one page on a recording: health, noise, bias, and a model's gap", setup_report,
+            "  gyrolog report night.pcapng --model night.model.json -o night.html\n"},
     Command{"compare", "Hold a recording against a model's simulations, or against another one",
-            setup_compare},
+            setup_compare, "  gyrolog compare day.pcapng night.model.json --plot compare.png\n"},
     Command{"calibrate", "Find scale, misalignment, bias and temperature's part from rests, turns and ramps",
-            setup_calibrate},
-    Command{"conform", "Judge a board by the numbered rules of the protocol", setup_conform},
-    Command{"diagnose", "Find what a model lacks: where it parts from a recording, and why", setup_diagnose},
-    Command{"denoise", "Combine an array of gyros and take noise out, sample by sample", setup_denoise},
-    Command{"simulate", "Make a recording of a simulated sensor", setup_simulate},
-    Command{"export", "Write a recording or its noise for other programs", setup_export},
-    Command{"table", "Join the answers about many recordings into one table", setup_table},
+            setup_calibrate,
+            "  gyrolog calibrate poses.csv turns.csv --turn 360 --model-out unit.json --px4 unit.params\n"},
+    Command{"conform", "Judge a board by the numbered rules of the protocol", setup_conform,
+            "  gyrolog conform --device usb: --transcript board.txt\n"},
+    Command{"diagnose", "Find what a model lacks: where it parts from a recording, and why", setup_diagnose,
+            "  gyrolog diagnose day.pcapng --model night.model.json --plot gap.png --model-out better.json\n"
+            "  gyrolog diagnose day.pcapng --auto\n"},
+    Command{"denoise", "Combine an array of gyros and take noise out, sample by sample", setup_denoise,
+            "  gyrolog denoise array.csv --still 0,60 -o quiet.csv --plot quiet.png\n"},
+    Command{"simulate", "Make a recording of a simulated sensor", setup_simulate,
+            "  gyrolog simulate night.model.json -o sim.csv --duration 12h --seed 7\n"},
+    Command{"export", "Write a recording or its noise for other programs", setup_export,
+            "  gyrolog export night.pcapng -o imu.yaml\n"
+            "  gyrolog export night.model.json -o imu.sdf --for sdf --horizon 10m\n"},
+    Command{"table", "Join the answers about many recordings into one table", setup_table,
+            "  gyrolog table lines.jsonl -o fleet.csv --population boards.json\n"},
     Command{"doctor", "Tell what stands in the way on this machine, and the command that mends it",
-            setup_doctor},
+            setup_doctor, "  gyrolog doctor\n"},
+    Command{"completion", "Print what lets a shell complete commands and options", setup_completion,
+            "  gyrolog completion bash > ~/.local/share/bash-completion/completions/gyrolog\n"},
 };
 
 // A word that is empty is a shell's variable that was never set, and no option's absence.
@@ -113,6 +132,8 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
         CLI::App* sub = app.add_subcommand(command.name, command.summary);
         sub->get_formatter()->column_width(34);
         actions.push_back(command.setup(*sub));
+        const std::string said = sub->get_footer();
+        sub->footer((said.empty() ? "" : said + "\n\n") + "Examples:\n" + command.examples);
         sub->callback([&action, &actions, i = actions.size() - 1] { action = actions[i]; });
     }
     const std::vector<std::string> words = arguments;

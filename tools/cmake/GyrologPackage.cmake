@@ -52,6 +52,20 @@ configure_file(tools/debian/lintian-overrides ${made}/lintian/gyrolog COPYONLY)
 install(FILES ${made}/lintian/gyrolog DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides)
 install(FILES tools/gyrolog.lua DESTINATION ${CMAKE_INSTALL_DATADIR}/gyrolog)
 install(FILES ${made}/gyrolog.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+# Made by the program itself, from its commands and options.
+set(completions bash-completion/completions/gyrolog zsh/vendor-completions/_gyrolog fish/vendor_completions.d/gyrolog.fish)
+foreach(completion IN LISTS completions)
+  string(REGEX MATCH "^[a-z]+" shell ${completion})
+  set(script ${made}/${completion})
+  get_filename_component(folder ${script} DIRECTORY)
+  add_custom_command(OUTPUT ${script}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
+    COMMAND gyrolog completion ${shell} > ${script} DEPENDS gyrolog VERBATIM)
+  list(APPEND completion_scripts ${script})
+  get_filename_component(place ${completion} DIRECTORY)
+  install(FILES ${script} DESTINATION ${CMAKE_INSTALL_DATADIR}/${place})
+endforeach()
+add_custom_target(gyrolog_completions ALL DEPENDS ${completion_scripts})
 set(documents ${CMAKE_INSTALL_DATADIR}/doc/gyrolog)
 install(FILES README.md tools/debian/copyright ${made}/changelog.Debian.gz DESTINATION ${documents})
 # In their folders, as README.md refers to them.

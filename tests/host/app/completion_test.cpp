@@ -1,0 +1,129 @@
+// Help that shows examples, and scripts that complete what there is.
+#include <cstdio>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host/app/command_line.hpp"
+#include "tests/support/program.hpp"
+
+namespace gyrolog {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::Not;
+
+std::string output_of(std::vector<std::string> arguments) {
+    std::ostringstream out;
+    std::ostringstream err;
+    EXPECT_EQ(run_command_line(std::move(arguments), {out, err}), ExitCode::ok) << err.str();
+    return out.str();
+}
+
+std::vector<std::string> all_of(const std::string& text, const char* pattern) {
+    const std::regex wanted(pattern);
+    std::vector<std::string> found;
+    for (std::sregex_iterator match(text.begin(), text.end(), wanted); match != std::sregex_iterator();
+         ++match) {
+        found.push_back((*match)[1]);
+    }
+    return found;
+}
+
+std::vector<std::string> command_names() {
+    const std::string help = output_of({"--help"});
+    return all_of(help.substr(help.find("Subcommands:")), "\n  ([a-z]+) ");
+}
+
+TEST(Help, OfEveryCommandEndsInExamplesOfItsOwnOptions) {
+    const std::vector<std::string> names = command_names();
+    ASSERT_GE(names.size(), 17U);
+    for (const std::string& name : names) {
+        const std::string help = output_of({name, "--help"});
+        const std::size_t examples = help.find("Examples:");
+        ASSERT_NE(examples, std::string::npos) << name;
+        const std::string shown = help.substr(examples);
+        EXPECT_THAT(shown, HasSubstr("gyrolog " + name)) << help;
+        const std::vector<std::string> known = all_of(help.substr(0, examples), "(--[a-z0-9-]+)");
+        for (const std::string& option : all_of(shown, "(--[a-z0-9-]+)")) {
+            EXPECT_THAT(known, Contains(option)) << name;
+        }
+    }
+}
+
+// What bash offers for the last word.
+std::vector<std::string> offered_by_bash(const std::string& script, const std::string& words, int last) {
+    const std::string command = "bash -c '. " + script + "; COMP_WORDS=(" + words +
+                                "); COMP_CWORD=" + std::to_string(last) +
+                                "; _gyrolog; printf \"%s\\n\" \"${COMPREPLY[@]}\"'";
+    std::vector<std::string> offered;
+    FILE* pipe = popen(command.c_str(), "r");
+    if (pipe == nullptr) { return offered; }
+    std::array<char, 4096> line{};
+    while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr) {
+        std::string word = line.data();
+        word.erase(word.find_last_not_of('\n') + 1);
+        if (!word.empty()) { offered.push_back(word); }
+    }
+    pclose(pipe);
+    return offered;
+}
+
+TEST(Completion, BashOffersCommandsOptionsAndValues) {
+    const TemporaryFolder folder;
+    const std::string script = folder.path("gyrolog.bash");
+    std::ofstream(script) << output_of({"completion", "bash"});
+    EXPECT_THAT(offered_by_bash(script, "gyrolog \"\"", 1), IsSupersetOf(command_names()));
+    EXPECT_EQ(offered_by_bash(script, "gyrolog diag", 1), std::vector<std::string>{"diagnose"});
+    EXPECT_THAT(offered_by_bash(script, "gyrolog diagnose --mod", 2),
+                testing::ElementsAre("--model", "--model-out"));
+    EXPECT_THAT(offered_by_bash(script, "gyrolog denoise --method w", 3), testing::ElementsAre("wavelet"));
+    // A file: bash's own.
+    EXPECT_THAT(offered_by_bash(script, "gyrolog diagnose --model \"\"", 3), testing::IsEmpty());
+    EXPECT_THAT(offered_by_bash(script, "gyrolog check \"\"", 2), testing::IsEmpty());
+}
+
+TEST(Completion, EveryShellsScriptHasEveryOption) {
+    for (const char* shell : {"bash", "zsh", "fish"}) {
+        const std::string script = output_of({"completion", shell});
+        for (const std::string& name : command_names()) {
+            const std::string help = output_of({name, "--help"});
+            EXPECT_THAT(script, HasSubstr(name)) << shell;
+            for (const std::string& option :
+                 all_of(help.substr(0, help.find("Examples:")), "(?:^|\n|,)  ?(--[a-z0-9-]+)")) {
+                const std::string written = shell == std::string("fish") ? "-l " + option.substr(2) : option;
+                EXPECT_THAT(script, HasSubstr(written)) << shell << ' ' << name;
+            }
+        }
+    }
+}
+
+// The shells' own parsers, where they are installed.
+TEST(Completion, ShellsReadTheirScripts) {
+    const TemporaryFolder folder;
+    int read = 0;
+    for (const char* shell : {"bash", "zsh", "fish"}) {
+        if (std::system((std::string("command -v ") + shell + " >/dev/null").c_str()) != 0) { continue; }
+        const std::string script = folder.path(shell);
+        std::ofstream(script) << output_of({"completion", shell});
+        EXPECT_EQ(std::system((std::string(shell) + " -n " + script).c_str()), 0) << shell;
+        ++read;
+    }
+    EXPECT_GE(read, 1);
+}
+
+TEST(Completion, OfAnotherShellIsAUsageError) {
+    std::ostringstream out;
+    std::ostringstream err;
+    EXPECT_EQ(run_command_line({"completion", "tcsh"}, {out, err}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("bash"));
+    EXPECT_THAT(out.str(), Not(HasSubstr("complete")));
+}
+
+}  // namespace
+}  // namespace gyrolog
