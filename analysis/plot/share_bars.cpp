@@ -76,7 +76,7 @@ std::vector<Bar> bars_of(const Diagnosis& diagnosis) {
     bars.push_back({"left", left_share(diagnosis), "", left_colour});
     const Gap& before = diagnosis.gap_before;
     const double floor = before.floor * before.floor / excess(before.value, before);
-    bars.push_back({"floor", {floor, 0.0, 0.0}, ", what two simulations differ by", floor_colour});
+    bars.push_back({"by chance", {floor, 0.0, 0.0}, ", what two simulations differ by", floor_colour});
     return bars;
 }
 

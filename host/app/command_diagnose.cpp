@@ -90,6 +90,8 @@ Action setup_diagnose(CLI::App& app) {
         ->type_name("FILE");
     app.add_flag("--unnamed", request.with_unnamed, "Into --model-out also what was modelled without a name")
         ->needs(app.get_option("--model-out"));
+    app.add_flag("--verbose", request.is_verbose,
+                 "Tell all parameters, all places and rivals, and what could not be tested");
     app.add_option("--holdout", request.holdout_path,
                    "A second recording of the sensor: the gap is measured on it")
         ->type_name("RECORDING");
@@ -124,9 +126,9 @@ Action setup_diagnose(CLI::App& app) {
         ->capture_default_str();
     add_part_options(app, request.part);
     for (const char* of_recordings :
-         {"--auto", "--unnamed", "--holdout", "--average", "--simulations", "--seed", "--threads",
-          "--lsb-dps", "--rate", "--columns", "--unit", "--acc-unit", "--lsb-g", "--sensor", "--from", "--to",
-          "--still", "--jsonl"}) {
+         {"--auto", "--verbose", "--unnamed", "--holdout", "--average", "--simulations", "--seed",
+          "--threads", "--lsb-dps", "--rate", "--columns", "--unit", "--acc-unit", "--lsb-g", "--sensor",
+          "--from", "--to", "--still", "--jsonl"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

@@ -119,20 +119,30 @@ SensorModel model_of(const RecordingDiagnosisRequest& request, const Diagnoses& 
     return model;
 }
 
-std::string text_of(const Diagnoses& diagnoses) {
-    return diagnoses.size() == 1 ? diagnosis_text(diagnoses.front())
-                                 : diagnosis_text(diagnoses.front(), diagnoses.back());
+std::vector<std::string> shared_by(const Diagnoses& diagnoses) {
+    return shared_causes(diagnoses.front(), diagnoses.back());
+}
+
+std::string text_of(const RecordingDiagnosisRequest& request, const Diagnoses& diagnoses) {
+    const Wording wording = request.is_verbose ? Wording::whole : Wording::brief;
+    const std::string text = diagnoses.size() == 1 ? diagnosis_text(diagnoses.front(), wording)
+                                                   : diagnosis_text(diagnoses.front(), diagnoses.back(),
+                                                                    shared_by(diagnoses), wording);
+    return request.is_verbose ? text
+                              : text +
+                                    "\n--verbose tells all parameters, all places, and what could not be "
+                                    "tested.\n";
 }
 
 std::string json_of(const Diagnoses& diagnoses) {
     return diagnoses.size() == 1 ? diagnosis_json(diagnoses.front())
-                                 : diagnosis_json(diagnoses.front(), diagnoses.back());
+                                 : diagnosis_json(diagnoses.front(), diagnoses.back(), shared_by(diagnoses));
 }
 
 Status write_results(Console& console, const RecordingDiagnosisRequest& request, const Diagnoses& diagnoses) {
     ResultOutput results(console);
     if (request.json_path != "-") {
-        results.show(text_of(diagnoses));
+        results.show(text_of(request, diagnoses));
     } else {
         for (const Diagnosis& diagnosis : diagnoses) { tell_warnings(console, diagnosis.warnings); }
     }

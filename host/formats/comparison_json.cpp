@@ -59,7 +59,6 @@ Json number_json(const ComparedNumber& number, double per_unit) {
 }  // namespace
 
 std::string comparison_json(const Comparison& comparison) {
-    const bool is_gyro = comparison.unit.sensor == SensorKind::gyro;
     Json json;
     json["schema"] = "gyrolog-compare/1";
     json["recording"] = comparison.recording_name;
@@ -74,7 +73,7 @@ std::string comparison_json(const Comparison& comparison) {
     json["duration_s"] = comparison.duration_s;
     json["samples"] = comparison.samples;
     json["less_reference"] = comparison.less_reference;
-    json["sensor"] = is_gyro ? "gyro" : "accelerometer";
+    if (comparison.unit.sensor == SensorKind::accelerometer) { json["sensor"] = "accelerometer"; }
     json["axes"] = Json::object();
     const double per_unit = comparison.unit.per_column_unit;
     for (const AxisComparison& axis : comparison.axes) {

@@ -4,6 +4,7 @@
 //   with                     "simulations" or "recording"
 //   simulations, seed, band_probability     with simulations only
 //   rate_hz, duration_s, samples, less_reference
+//   sensor                   "accelerometer" where it was that; its numbers are in g where a gyro has dps
 //   axes.x.allan             tau_s, recording, other (the simulations' median), lo, hi (their band) in dps;
 //                            recording_lo, recording_hi with a recording only; ratio_dB = recording over
 //                            other. All arrays of one length.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "analysis/diagnose/accelerometer_diagnosis.hpp"
 #include "host/formats/effect_words.hpp"
 #include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
@@ -198,17 +197,18 @@ std::string_view name_of(Sense sense) {
 
 std::string diagnosis_json(const Diagnosis& diagnosis) { return json_text(diagnosis_object(diagnosis)); }
 
-std::string diagnosis_json(const Diagnosis& gyro, const Diagnosis& accelerometer) {
+std::string diagnosis_json(const Diagnosis& gyro, const Diagnosis& accelerometer,
+                           const std::vector<std::string>& shared) {
     Json json = diagnosis_object(gyro);
     json["accelerometer"] = diagnosis_object(accelerometer);
-    json["shared"] = shared_causes(gyro, accelerometer);
+    json["shared"] = shared;
     return json_text(json);
 }
 
 Json diagnosis_object(const Diagnosis& diagnosis) {
     Json json;
     json["schema"] = "gyrolog-diagnosis/2";
-    json["sensor"] = diagnosis.unit.sensor == SensorKind::gyro ? "gyro" : "accelerometer";
+    if (diagnosis.unit.sensor == SensorKind::accelerometer) { json["sensor"] = "accelerometer"; }
     json["verdict"] = name_of(diagnosis.verdict);
     json["p_none"] = diagnosis.p_none;
     json["p_left"] = diagnosis.p_left;

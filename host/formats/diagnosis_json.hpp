@@ -1,8 +1,7 @@
 // A diagnosis for programs: schema gyrolog-diagnosis/2.
 //
-//   sensor                   "gyro" or "accelerometer". Parameters and noise of an accelerometer are in g
-//   where
-//                            a gyro has deg/s ("sigma_g" for "sigma_dps")
+//   sensor                   "accelerometer" where it was that: its parameters and its noise are in g where a
+//                            gyro's are in deg/s ("sigma_g" for "sigma_dps")
 //   verdict                  "none", "known", "partly", "unexplained"
 //   p_none, p_left           p-value of "no gap", before and after the causes were added
 //   causes                   by share: {effect, sense, score, tie_group, axes, where, params, sd, share,
@@ -51,8 +50,9 @@ std::string_view name_of(Verdict verdict);
 std::string_view name_of(Sense sense);
 
 std::string diagnosis_json(const Diagnosis& diagnosis);
-// Of two sensors of one recording.
-std::string diagnosis_json(const Diagnosis& gyro, const Diagnosis& accelerometer);
+// Of two sensors of one recording, and the effects that both have at the same place.
+std::string diagnosis_json(const Diagnosis& gyro, const Diagnosis& accelerometer,
+                           const std::vector<std::string>& shared);
 Json diagnosis_object(const Diagnosis& diagnosis);
 
 }  // namespace gyrolog

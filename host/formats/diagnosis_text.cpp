@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/diagnose/accelerometer_diagnosis.hpp"
 #include "host/formats/diagnosis_details.hpp"
 #include "host/formats/effect_words.hpp"
 #include "host/formats/place_text.hpp"
@@ -161,15 +160,15 @@ std::string explained_section(const DiagnosisSentences& sentences) {
     }
     if (sentences.causes.size() > 1) {
         text += wrapped_text("  ",
-                             "Each share is what comes back when that cause alone is taken out again: shares "
+                             "Each share is what returns when that cause alone is taken out again: shares "
                              "may overlap.");
     }
     return "\n" + text;
 }
 
 std::string better_shape_sentence(const BetterShape& better) {
-    return fmt::format("{} fits better than {}, by {:.0f} nats, and is no known effect.", better.words,
-                       better.than.empty() ? "the model" : listed(better.than), better.evidence_nats);
+    return fmt::format("{} fits better than {}, and is no known effect.", better.words,
+                       better.than.empty() ? "the model" : listed(better.than));
 }
 
 // What was modelled without an effect.
@@ -319,10 +318,10 @@ DiagnosisSentences diagnosis_sentences(const Diagnosis& diagnosis) {
     return sentences;
 }
 
-std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer) {
-    std::string text =
-        "gyro\n\n" + diagnosis_text(gyro) + "\naccelerometer\n\n" + diagnosis_text(accelerometer);
-    const std::vector<std::string> shared = shared_causes(gyro, accelerometer);
+std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer,
+                           const std::vector<std::string>& shared, Wording wording) {
+    std::string text = "gyro\n\n" + diagnosis_text(gyro, wording) + "\naccelerometer\n\n" +
+                       diagnosis_text(accelerometer, wording);
     if (shared.empty()) { return text; }
     return text + "\n" +
            wrapped_text("",
@@ -331,7 +330,7 @@ std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer
                                     listed(shared), shared.size() == 1 ? "it" : "them"));
 }
 
-std::string diagnosis_text(const Diagnosis& diagnosis) {
+std::string diagnosis_text(const Diagnosis& diagnosis, Wording wording) {
     const DiagnosisSentences sentences = diagnosis_sentences(diagnosis);
     std::string text = verdict_sentence(diagnosis) + "\n" + unnamed_sentence(diagnosis) + "\n" +
                        wrapped_text("", sentences.heading);
@@ -342,7 +341,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
         for (const std::string& item : sentences.left_items) { text += wrapped_text("  - ", item); }
     }
     text += sentences_text("recordings that would tell more", diagnosis.next_recordings);
-    text += diagnosis_details(diagnosis);
+    if (wording == Wording::whole) { text += diagnosis_details(diagnosis); }
     text += sentences_text("warnings", diagnosis.warnings);
     return text;
 }

@@ -1,6 +1,6 @@
 // A diagnosis for people, in the order in which one asks: the verdict in one line; whether there is a gap,
 // and by what odds; how much of it is explained, by what, how surely, a line for each cause; what is left,
-// and where; which recording would tell more. The details follow.
+// and where; which recording would tell more. The details follow where they are wanted.
 #pragma once
 
 #include <string>
@@ -39,8 +39,15 @@ struct DiagnosisSentences {
 // Without a gap nothing is explained and nothing is left.
 DiagnosisSentences diagnosis_sentences(const Diagnosis& diagnosis);
 
-std::string diagnosis_text(const Diagnosis& diagnosis);
-// Of two sensors of one recording, and what both have.
-std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer);
+// How much a text says.
+enum class Wording {
+    brief,  // what one acts on
+    whole   // with every parameter, place, rival and effect that could not be tested
+};
+
+std::string diagnosis_text(const Diagnosis& diagnosis, Wording wording = Wording::whole);
+// Of two sensors of one recording, and the effects that both have at the same place.
+std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer,
+                           const std::vector<std::string>& shared, Wording wording = Wording::whole);
 
 }  // namespace gyrolog

@@ -34,7 +34,7 @@ Html causes_of(const DiagnosisSentences& sentences) {
     section += table(causes);
     if (sentences.causes.size() > 1) {
         section += paragraph(
-            "Each share is what comes back when that cause alone is taken out again: shares "
+            "Each share is what returns when that cause alone is taken out again: shares "
             "may overlap.",
             "muted");
     }

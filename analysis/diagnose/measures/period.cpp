@@ -71,7 +71,7 @@ GapCurve period_curve(const Observation& observation, std::size_t axis) {
 
 }  // namespace
 
-const Measure measures::period{.name = "what comes back",
+const Measure measures::period{.name = "periodicity",
                                .x_name = "period (s)",
                                .y_name = "excess (its sd)",
                                .shown_x = as_it_is,

@@ -181,7 +181,7 @@ TEST(DiagnosisFigure, HasABarForEveryShareOnTop) {
     const Panel& bars = figure.panels[0];
     EXPECT_TRUE(bars.spans_row);
     EXPECT_EQ(names_of(bars), (std::vector<std::string>{"temp_lag on x", "gauss_markov on x, y, z",
-                                                        "no name: density on z", "left", "floor"}));
+                                                        "no name: density on z", "left", "by chance"}));
     // Left is (1.63^2 - 1) / (4^2 - 1), the floor 1 / (4^2 - 1).
     EXPECT_EQ(words_of(bars), (std::vector<std::string>{
                                   "62 (55 to 68) %, probability 91 %", "35 (20 to 50) %, probability 74 %",

@@ -89,6 +89,21 @@ TEST(DiagnosisText, SaysItInTheOrderInWhichOneAsks) {
     }
 }
 
+// What one reads first has no word that only the method knows.
+TEST(DiagnosisText, IsBriefWithoutDetailsAndWithoutTheMethodsWords) {
+    Diagnosis diagnosis = partly();
+    diagnosis.untestable = {{"latency", "the recording has no reference rate"}};
+    const std::string brief = diagnosis_text(diagnosis, Wording::brief);
+    for (const char* word : {"nats", "floor", "comes back", "not tested", "parameters of the causes"}) {
+        EXPECT_THAT(brief, Not(HasSubstr(word)));
+    }
+    // All else is as it was.
+    for (const char* part :
+         {"partly: ", "\ngap\n", "\nexplained: ", "temp_lag on x", "\nleft: ", "\nwarnings\n"}) {
+        EXPECT_THAT(brief, HasSubstr(part));
+    }
+}
+
 TEST(DiagnosisText, SaysWhetherThereIsAGapAndHowFarItIs) {
     const std::string text = joined(diagnosis_text(known()));
     EXPECT_THAT(text, HasSubstr("1 of 5000 would differ as much (p = 0.0002)"));
@@ -111,7 +126,7 @@ TEST(DiagnosisText, HasALineForEachCauseWithItsShareAndProbability) {
     EXPECT_THAT(
         joined(diagnosis_text(with_line_of_model())),
         HasSubstr("2. line_absent on z: 20 % of the gap (10 % to 30 %), probability 98 %. The model has "
-                  "a line at 31 Hz that the recording lacks. Each share is what comes back when that "
+                  "a line at 31 Hz that the recording lacks. Each share is what returns when that "
                   "cause alone is taken out again: shares may overlap."));
 }
 
@@ -215,7 +230,7 @@ TEST(DiagnosisText, SaysWhichShapeFitsBetterThanTheCauses) {
     diagnosis.better_shape = BetterShape{"A course that repeats every 412 s", {"temp_lag"}, 12.4};
     const std::string text = joined(diagnosis_text(diagnosis));
     EXPECT_THAT(text, StartsWith("unexplained: temp_lag on x resembles the gap, but"));
-    EXPECT_THAT(text, HasSubstr("A course that repeats every 412 s fits better than temp_lag, by 12 nats, "
+    EXPECT_THAT(text, HasSubstr("A course that repeats every 412 s fits better than temp_lag, "
                                 "and is no known effect."));
     const json shape = json::parse(diagnosis_json(diagnosis)).at("better_shape");
     EXPECT_EQ(shape.at("words"), "A course that repeats every 412 s");
