@@ -177,7 +177,7 @@ def read_mjcf(text):
     root = ElementTree.fromstring(text)
     gyro = root.find("sensor/gyro")
     assert math.isclose(float(root.find("option").get("timestep")), DT, rel_tol=1e-8)
-    snippet = re.search(r"<!--\n(  import numpy.*?)-->", text, re.S).group(1)
+    snippet = re.search(r"^(  import numpy.*?)-->", text, re.M | re.S).group(1)
     keep, drive, bias, sd = (ast.literal_eval(found) for found in re.findall(r"np\.array\((\[.*?\])\)", snippet))
     assert math.isclose(float(gyro.get("noise")), max(sd), rel_tol=1e-8)
     compile("\n".join(line[2:] for line in snippet.splitlines()), "snippet", "exec")
