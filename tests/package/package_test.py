@@ -34,6 +34,12 @@ FILES = {
     "usr/share/doc/gyrolog/firmware_protocol/SPEC.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/firmware_protocol/USB_ID.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/host/capture/FORMAT.md": "-rw-r--r--",
+    "usr/share/doc/gyrolog/examples/README.md": "-rw-r--r--",
+    "usr/share/doc/gyrolog/examples/gyro_world.sdf": "-rw-r--r--",
+    "usr/share/doc/gyrolog/examples/imu.model.json": "-rw-r--r--",
+    "usr/share/doc/gyrolog/examples/made_up_flight.py": "-rw-r--r--",
+    "usr/share/doc/gyrolog/examples/mujoco_gyro.c": "-rw-r--r--",
+    "usr/share/doc/gyrolog/examples/tumbling_body.xml": "-rw-r--r--",
     "usr/share/doc/gyrolog/changelog.Debian.gz": "-rw-r--r--",
     "usr/share/doc/gyrolog/copyright": "-rw-r--r--",
 }

@@ -72,5 +72,6 @@ install(FILES README.md tools/debian/copyright ${made}/changelog.Debian.gz DESTI
 install(FILES analysis/METHODS.md DESTINATION ${documents}/analysis)
 install(FILES firmware_protocol/SPEC.md firmware_protocol/USB_ID.md DESTINATION ${documents}/firmware_protocol)
 install(FILES host/capture/FORMAT.md DESTINATION ${documents}/host/capture)
+install(DIRECTORY host/sensor/examples DESTINATION ${documents})
 
 include(CPack)
