@@ -7,7 +7,7 @@ packages_test="ccache libgtest-dev libgmock-dev zlib1g-dev libumockdev-dev umock
   git"
 packages_all="parallel libbenchmark-dev clang clang-format clang-tidy libclang-rt-14-dev gcc-arm-none-eabi
   libnewlib-arm-none-eabi python3-unicorn
-  qemu-system-arm qemu-system-x86 busybox-static kmod lintian"
+  qemu-system-arm qemu-system-x86 busybox-static kmod lintian libmujoco-dev libsdformat-dev"
 packages_package="dpkg-dev file"
 
 # install_packages NAME...: installs those that are missing, as root or through sudo; does nothing when all are there.
