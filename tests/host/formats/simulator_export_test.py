@@ -3,9 +3,11 @@
 (cited in the file's head), and holds its Allan deviation against the model's: the largest error is the stated one.
 
     simulator_export_test.py GYROLOG [MODELS HORIZON_S...]
+    simulator_export_test.py GYROLOG play
 
 No random numbers: a simulator's noise is linear in its draws, so that its response to one draw of each kind gives
-the expected Allan variance exactly.
+the expected Allan variance exactly. With `play` the formulas are run with random numbers all the same, many sensors
+at once, and what `gyrolog simulate` and `gyrolog analyze` give for the model is held beside them.
 """
 
 import ast
@@ -26,6 +28,12 @@ import numpy as np  # noqa: E402
 RATE_HZ = 50.0
 DT = 1.0 / RATE_HZ
 TOLERANCE_DB = 0.2
+# With `play`: 20 averaging times and 12 simulators of three axes each are 720 chances for five standard errors, 4e-4
+# in all.
+STANDARD_ERRORS = 5.0
+PLAYED_HORIZON_S = 10.0
+PLAYED_SENSORS = 6000
+PLAYED_AT_ONCE = 3000
 DEG = math.pi / 180.0
 
 
@@ -173,14 +181,19 @@ def read_navego(text):
             for bias, sd, walk in zip(row("gyro_bias"), row("imu.g_std"), row("imu.arrw"))]
 
 
+def mjcf_snippet(text):
+    snippet = re.search(r"^(  import numpy.*?)-->", text, re.M | re.S).group(1)
+    return "\n".join(line[2:] for line in snippet.splitlines())
+
+
 def read_mjcf(text):
     root = ElementTree.fromstring(text)
     gyro = root.find("sensor/gyro")
     assert math.isclose(float(root.find("option").get("timestep")), DT, rel_tol=1e-8)
-    snippet = re.search(r"^(  import numpy.*?)-->", text, re.M | re.S).group(1)
+    snippet = mjcf_snippet(text)
+    compile(snippet, "snippet", "exec")
     keep, drive, bias, sd = (ast.literal_eval(found) for found in re.findall(r"np\.array\((\[.*?\])\)", snippet))
     assert math.isclose(float(gyro.get("noise")), max(sd), rel_tol=1e-8)
-    compile("\n".join(line[2:] for line in snippet.splitlines()), "snippet", "exec")
     return [(bias[i], lambda draw, i=i: sd[i] * draw,
              lambda b, draw, i=i: keep[i] * b + drive[i] * draw) for i in range(3)]
 
@@ -215,15 +228,34 @@ def simulated_variance(white, bias, m):
     return np.array(variances)
 
 
+def played_variance(white, bias, m, random):
+    """The same by running the formula: variances and their standard errors, over many sensors at once."""
+    length = 3 * max(m)
+    kept, driven = bias(1.0, 0.0), bias(0.0, 1.0)
+    settled = driven / math.sqrt(1.0 - kept**2) if kept < 1.0 else 0.0
+    found = np.empty((PLAYED_SENSORS, len(m)))
+    for first in range(0, PLAYED_SENSORS, PLAYED_AT_ONCE):
+        angle = np.zeros((length + 1, PLAYED_AT_ONCE))
+        state = settled * random.standard_normal(PLAYED_AT_ONCE)
+        for k in range(length):
+            state = bias(state, random.standard_normal(PLAYED_AT_ONCE))
+            angle[k + 1] = angle[k] + state + white(random.standard_normal(PLAYED_AT_ONCE))
+        for i, one in enumerate(m):
+            starts = np.arange(0, length - 2 * one + 1, max(1, one // 4))
+            second = angle[starts + 2 * one] - 2.0 * angle[starts + one] + angle[starts]
+            found[first:first + PLAYED_AT_ONCE, i] = np.mean(second**2, axis=0) / (2.0 * one**2)
+    return found.mean(axis=0), found.std(axis=0, ddof=1) / math.sqrt(PLAYED_SENSORS)
+
+
 def stated_errors(text):
     head = text if not text.startswith("{") else " ".join(json.loads(text)["_gyrolog"])
 
-    def dB(words):
+    def said(words):
         return 0.0 if words.startswith("none") else float(words.split()[0])
     each = re.search(r"x (none|[\d.]+ dB)[^,]*, y (none|[\d.]+ dB)[^,]*, z (none|[\d.]+ dB)", head)
     if each:
-        return [dB(words) for words in each.groups()]
-    return [dB(re.search(r"Allan deviation:\s+(?:#|//|%)?\s*(none|[\d.]+ dB)", head).group(1))]
+        return [said(words) for words in each.groups()]
+    return [said(re.search(r"Allan deviation:\s+(?:#|//|%)?\s*(none|[\d.]+ dB)", head).group(1))]
 
 
 def check(name, simulator, model, horizon_s, text):
@@ -233,12 +265,89 @@ def check(name, simulator, model, horizon_s, text):
         if bias is not None:
             assert math.isclose(bias, model["axes"][axis]["bias"] * DEG, rel_tol=1e-6), (simulator, bias)
         ratio = simulated_variance(white, drift, m) / model_variance(model, axis, m, simulator in ROUNDING)
-        worst.append(np.max(np.abs(10.0 * np.log10(ratio))))
+        worst.append(np.max(np.abs(dB(ratio))))
     stated = stated_errors(text)
     true = worst if len(stated) == 3 else [max(worst)]
     for said, found in zip(stated, true):
         assert abs(said - found) < TOLERANCE_DB, f"{simulator}, {name}, {horizon_s} s: {said} dB stated, {found:.2f} true"
     return max(true)
+
+
+def dB(ratio):
+    """Of variances; of their square roots the same number."""
+    return 10.0 * np.log10(ratio)
+
+
+def gyrologs_curve(program, folder, path, m):
+    """Allan variances that `gyrolog analyze` finds in what `gyrolog simulate` makes, and their standard errors."""
+    recording, found = folder / "simulated.csv", folder / "found.json"
+    subprocess.run([program, "simulate", path, "-o", recording, "--duration", "4h", "--seed", "5"], check=True,
+                   capture_output=True)
+    subprocess.run([program, "analyze", recording, "--sensor", "gyro", "--json", found, "--m",
+                    ",".join(str(one) for one in m), "--confidence", "0.683"], check=True, capture_output=True)
+    for axis in json.loads(found.read_text())["axes"].values():
+        points = {point["m"]: point for point in axis["allan"]}
+        assert set(m) <= set(points), sorted(points)
+        deviation, low, high = (np.array([points[one][key] for one in m]) * DEG for key in ("value", "lo", "hi"))
+        yield deviation**2, deviation * (high - low)
+
+
+def play_snippet(program, folder):
+    """The lines of Python in MuJoCo's file, in a body at rest: a sensor that they can be is the model to `compare`."""
+    class Body:
+        data = np.zeros(3)
+
+        def sensor(self, name):
+            assert name == "gyro"
+            return self
+    path, out, recording = folder / "b.model.json", folder / "body.xml", folder / "snippet.csv"
+    path.write_text(json.dumps(dict(models())["gauss_markov"]))
+    subprocess.run([program, "export", path, "-o", out, "--for", "mjcf", "--horizon", "100s"], check=True,
+                   capture_output=True)
+    gyro = assigned(mjcf_snippet(out.read_text()), "gyro")
+    rates = [gyro(Body()) for _ in range(60000)]
+    np.savetxt(recording, np.column_stack([np.arange(len(rates)) * DT, rates]), fmt="%.12g", delimiter=",",
+               header="t_s,gx_rad_s,gy_rad_s,gz_rad_s", comments="")
+    said = subprocess.run([program, "compare", recording, path], check=True, capture_output=True, text=True).stdout
+    assert said.count("differs no more than simulations do among themselves") == 3, said
+
+
+def play(program):
+    """Each simulator's noise as it comes, of one model that has every term that is projected."""
+    model = dict(models())["all"]
+    longest = round(RATE_HZ * PLAYED_HORIZON_S)
+    m = sorted({max(1, round(longest * 2.0**(-k / 2.0))) for k in range(20)})
+    random = np.random.default_rng(12)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        path, out = folder / "a.model.json", folder / "out"
+        path.write_text(json.dumps(model))
+        play_snippet(program, folder)
+        ours = list(gyrologs_curve(program, folder, path, m))
+        for axis, (variance, error) in zip("xyz", ours):
+            off = np.abs(variance - model_variance(model, axis, m, False)) / error
+            assert np.max(off) < STANDARD_ERRORS, f"gyrolog, {axis}: {off.round(1)} standard errors"
+        for simulator, read in READERS.items():
+            subprocess.run([program, "export", path, "-o", out, "--for", simulator, "--horizon",
+                            f"{PLAYED_HORIZON_S:g}s"], check=True, capture_output=True)
+            text = out.read_text()
+            stated = stated_errors(text)
+            worst, played = [], {}  # some have one formula for all axes
+            for axis, (_, white, drift), (variance, error) in zip("xyz", read(text), ours):
+                if drift not in played:
+                    played[drift] = played_variance(white, drift, m, random)
+                found, found_error = played[drift]
+                off = np.abs(found - simulated_variance(white, drift, m)) / found_error
+                assert np.max(off) < STANDARD_ERRORS, f"{simulator}, {axis}: {off.round(1)} standard errors"
+                assert np.max(found_error / found) < 0.015, "too few sensors: 0.065 dB are wanted"
+                worst.append(np.max(np.abs(dB(found / model_variance(model, axis, m, simulator in ROUNDING)))))
+                # gyrolog's own curve, which chance has moved.
+                limit = max(stated) + TOLERANCE_DB + dB(1.0 + STANDARD_ERRORS * error / variance)
+                beside = np.abs(dB(found / variance))
+                assert np.all(beside < limit), f"{simulator}, {axis}: {beside.round(2)} dB of {limit.round(2)}"
+            true = worst if len(stated) == 3 else [max(worst)]
+            assert all(abs(said - one) < TOLERANCE_DB for said, one in zip(stated, true)), (simulator, stated, true)
+            print(f"{simulator:13} stated {stated} dB, played {np.round(true, 2)} dB")
 
 
 def check_webots(text, model):
@@ -252,6 +361,9 @@ def check_webots(text, model):
 
 def main():
     program = sys.argv[1]
+    if sys.argv[2:] == ["play"]:
+        play(program)
+        return
     count = int(sys.argv[2]) if len(sys.argv) > 2 else 3
     horizons = [float(one) for one in sys.argv[3:]] or [100.0]
     done = 0
