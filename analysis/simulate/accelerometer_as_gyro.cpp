@@ -46,7 +46,7 @@ std::optional<Recording> accelerometer_as_gyro(const Recording& recording) {
     }
     std::erase_if(sensor.columns,
                   [](const Column& column) { return !is_scaled(column) && column.name != "temp"; });
-    std::ranges::stable_partition(sensor.columns, is_scaled);
+    std::stable_partition(sensor.columns.begin(), sensor.columns.end(), is_scaled);
     for (Column& column : sensor.columns) {
         if (!is_scaled(column)) { continue; }
         column.name[0] = 'g';

@@ -144,9 +144,9 @@ struct Definition {
 };
 
 const std::vector<Definition> definitions = {
-    {DeviationKind::overlapping, difference, false, 2.0},
-    {DeviationKind::standard, difference, true, 2.0},
-    {DeviationKind::standard_halving, difference, true, 2.0},
+    {DeviationKind::overlapping, change_of_average, false, 2.0},
+    {DeviationKind::standard, change_of_average, true, 2.0},
+    {DeviationKind::standard_halving, change_of_average, true, 2.0},
     {DeviationKind::modified, windowed, false, 2.0},
     {DeviationKind::hadamard, second_difference, true, 6.0},
     {DeviationKind::overlapping_hadamard, second_difference, false, 6.0},
