@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "analysis/numerics/golden_section.hpp"
 
@@ -134,6 +135,46 @@ void judge(NoiseProjection& projection, const Target& target) {
     }
 }
 
+// Squared, the converter's error in it.
+double white_density(const NoiseModel& model) {
+    const double N = model.coefficients.N_rad_per_sqrt_s;
+    return N * N + model.converter.density();
+}
+
+bool same_noise(const NoiseModel& a, const NoiseModel& b) {
+    const auto processes = [](const NoiseModel& of) {
+        return of.gauss_markov.empty() ? GaussMarkov{} : of.gauss_markov.front();
+    };
+    return white_density(a) == white_density(b) &&
+           a.coefficients.K_rad_per_s_sqrt_s == b.coefficients.K_rad_per_s_sqrt_s &&
+           processes(a).sigma_rad_per_s == processes(b).sigma_rad_per_s &&
+           processes(a).correlation_s == processes(b).correlation_s;
+}
+
+// Of noise that is nothing but the terms.
+std::optional<NoiseProjection> as_it_is(std::span<const NoiseModel> models, ProjectedTerms terms) {
+    for (const NoiseModel& model : models) {
+        const NoiseCoefficients& of = model.coefficients;
+        const bool walks = of.K_rad_per_s_sqrt_s != 0.0;
+        const bool has_more = of.Q_rad != 0.0 || of.B_rad_per_s != 0.0 || of.R_rad_per_s2 != 0.0 ||
+                              !model.sinusoids.empty() || model.gauss_markov.size() > 1;
+        if (has_more || (walks && terms != ProjectedTerms::white_walk) ||
+            !same_noise(model, models.front())) {
+            return std::nullopt;
+        }
+        if (!model.gauss_markov.empty() && terms != ProjectedTerms::white_gauss_markov) {
+            return std::nullopt;
+        }
+    }
+    const NoiseModel& one = models.front();
+    NoiseProjection projection;
+    projection.N_rad_per_sqrt_s = one.converter.step_rad_per_s == 0.0 ? one.coefficients.N_rad_per_sqrt_s
+                                                                      : std::sqrt(white_density(one));
+    projection.K_rad_per_s_sqrt_s = one.coefficients.K_rad_per_s_sqrt_s;
+    if (!one.gauss_markov.empty()) { projection.gauss_markov = one.gauss_markov.front(); }
+    return projection;
+}
+
 }  // namespace
 
 double NoiseProjection::drive_rad_per_s_sqrt_s() const {
@@ -159,6 +200,10 @@ NoiseProjection project_noise(std::span<const NoiseModel> models, ProjectedTerms
         nothing.worst_dB = silent ? 0.0 : infinite;
         nothing.worst_tau_s = target.tau_s().front();
         return nothing;
+    }
+    if (auto projection = as_it_is(models, terms)) {
+        judge(*projection, target);
+        return *projection;
     }
     NoiseProjection projection = terms == ProjectedTerms::white        ? with_white_alone(target)
                                  : terms == ProjectedTerms::white_walk ? with_walk(target, options)

@@ -37,7 +37,8 @@ struct NoiseProjection {
 };
 
 // One projection for all models: of a simulator that has one number for all axes, the error is that of the
-// axis where it is largest. `rate_hz` and `horizon_s` are above zero, the horizon not below one sample.
+// axis where it is largest. What the terms have already is given back as it is. `rate_hz` and `horizon_s` are
+// above zero, the horizon not below one sample.
 NoiseProjection project_noise(std::span<const NoiseModel> models, ProjectedTerms terms, double rate_hz,
                               double horizon_s, const ProjectionOptions& options = {});
 
