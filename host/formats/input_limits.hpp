@@ -19,6 +19,14 @@ struct InputLimits {
     std::size_t json_bytes_most = std::size_t{16} << 20;
     std::size_t json_keys_most = 10'000;
     int json_nesting_most = 32;
+    // Of a simulator's file: a world with a thousand robots of a hundred links takes some 10 MB, as many
+    // bytes as a model may have, and less than so many elements. Of the YAML of a sensor, which its library
+    // reads in a hundredfold of its size, that of many cameras is 100 kB.
+    std::size_t xml_elements_most = 1'000'000;
+    int xml_nesting_most = 256;
+    std::size_t xml_sensors_most = 1000;
+    std::size_t yaml_bytes_most = std::size_t{1} << 18;
+    int yaml_nesting_most = 32;
     // Of a line of results: one of json_bytes_most that holds nothing but points of an Allan deviation has so
     // many.
     std::size_t json_line_keys_most = 700'000;

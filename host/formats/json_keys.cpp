@@ -137,7 +137,7 @@ std::string quote_non_finite(std::string_view text) {
 
 }  // namespace
 
-Result<JsonDocument> parse_json_document(std::string_view text, const std::string& name) {
+Result<JsonDocument> parse_json_object(std::string_view text, const std::string& name) {
     const auto malformed = [&](const std::string& why) {
         return Error{ErrorCode::malformed, "model '" + name + "': " + why};
     };
@@ -152,10 +152,18 @@ Result<JsonDocument> parse_json_document(std::string_view text, const std::strin
     const bool plain = quoted.empty();
     Json document = Json::parse(plain ? text : std::string_view(quoted));
     if (!document.is_object()) { return malformed("not a JSON object"); }
-    const auto schema = document.find("schema");
-    if (schema == document.end()) { return malformed("schema is missing"); }
-    if (!schema->is_string()) { return malformed("schema is not text"); }
     return JsonDocument{std::move(document), plain};
+}
+
+Result<JsonDocument> parse_json_document(std::string_view text, const std::string& name) {
+    GYROLOG_TRY(JsonDocument document, parse_json_object(text, name));
+    const auto malformed = [&](const std::string& why) {
+        return Error{ErrorCode::malformed, "model '" + name + "': " + why};
+    };
+    const auto schema = document.json.find("schema");
+    if (schema == document.json.end()) { return malformed("schema is missing"); }
+    if (!schema->is_string()) { return malformed("schema is not text"); }
+    return document;
 }
 
 Result<Json> parse_json_line(std::string_view line, std::size_t keys_most) {

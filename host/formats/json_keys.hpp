@@ -18,11 +18,13 @@ namespace gyrolog {
 inline constexpr double percent = 0.01;
 
 struct JsonDocument {
-    Json json;          // an object with the text "schema"
+    Json json;          // an object
     bool plain = true;  // false: a number in it was not finite, and stands as text in its place
 };
 
-// `name` is what errors call the text. Error `malformed`: no JSON object, nested too deep, no schema.
+// `name` is what errors call the text. Error `malformed`: no JSON object, nested too deep.
+Result<JsonDocument> parse_json_object(std::string_view text, const std::string& name);
+// The same; also `malformed` without a schema.
 Result<JsonDocument> parse_json_document(std::string_view text, const std::string& name);
 
 // Any JSON in one line of a file, of so many keys at most. Error `malformed` with the reason alone: where it

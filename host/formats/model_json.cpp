@@ -395,13 +395,6 @@ Json format_accelerometer(const AccelerometerModel& model) {
     return json;
 }
 
-// Read back, that is; a rate that is not stated need not be.
-bool can_be_written(const ModelFile& file) {
-    SensorModel model = file.model;
-    if (file.unstated.rate) { model.rate_hz = 1.0; }
-    return parse_model(format_model(model), "").ok();
-}
-
 Result<SensorModel> standing_for_itself(Result<ModelFile> file, const std::string& name) {
     if (!file.ok()) { return std::move(file).error(); }
     if (file->unstated.rate) {
@@ -412,13 +405,28 @@ Result<SensorModel> standing_for_itself(Result<ModelFile> file, const std::strin
 
 }  // namespace
 
+// Read back, that is; a rate that is not stated need not be.
+bool can_be_written(const ModelFile& file) {
+    ModelFile rated = file;
+    if (file.unstated.rate) { state_rate(rated, 1.0); }
+    return parse_model(format_model(rated.model), "").ok();
+}
+
+void state_rate(ModelFile& file, double rate_hz) {
+    file.model.rate_hz = rate_hz;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double& N = file.model.axes[axis].noise.N_rad_per_sqrt_s;
+        N = std::hypot(N, std::exchange(file.unrated_sd_rad_s[axis], 0.0) / std::sqrt(rate_hz));
+    }
+}
+
 void complete_from(const Recording& recording, ModelFile& file) {
     SensorModel& model = file.model;
     const Unstated unstated = std::exchange(file.unstated, {});
     const std::optional<RecordedConverter> converter = recorded_converter(recording);
     std::vector<std::string> taken;
     if (unstated.rate) {
-        model.rate_hz = recording.rate_hz;
+        state_rate(file, recording.rate_hz);
         taken.push_back(fmt::format("rate_hz ({:.6g})", model.rate_hz));
     }
     if (converter && unstated.step && converter->step_rad_s > 0.0) {
@@ -510,12 +518,17 @@ Result<SensorModel> read_model(const std::string& path, std::uint64_t seed) {
 }
 
 Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed) {
+    GYROLOG_TRY(const std::string text, read_model_text(path));
+    return parse_model_file(text, path, seed);
+}
+
+Result<std::string> read_model_text(const std::string& path) {
     auto reader = TextReader::open(path);
     std::string text;
     while (reader.ok()) {
         const auto piece = reader->read();
         if (!piece.ok()) { return in_context("read model '" + path + "'", piece.error()); }
-        if (piece->empty()) { return parse_model_file(text, path, seed); }
+        if (piece->empty()) { return text; }
         text.append(*piece);
         if (text.size() > input_limits.json_bytes_most) {
             return Error{ErrorCode::malformed, fmt::format("read model '{}': longer than {} bytes: no model",

@@ -31,7 +31,13 @@ struct ModelFile {
     std::vector<std::string> notes;
     bool is_drawn = false;  // of a data sheet: another seed is another unit
     Unstated unstated{};
+    // White noise of each axis that a file states by the sample and without a rate: N takes it up with the
+    // rate.
+    Vector3 unrated_sd_rad_s{};
 };
+
+// The rate of a model that does not state one.
+void state_rate(ModelFile& file, double rate_hz);
 
 // Takes what the model does not state from the recording, and adds a note of it.
 void complete_from(const Recording& recording, ModelFile& file);
@@ -44,10 +50,15 @@ void complete_from(const Recording& recording, ModelFile& file);
 // `malformed` for text that is no JSON, a missing needed key, a wrong type, a number that is not finite or
 // out of its range, each naming the key; `unsupported` for another schema.
 Result<ModelFile> parse_model_file(std::string_view text, const std::string& name, std::uint64_t seed);
+// Whether all its numbers are finite, and in their ranges, in the units of the file as well.
+bool can_be_written(const ModelFile& file);
 // A model that stands for itself: without a rate it is `malformed`.
 Result<SensorModel> parse_model(std::string_view text, const std::string& name, std::uint64_t seed = 1);
 // Always as gyrolog-model/1.
 std::string format_model(const SensorModel& model);
+
+// The whole of a file that may be a model. Error `malformed`: longer than any model.
+Result<std::string> read_model_text(const std::string& path);
 
 // Also `not_found`, `permission_denied`, `failed` as the file system has it; writing replaces the file.
 Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed);

@@ -38,8 +38,8 @@ std::string commented(std::span<const std::string> head, std::string_view sign) 
     return text;
 }
 
-std::string xml_commented(std::span<const std::string> head) {
-    std::string text = "<!--\n";
+std::string xml_comment(std::span<const std::string> head) {
+    std::string text = "\n";
     for (std::string line : head) {
         // Two dashes end an XML comment.
         for (auto dashes = line.find("--"); dashes != std::string::npos; dashes = line.find("--")) {
@@ -47,7 +47,7 @@ std::string xml_commented(std::span<const std::string> head) {
         }
         text += "  " + line + '\n';
     }
-    return text + "-->\n";
+    return text;
 }
 
 }  // namespace gyrolog

@@ -31,7 +31,7 @@ std::string simulator_text(const SimulatorFormat& format, const SensorModel& mod
 
 // The head as comments: each line behind `sign`.
 std::string commented(std::span<const std::string> head, std::string_view sign);
-// In one XML comment.
-std::string xml_commented(std::span<const std::string> head);
+// What stands in an XML comment, a line each.
+std::string xml_comment(std::span<const std::string> head);
 
 }  // namespace gyrolog

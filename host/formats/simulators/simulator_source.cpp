@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -18,8 +19,15 @@ double param(const EffectModel& effect, const std::string& name) {
     return found == effect.params.end() ? 0.0 : found->second;
 }
 
-// Part of still_noise().
-bool is_noise_term(std::string_view effect) {
+// 0: none.
+double range_of(const SensorModel& model) {
+    return model.full_scale_rad_s < no_range_rad_s ? model.full_scale_rad_s : 0.0;
+}
+
+// Part of still_noise(), and of what a simulator is given of it.
+bool is_noise_term(std::string_view effect, const SimulatorAbilities& abilities) {
+    if (!abilities.noise) { return false; }
+    if (!abilities.projects) { return effect == "arw_scale" || effect == "rrw_missing"; }
     constexpr std::array<std::string_view, 6> terms = {"arw_scale",    "flicker_missing", "rrw_missing",
                                                        "gauss_markov", "angle_noise",     "rate_ramp"};
     return std::ranges::find(terms, effect) != terms.end();
@@ -32,18 +40,24 @@ std::vector<std::string> terms_left_out(const SensorModel& model, const Simulato
     };
     const auto any_axis = [&](auto has) { return std::ranges::any_of(model.axes, has); };
     const bool has_noise = abilities.noise.has_value();
+    const bool in_error = has_noise && abilities.projects;
     leave(any_axis([](const AxisModel& a) { return a.noise.N_rad_per_sqrt_s != 0.0; }), has_noise,
           "white noise N");
-    leave(any_axis([](const AxisModel& a) { return a.noise.B_rad_per_s != 0.0; }), false,
-          has_noise ? "bias instability B as 1/f noise (it is in the error above)" : "bias instability B");
-    leave(any_axis([](const AxisModel& a) { return a.noise.Q_rad != 0.0; }), false,
-          has_noise ? "angle quantisation Q (it is in the error above)" : "angle quantisation Q");
-    leave(any_axis([](const AxisModel& a) { return a.noise.R_rad_per_s2 != 0.0; }), false,
-          has_noise ? "the rate ramp R (it is in the error above)" : "the rate ramp R");
+    const auto any_effect = [&](const char* name) {
+        return in_error && std::ranges::count(model.effects, name, &EffectModel::effect) > 0;
+    };
+    leave(any_axis([](const AxisModel& a) { return a.noise.B_rad_per_s != 0.0; }) ||
+              any_effect("flicker_missing"),
+          false,
+          in_error ? "bias instability B as 1/f noise (it is in the error above)" : "bias instability B");
+    leave(any_axis([](const AxisModel& a) { return a.noise.Q_rad != 0.0; }) || any_effect("angle_noise"),
+          false, in_error ? "angle quantisation Q (it is in the error above)" : "angle quantisation Q");
+    leave(any_axis([](const AxisModel& a) { return a.noise.R_rad_per_s2 != 0.0; }) || any_effect("rate_ramp"),
+          false, in_error ? "the rate ramp R (it is in the error above)" : "the rate ramp R");
     leave(any_axis([](const AxisModel& a) { return a.bias_rad_s != 0.0; }), abilities.bias, "the bias");
     leave(model.lsb_rad_s != 0.0, abilities.rounds,
-          has_noise ? "the converter's steps (their noise is in the white noise)" : "the converter's steps");
-    leave(model.full_scale_rad_s != 0.0, abilities.clips, "the range");
+          in_error ? "the converter's steps (their noise is in the white noise)" : "the converter's steps");
+    leave(range_of(model) != 0.0, abilities.clips, "the range");
     leave(model.M != identity_matrix, abilities.cross_axis, "scale and misalignment M");
     leave(model.misalignment.has_value(), false, "misalignment_percent");
     leave(model.latency_s != 0.0, abilities.delays, "latency_s");
@@ -51,10 +65,20 @@ std::vector<std::string> terms_left_out(const SensorModel& model, const Simulato
     leave(model.temperature.has_value(), false, "the temperature coefficients");
     std::set<std::string> effects;
     for (const EffectModel& effect : model.effects) {
-        if (!has_noise || !is_noise_term(effect.effect)) { effects.insert(effect.effect); }
+        if (!is_noise_term(effect.effect, abilities)) { effects.insert(effect.effect); }
     }
     for (const std::string& effect : effects) { left.push_back("effect " + printable(effect)); }
     return left;
+}
+
+// Those of the axis where each is largest, so that no axis is trusted too much.
+NoiseProjection largest_terms(std::span<const NoiseModel> axes) {
+    NoiseProjection terms;
+    for (const NoiseModel& axis : axes) {
+        terms.N_rad_per_sqrt_s = std::max(terms.N_rad_per_sqrt_s, axis.coefficients.N_rad_per_sqrt_s);
+        terms.K_rad_per_s_sqrt_s = std::max(terms.K_rad_per_s_sqrt_s, axis.coefficients.K_rad_per_s_sqrt_s);
+    }
+    return terms;
 }
 
 std::string error_text(const NoiseProjection& noise) {
@@ -99,7 +123,7 @@ SimulatorSource simulator_source(const SensorModel& model, const std::string& na
     source.rate_hz = model.rate_hz;
     source.horizon_s = horizon_s;
     source.lsb_rad_s = model.lsb_rad_s;
-    source.full_scale_rad_s = model.full_scale_rad_s;
+    source.full_scale_rad_s = range_of(model);
     source.M = model.M;
     source.latency_s = model.latency_s;
     source.left_out = terms_left_out(model, abilities);
@@ -112,6 +136,10 @@ SimulatorSource simulator_source(const SensorModel& model, const std::string& na
         }
     }
     if (!abilities.noise) { return source; }
+    if (!abilities.projects) {
+        source.noise.fill(largest_terms(axes));
+        return source;
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::span<const NoiseModel> used =
             abilities.per_axis ? std::span(axes).subspan(axis, 1) : std::span<const NoiseModel>(axes);
@@ -126,6 +154,9 @@ std::vector<std::string> head_lines(const SimulatorSource& source, const Simulat
                     source.rate_hz)};
     if (!abilities.noise) {
         lines.emplace_back("The simulator has no noise: none of the sensor's is in it.");
+    } else if (!abilities.projects) {
+        lines.emplace_back(
+            "White noise N and rate random walk K as they are, of the axis where each is largest.");
     } else {
         lines.push_back(
             fmt::format("Noise nearest to the model's for averaging times from {:.3g} s to {:.6g} s. Largest "

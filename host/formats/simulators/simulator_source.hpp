@@ -15,6 +15,7 @@ namespace gyrolog {
 // What a simulator's sensor has. What it lacks is told in the head of its file.
 struct SimulatorAbilities {
     std::optional<ProjectedTerms> noise;  // none: no noise at all
+    bool projects = true;                 // what it lacks into what it has; otherwise N and K as they are
     bool per_axis = true;                 // its own numbers for each axis
     bool bias = true;                     // a constant one that is given, not drawn
     bool rounds = false;                  // to the converter's step
@@ -30,7 +31,7 @@ struct SimulatorSource {
     std::array<NoiseProjection, 3> noise;  // the same for all axes where the simulator has one number
     Vector3 bias_rad_s{};
     double lsb_rad_s = 0.0;
-    double full_scale_rad_s = 0.0;
+    double full_scale_rad_s = 0.0;  // 0: none
     Matrix3 M = identity_matrix;
     double latency_s = 0.0;
     std::vector<std::string> left_out;  // of the model, each a noun
