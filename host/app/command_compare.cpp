@@ -15,6 +15,7 @@
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/app/command.hpp"
 #include "host/app/many_recordings.hpp"
+#include "host/app/model_help.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/part_options.hpp"
@@ -26,7 +27,7 @@
 #include "host/base/file_output.hpp"
 #include "host/formats/comparison_json.hpp"
 #include "host/formats/comparison_text.hpp"
-#include "host/formats/model_json.hpp"
+#include "host/formats/model_source.hpp"
 
 namespace gyrolog {
 namespace {
@@ -77,7 +78,8 @@ void tell_of_reading(Comparison& comparison, const std::string& path, std::span<
 }
 
 Result<Comparison> with_model(Console& console, const CompareRequest& request) {
-    GYROLOG_TRY(ModelFile file, read_model_file(request.other_path, 1));
+    GYROLOG_TRY(ModelSource source, read_model_source(request.other_path, 1));
+    ModelFile& file = source.file;
     if (file.is_drawn) {
         return Error{
             ErrorCode::unsupported,
@@ -109,9 +111,8 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
         }
         return true;
     };
-    auto comparison =
-        compare_with_model(std::make_shared<const Recording>(std::move(recording)), file.model,
-                           std::filesystem::path(request.other_path).filename().string(), options);
+    auto comparison = compare_with_model(std::make_shared<const Recording>(std::move(recording)), file.model,
+                                         source.name, options);
     if (console.progress) { console.drawing() << "\r\x1b[K" << std::flush; }
     comparison->notes = file.notes;
     comparison->warnings.insert(comparison->warnings.begin(), left_out.begin(), left_out.end());
@@ -161,8 +162,8 @@ ExitCode compare_one(Console& console, const CompareRequest& request) {
     if (const Status fine = check_output_paths(read, outputs); !fine.ok()) {
         return report_error(console, "compare", fine.error());
     }
-    const bool is_model = std::filesystem::path(request.other_path).extension() == ".json";
-    Result<Comparison> comparison = is_model ? with_model(console, request) : with_recording(request);
+    Result<Comparison> comparison =
+        is_model_file(request.other_path) ? with_model(console, request) : with_recording(request);
     if (!comparison.ok()) { return report_error(console, "compare", comparison.error()); }
     if (sensor_of(request) == SensorKind::accelerometer) {
         comparison->unit = unit_of_accelerometer_as_gyro();
@@ -176,7 +177,7 @@ ExitCode compare(Console& console, CompareRequest request, ManyRecordings many) 
     if (many.recordings.size() < 2) {
         return report_error(console, "compare",
                             {ErrorCode::invalid_argument,
-                             "WITH is required: a sensor model (.json) or another recording, after the "
+                             "WITH is required: a sensor model or another recording, after the "
                              "recording"});
     }
     request.other_path = many.recordings.back();
@@ -201,9 +202,11 @@ Action setup_compare(CLI::App& app) {
         ->check(png_file());
     app.add_option("--json", request->json_path, "Write the comparison as JSON (- for standard output)")
         ->type_name("FILE");
-    add_recordings(app, *many, "RECORDING",
-                   "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy, and last of all WITH what: "
-                   "a sensor model (.json), which is simulated, or another recording")
+    add_recordings(
+        app, *many, "RECORDING",
+        std::string("A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy, and last of all WITH "
+                    "what: a sensor model, which is simulated, or another recording. A model is ") +
+            model_file_help)
         ->type_name("WITH")
         ->required();
     app.add_option("--simulations", request->simulations.simulations,

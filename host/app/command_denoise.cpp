@@ -11,6 +11,7 @@
 #include "host/app/command.hpp"
 #include "host/app/denoise_choice.hpp"
 #include "host/app/denoise_knowledge.hpp"
+#include "host/app/model_help.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/part_options.hpp"
@@ -408,7 +409,7 @@ void add_input_options(CLI::App& app, Request& request) {
     app.add_option("--calibration", request.calibration, "A recording of the same units at rest, instead")
         ->type_name("RECORDING");
     app.add_option("--model", request.models,
-                   "The units' noise (gyrolog-model/1, as analyze writes it): one for all or one for each")
+                   std::string("The units' noise, one for all or one for each: ") + model_file_help)
         ->type_name("FILE");
     app.add_option("--align", request.align,
                    "Several recordings: by their clocks, or by their first samples (start)")

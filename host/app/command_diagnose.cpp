@@ -4,8 +4,10 @@
 #include "host/app/command.hpp"
 #include "host/app/curve_diagnosis_run.hpp"
 #include "host/app/many_recordings.hpp"
+#include "host/app/model_help.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
+#include "host/app/quantity.hpp"
 #include "host/app/recording_diagnosis_run.hpp"
 #include "host/app/sensor_choice.hpp"
 #include "host/app/simulation_count.hpp"
@@ -20,6 +22,7 @@ struct DiagnoseOptions {
     RecordingDiagnosisRequest request;
     ManyRecordings many;
     std::string curve_path;
+    std::string horizon = "1h";
     bool is_plain = false;
     std::string sensor = "gyro";
 };
@@ -40,8 +43,8 @@ ExitCode diagnose_recordings(Console& console, const DiagnoseOptions& options) {
     return run_on_recordings(console, "diagnose", options.many, {read, of_one}, run);
 }
 
-ExitCode diagnose_either(Console& console, const DiagnoseOptions& options) {
-    const RecordingDiagnosisRequest& request = options.request;
+ExitCode diagnose_either(Console& console, DiagnoseOptions& options) {
+    RecordingDiagnosisRequest& request = options.request;
     const auto wrong = [&](const char* problem) {
         return report_error(console, "diagnose", {ErrorCode::invalid_argument, problem});
     };
@@ -49,9 +52,15 @@ ExitCode diagnose_either(Console& console, const DiagnoseOptions& options) {
         return wrong(options.curve_path.empty() ? "give a RECORDING, or --curve with an Allan curve"
                                                 : "give a RECORDING or --curve, not both");
     }
+    const auto horizon_s = parse_duration_s(options.horizon);
+    if (!horizon_s.ok()) {
+        return report_error(console, "diagnose", in_context("--horizon", horizon_s.error()));
+    }
+    request.horizon_s = *horizon_s;
     if (!options.curve_path.empty()) {
-        return diagnose_curve_to_files(console, {options.curve_path, request.model_path, request.json_path,
-                                                 request.plot_path, request.model_out_path});
+        return diagnose_curve_to_files(
+            console, {options.curve_path, request.model_path, request.json_path, request.plot_path,
+                      request.model_out_path, request.horizon_s});
     }
     if (request.model_path.empty() && !options.is_plain) {
         return wrong(
@@ -67,7 +76,8 @@ Action setup_diagnose(CLI::App& app) {
     auto options = std::make_shared<DiagnoseOptions>();
     RecordingDiagnosisRequest& request = options->request;
     CLI::Option* model =
-        app.add_option("--model", request.model_path, "The sensor model (.json) whose gap is sought")
+        app.add_option("--model", request.model_path,
+                       std::string("The sensor model whose gap is sought: ") + model_file_help)
             ->type_name("FILE");
     CLI::Option* plain =
         app.add_flag("--auto", options->is_plain,
@@ -86,8 +96,19 @@ Action setup_diagnose(CLI::App& app) {
                    "Draw the shares of the causes, and where recording and model part before and after them")
         ->type_name("FILE.png")
         ->check(png_file());
-    app.add_option("--model-out", request.model_out_path, "Write the model with the causes added")
+    app.add_option(
+           "--model-out", request.model_out_path,
+           "Write the model with the causes added: a simulator's file as the same kind of file, changed, "
+           "or gyrolog's own (.json, .model.json)")
         ->type_name("FILE");
+    app.add_option(
+           "--horizon", options->horizon,
+           "With --model-out as a simulator's file: averaging times up to this count where noise can only "
+           "be approximated")
+        ->type_name("TIME")
+        ->check(duration())
+        ->needs(app.get_option("--model-out"))
+        ->capture_default_str();
     app.add_flag("--unnamed", request.with_unnamed, "Into --model-out also what was modelled without a name")
         ->needs(app.get_option("--model-out"));
     app.add_flag("--verbose", request.is_verbose,

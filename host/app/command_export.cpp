@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
 #include "analysis/noise/analyze.hpp"
 #include "host/app/command.hpp"
+#include "host/app/model_help.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/part_options.hpp"
@@ -11,7 +11,7 @@
 #include "host/app/recording_input.hpp"
 #include "host/base/file_output.hpp"
 #include "host/formats/export_format.hpp"
-#include "host/formats/model_json.hpp"
+#include "host/formats/model_source.hpp"
 #include "host/formats/simulators/simulator_format.hpp"
 #include "host/formats/stops_text.hpp"
 
@@ -44,18 +44,21 @@ Status export_for_simulator(Console& console, const ExportOptions& options) {
         return invalid_argument("--for: there is no simulator '" + options.simulator + "'; there are " +
                                 known_simulators());
     }
-    if (!options.source.ends_with(".json")) {
-        return invalid_argument("--for needs a model (.json): `gyrolog analyze " + options.source +
+    if (!is_model_file(options.source)) {
+        return invalid_argument("--for needs a model: `gyrolog analyze " + options.source +
                                 " --model MODEL.json` makes one of a recording");
     }
     GYROLOG_TRY(const double horizon_s, parse_duration_s(options.horizon));
-    GYROLOG_TRY(const ModelFile file, read_model_file(options.source, options.seed));
+    GYROLOG_TRY(const ModelSource source, read_model_source(options.source, options.seed));
+    const ModelFile& file = source.file;
     for (const std::string& note : file.notes) { console.err << "gyrolog export: " << note << '\n'; }
     if (horizon_s * file.model.rate_hz < 1.0) {
         return invalid_argument("--horizon: shorter than one sample of the model");
     }
-    const std::string name = std::filesystem::path(options.source).filename().string();
-    const std::string text = simulator_text(*format, file.model, name, horizon_s);
+    if (file.unstated.rate) {
+        return Error{ErrorCode::malformed, "model '" + options.source + "': rate_hz is missing"};
+    }
+    const std::string text = simulator_text(*format, file.model, source.name, horizon_s);
     return write_file(options.output, as_bytes(text));
 }
 
@@ -73,9 +76,11 @@ Status export_model(const ExportOptions& options, const ExportFormat& format) {
                                                       std::string(format.ending) +
                                                       ": `gyrolog simulate` makes a recording of it"};
     }
-    GYROLOG_TRY(const SensorModel model, read_model(options.source));
-    return format.write(export_source(model, std::filesystem::path(options.source).filename().string()),
-                        options.output);
+    GYROLOG_TRY(const ModelSource source, read_model_source(options.source, 1));
+    if (source.file.unstated.rate) {
+        return Error{ErrorCode::malformed, "model '" + options.source + "': rate_hz is missing"};
+    }
+    return format.write(export_source(source.file.model, source.name), options.output);
 }
 
 bool has_rates(const Recording& recording) {
@@ -120,7 +125,8 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
     if (const Status fine = check_output_paths(read, written); !fine.ok()) {
         return report_error(console, "export", fine.error());
     }
-    if (options.source.ends_with(".json") && !options.part.is_whole()) {
+    const bool is_model = is_model_file(options.source);
+    if (is_model && !options.part.is_whole()) {
         return report_error(console, "export",
                             {ErrorCode::invalid_argument,
                              "--from, --to and --still are for a recording; a model has no time"});
@@ -138,8 +144,8 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
             {ErrorCode::invalid_argument,
              "'" + options.output + "' has none of the endings that tell the format: " + known_endings()});
     }
-    const Status done = options.source.ends_with(".json") ? export_model(options, *format)
-                                                          : export_recording(console, options, *format);
+    const Status done =
+        is_model ? export_model(options, *format) : export_recording(console, options, *format);
     if (!done.ok()) { return report_error(console, "export", done.error()); }
     console.err << "written: " << options.output << '\n';
     return ExitCode::ok;
@@ -150,7 +156,8 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
 Action setup_export(CLI::App& app) {
     auto options = std::make_shared<ExportOptions>();
     app.add_option("RECORDING", options->source,
-                   "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy, or a model (.json)")
+                   std::string("A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy, or a model: ") +
+                       model_file_help)
         ->required();
     app.add_option(
            "-o,--output", options->output,

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "host/app/command.hpp"
+#include "host/app/model_help.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
 #include "host/app/report_run.hpp"
@@ -18,7 +19,8 @@ Action setup_report(CLI::App& app) {
         ->required();
     CLI::Option* model =
         app.add_option("--model", request->model_path,
-                       "Also diagnose where the recording parts from this sensor model (.json)")
+                       std::string("Also diagnose where the recording parts from this sensor model: ") +
+                           model_file_help)
             ->type_name("FILE");
     app.add_option("--simulations", request->simulations, "How many simulations tell a gap from chance")
         ->type_name("N")

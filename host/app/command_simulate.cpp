@@ -17,7 +17,7 @@
 #include "host/capture/append_file.hpp"
 #include "host/formats/effect_catalogue.hpp"
 #include "host/formats/json.hpp"
-#include "host/formats/model_json.hpp"
+#include "host/formats/model_source.hpp"
 #include "host/virtual_board/sim_source.hpp"
 
 namespace gyrolog {
@@ -51,8 +51,7 @@ struct Story {
 
 Status check(const SimulateOptions& options) {
     if (options.model.empty()) {
-        return invalid_argument(
-            "give the MODEL to simulate (.json), or --effects to see what a model may list");
+        return invalid_argument("give the MODEL to simulate, or --effects to see what a model may list");
     }
     if (options.output.empty()) { return invalid_argument("give the recording to write with -o"); }
     std::vector<const char*> endings(text_endings.begin(), text_endings.end());
@@ -323,9 +322,9 @@ ExitCode simulate(Console& console, const SimulateOptions& options) {
         if (!duration_s.ok()) { return fail(in_context("--duration", duration_s.error())); }
         story.duration_s = *duration_s;
     }
-    auto file = read_model_file(options.model, options.seed);
-    if (!file.ok()) { return fail(file.error()); }
-    story.file = std::move(file).value();
+    auto source = read_model_source(options.model, options.seed);
+    if (!source.ok()) { return fail(source.error()); }
+    story.file = std::move(source->file);
     if (const auto refusal = simulation_refusal(story.file.model)) {
         return fail({ErrorCode::malformed, "model '" + options.model + "': " + *refusal +
                                                "; `gyrolog simulate --effects` lists what there is"});
@@ -336,7 +335,7 @@ ExitCode simulate(Console& console, const SimulateOptions& options) {
                                                    "': rate_hz is missing: state it there, or give --rate or "
                                                    "--like"});
         }
-        story.file.model.rate_hz = *options.rate_hz;
+        state_rate(story.file, *options.rate_hz);
     }
     return options.makes_capture() ? make_capture(console, options, story)
                                    : make_text(console, options, story);
@@ -349,7 +348,8 @@ Action setup_simulate(CLI::App& app) {
     app.add_option(
         "MODEL", options->model,
         "The sensor (.json): a gyrolog-model/1, a data sheet (gyrolog-datasheet/1), a population of "
-        "units (gyrolog-population/1) or gyroparams (gyrolog-gyroparams/1)");
+        "units (gyrolog-population/1) or gyroparams (gyrolog-gyroparams/1); or a simulator's file, as for "
+        "`diagnose --model`");
     app.add_option("-o,--output", options->output,
                    "The recording to write, by its ending: .csv (.gz, .xz, .zst), or .pcapng as the virtual "
                    "board sends it")

@@ -13,10 +13,10 @@
 #include "host/app/diagnosis_output.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
+#include "host/base/file_output.hpp"
 #include "host/formats/curve_csv.hpp"
 #include "host/formats/curve_diagnosis_report.hpp"
 #include "host/formats/curve_effect.hpp"
-#include "host/formats/model_json.hpp"
 
 namespace gyrolog {
 namespace {
@@ -113,6 +113,7 @@ private:
 
 struct Outcome {
     CurveDiagnosisReport report;
+    std::optional<ModelSource> source;
     std::optional<SensorModel> corrected;
 };
 
@@ -125,16 +126,23 @@ Result<Outcome> diagnose(const CurveDiagnosisRequest& request) {
     CurvesAgainst against(std::move(curves));
     if (request.model_path.empty()) {
         GYROLOG_CHECK(against.own_simulation());
-        return Outcome{against.take_report(), std::nullopt};
+        return Outcome{against.take_report(), std::nullopt, std::nullopt};
     }
-    GYROLOG_TRY(ModelFile file, read_single_model(request.model_path));
+    GYROLOG_TRY(ModelSource source, read_single_model(request.model_path));
+    GYROLOG_CHECK(corrected_output(request.model_out_path, &source));
+    const ModelFile& file = source.file;
     if (file.unstated.rate) {
         return Error{ErrorCode::malformed,
                      "model '" + request.model_path + "': rate_hz is missing, and a curve does not tell it"};
     }
-    against.name_model(std::filesystem::path(request.model_path).filename().string());
+    against.name_model(source.name);
     GYROLOG_CHECK(against.model(file.model));
-    Outcome outcome{against.take_report(), std::move(file.model)};
+    Outcome outcome{against.take_report(), std::move(source), std::nullopt};
+    outcome.corrected = outcome.source->file.model;
+    if (outcome.source->simulator != nullptr) {
+        const std::vector<std::string>& notes = outcome.source->file.notes;
+        outcome.report.warnings.insert(outcome.report.warnings.end(), notes.begin(), notes.end());
+    }
     for (const DiagnosedCurve& curve : outcome.report.curves) {
         for (const CurveCause& cause : curve.diagnosis.causes) {
             correct(*outcome.corrected, curve.axis, cause);
@@ -154,8 +162,18 @@ Status write_results(Console& console, const CurveDiagnosisRequest& request, con
             fmt::format("bands: reading error of {:.3g} %, 95 %", 100.0 * report.options.reading_error)};
         return write_diagnosis_plot(diagnosis, "curve", std::move(facts), request.plot_path);
     });
-    results.text(request.model_out_path, [&] { return format_model(*outcome.corrected); });
-    return results.finish();
+    std::vector<std::string> told;
+    results.file(request.model_out_path, [&]() -> Status {
+        GYROLOG_TRY(const CorrectedOutput output, corrected_output(request.model_out_path, &*outcome.source));
+        GYROLOG_TRY(const std::string text,
+                    corrected_text(output, *outcome.corrected,
+                                   std::filesystem::path(request.curve_path).filename().string(),
+                                   request.horizon_s, told));
+        return write_file(request.model_out_path, as_bytes(text));
+    });
+    Status done = results.finish();
+    tell_notices(console, told);
+    return done;
 }
 
 Status check(const CurveDiagnosisRequest& request) {

@@ -14,6 +14,7 @@ struct CurveDiagnosisRequest {
     std::string json_path;   // "-" is standard output; empty: not wanted
     std::string plot_path;
     std::string model_out_path;  // the model with its coefficients as the curve has them
+    double horizon_s = 3600.0;   // of a simulator's file that it is: noise is nearest up to this
 };
 
 // Curves are of the axis that their name ends in: "x", "sensor_x". Prints the report for people on `out`,

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "host/app/sensor_choice.hpp"
-#include "host/formats/model_json.hpp"
+#include "host/formats/model_source.hpp"
 
 namespace gyrolog {
 namespace {}  // namespace
@@ -52,8 +52,9 @@ Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<
                        double rate_hz, SensorKind sensor) {
     std::vector<SensorModel> models;
     for (const std::string& path : paths) {
-        GYROLOG_TRY(ModelFile file, read_model_file(path, 1));
-        GYROLOG_TRY(file, model_of_sensor(std::move(file), sensor, path));
+        GYROLOG_TRY(ModelSource source, read_model_source(path, 1));
+        if (source.file.unstated.rate) { state_rate(source.file, rate_hz); }
+        GYROLOG_TRY(ModelFile file, model_of_sensor(std::move(source.file), sensor, path));
         models.push_back(std::move(file.model));
     }
     std::vector<std::vector<NoiseModel>> given;

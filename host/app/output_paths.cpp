@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "host/base/replacing_file.hpp"
+#include "host/formats/model_source.hpp"
 
 namespace gyrolog {
 namespace {
@@ -61,7 +62,8 @@ Status check_output_paths(std::span<const NamedPath> read, std::span<const Named
     for (std::size_t i = 0; i < written.size(); ++i) {
         GYROLOG_CHECK(check_stream(written[i]));
         for (const NamedPath& source : read) {
-            if (same_file(source.path, written[i].path)) {
+            if (same_file(source.path, written[i].path) ||
+                same_file(model_path(source.path).file, written[i].path)) {
                 return same(source, written[i], "; give another to write");
             }
         }

@@ -24,10 +24,10 @@
 #include "host/app/quantity.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/sensor_choice.hpp"
+#include "host/base/file_output.hpp"
 #include "host/formats/diagnosis_json.hpp"
 #include "host/formats/diagnosis_text.hpp"
 #include "host/formats/effect_words.hpp"
-#include "host/formats/model_json.hpp"
 
 namespace gyrolog {
 namespace {
@@ -139,7 +139,12 @@ std::string json_of(const Diagnoses& diagnoses) {
                                  : diagnosis_json(diagnoses.front(), diagnoses.back(), shared_by(diagnoses));
 }
 
-Status write_results(Console& console, const RecordingDiagnosisRequest& request, const Diagnoses& diagnoses) {
+// Of a file that is a name.
+std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+Status write_results(Console& console, const RecordingDiagnosisRequest& request, const Diagnoses& diagnoses,
+                     const CorrectedOutput& corrected) {
+    std::vector<std::string> told;
     ResultOutput results(console);
     if (request.json_path != "-") {
         results.show(text_of(request, diagnoses));
@@ -155,23 +160,28 @@ Status write_results(Console& console, const RecordingDiagnosisRequest& request,
             return write_diagnosis_plot(diagnosis, "recording", diagnosis_facts(diagnosis), path);
         });
     }
-    results.text(request.model_out_path, [&] { return format_model(model_of(request, diagnoses)); });
-    return results.finish();
+    results.file(request.model_out_path, [&]() -> Status {
+        GYROLOG_TRY(const std::string text,
+                    corrected_text(corrected, model_of(request, diagnoses), name_of(request.recording_path),
+                                   request.horizon_s, told));
+        return write_file(request.model_out_path, as_bytes(text));
+    });
+    Status done = results.finish();
+    tell_notices(console, told);
+    return done;
 }
 
-}  // namespace
-
-Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request,
-                                     SensorKind sensor) {
-    const bool is_plain = request.model_path.empty();
+// `source`: the model; null: one of the recording's own.
+Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisRequest& request,
+                                const ModelSource* source, SensorKind sensor) {
+    const bool is_plain = source == nullptr;
     ModelFile file;
-    SensorModel
-        whole;  // what a plain model of an accelerometer is put in has a gyro of which nothing is known
+    // What a plain model of an accelerometer is put in has a gyro of which nothing is known.
+    SensorModel whole;
     whole.full_scale_rad_s = whole.saturation_rad_s = no_range_rad_s;
     if (!is_plain) {
-        GYROLOG_TRY(file, read_single_model(request.model_path));
-        whole = file.model;
-        GYROLOG_TRY(file, model_of_sensor(std::move(file), sensor, request.model_path));
+        whole = source->file.model;
+        GYROLOG_TRY(file, model_of_sensor(source->file, sensor, request.model_path));
     }
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.lsb_g = request.lsb_g;
@@ -191,8 +201,7 @@ Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisR
     }
     DiagnosisOptions options = options_of(console, request);
     options.holdout = second.samples;
-    const std::string name =
-        is_plain ? "white noise and bias" : std::filesystem::path(request.model_path).filename().string();
+    const std::string name = is_plain ? "white noise and bias" : source->name;
     auto diagnosis = read.means != nullptr
                          ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
                      : request.average > 1 ? diagnose_means(read, file.model, name, options)
@@ -203,6 +212,21 @@ Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisR
     append_warnings(diagnosis->warnings, second);
     return sensor == SensorKind::gyro ? *std::move(diagnosis)
                                       : diagnosis_of_accelerometer(*std::move(diagnosis), whole);
+}
+
+// Nothing without a path.
+Result<std::optional<ModelSource>> read_source(const std::string& path) {
+    if (path.empty()) { return std::optional<ModelSource>(); }
+    GYROLOG_TRY(ModelSource source, read_single_model(path));
+    return std::optional(std::move(source));
+}
+
+}  // namespace
+
+Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request,
+                                     SensorKind sensor) {
+    GYROLOG_TRY(const std::optional<ModelSource> source, read_source(request.model_path));
+    return diagnose_with(console, request, source ? &*source : nullptr, sensor);
 }
 
 std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis) {
@@ -228,14 +252,19 @@ ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisR
                                  {"--plot", request.plot_path},
                                  {"--model-out", request.model_out_path}};
     if (const Status fine = check_output_paths(read, written); !fine.ok()) { return fail(fine.error()); }
+    const auto read_model = read_source(request.model_path);
+    if (!read_model.ok()) { return fail(read_model.error()); }
+    const ModelSource* source = read_model->has_value() ? &**read_model : nullptr;
+    const auto corrected = corrected_output(request.model_out_path, source);
+    if (!corrected.ok()) { return fail(corrected.error()); }
     Diagnoses diagnoses;
     for (const SensorKind sensor : {SensorKind::gyro, SensorKind::accelerometer}) {
         if (!includes(request.sensors, sensor)) { continue; }
-        Result<Diagnosis> diagnosis = diagnose_recording(console, request, sensor);
+        Result<Diagnosis> diagnosis = diagnose_with(console, request, source, sensor);
         if (!diagnosis.ok()) { return fail(diagnosis.error()); }
         diagnoses.push_back(*std::move(diagnosis));
     }
-    const Status done = write_results(console, request, diagnoses);
+    const Status done = write_results(console, request, diagnoses, *corrected);
     return done.ok() ? ExitCode::ok : fail(done.error());
 }
 

@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-#include "host/formats/model_json.hpp"
+#include "host/formats/model_source.hpp"
 #include "host/transport/replay_source.hpp"
 #include "host/transport/source_uri.hpp"
 #include "host/transport/tty_source.hpp"
@@ -57,9 +57,16 @@ Opened open_simulated(const SourceUri& uri, const SourceLimit& limit, bool real_
     options.realtime = options.realtime || real_time;
     SensorModel model = typical_mpu9250();
     if (!options.model_path.empty()) {
-        auto read = read_model(options.model_path, options.seed);
+        auto read = read_model_source(options.model_path, options.seed);
         if (!read.ok()) { return file_error(std::move(read).error()); }
-        model = std::move(read).value();
+        if (read->file.unstated.rate) {
+            if (!options.rate_hz) {
+                return malformed("model '" + options.model_path +
+                                 "': rate_hz is missing: state it there, or rate=HZ");
+            }
+            state_rate(read->file, *options.rate_hz);
+        }
+        model = std::move(read->file.model);
     }
     GYROLOG_TRY(std::unique_ptr<ByteSource> board,
                 SimSource::create(options, model, {limit.samples, limit.duration_s}));

@@ -15,7 +15,8 @@
 
 namespace gyrolog {
 
-//   model=FILE       a gyrolog-model/1 file; without it a typical MPU-9250. The capture is then the signal
+//   model=FILE       a model, as `simulate` takes it; without it a typical MPU-9250. The capture is then the
+//   signal
 //                    that a simulation of the model with this seed gives, and both clocks of the board are
 //                    true
 //   rate=HZ          start-up output rate; without it the model's

@@ -431,7 +431,7 @@ TEST_F(WrongInput, OfCommandsThatReadAModel) {
         {"simulate c.csv -o s.csv", 1, "model 'c.csv': no JSON: line 1"},
         {"simulate c.pcapng -o s.csv", 1, "model 'c.pcapng': no JSON: line"},
         {"simulate dir -o s.csv", 1, "read model 'dir': it is a directory"},
-        {"simulate", 2, "give the MODEL to simulate (.json), or --effects"},
+        {"simulate", 2, "give the MODEL to simulate, or --effects"},
         {"simulate m.json", 2, "give the recording to write with -o"},
         {"simulate m.json -o s.txt", 2, "'s.txt' has none of the endings of a recording: .csv"},
         {"simulate m.json -o -", 2, "'-' has none of the endings"},
