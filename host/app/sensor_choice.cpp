@@ -39,6 +39,7 @@ Result<ModelFile> model_of_sensor(ModelFile file, SensorKind sensor, const std::
     }
     file.model = accelerometer_as_gyro(file.model);
     file.unstated = {.rate = file.unstated.rate};
+    file.unrated_sd_rad_s = {};
     return file;
 }
 
