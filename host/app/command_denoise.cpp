@@ -225,7 +225,7 @@ private:
         if (!request_.models.empty() && request_.calibration.empty() && !(still_.to_s > still_.from_s) &&
             is_single()) {
             std::vector<AxisKnowledge> known = know_units(recording_, saturation);
-            GYROLOG_CHECK(use_model_files(known, request_.models, recording_.rate_hz, sensor()));
+            GYROLOG_CHECK(tell_models(use_model_files(known, request_.models, recording_.rate_hz, sensor())));
             report_.learned_from = "of " + request_.models.front();
             return known;
         }
@@ -266,9 +266,15 @@ private:
                                    [](const ArrayAxis& axis) { return axis.units.size() == 1; });
     }
 
+    Status tell_models(const Result<std::vector<std::string>>& notes) {
+        if (!notes.ok()) { return notes.error(); }
+        report_.warnings.insert(report_.warnings.end(), notes->begin(), notes->end());
+        return {};
+    }
+
     Status take_models(std::vector<AxisKnowledge>& knowledge) {
         if (request_.models.empty()) { return {}; }
-        GYROLOG_CHECK(use_model_files(knowledge, request_.models, recording_.rate_hz, sensor()));
+        GYROLOG_CHECK(tell_models(use_model_files(knowledge, request_.models, recording_.rate_hz, sensor())));
         report_.learned_from = "of " + fmt::format("{}", fmt::join(request_.models, ", ")) +
                                ", correlation " + report_.learned_from;
         return {};

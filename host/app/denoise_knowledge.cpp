@@ -48,12 +48,17 @@ Result<Recording> rows_at_rest(const Recording& recording, const TimeSpan& still
     return rows;
 }
 
-Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<std::string>& paths,
-                       double rate_hz, SensorKind sensor) {
+Result<std::vector<std::string>> use_model_files(std::vector<AxisKnowledge>& knowledge,
+                                                 const std::vector<std::string>& paths, double rate_hz,
+                                                 SensorKind sensor) {
     std::vector<SensorModel> models;
+    std::vector<std::string> notes;
     for (const std::string& path : paths) {
         GYROLOG_TRY(ModelSource source, read_model_source(path, 1));
         if (source.file.unstated.rate) { state_rate(source.file, rate_hz); }
+        for (const std::string& note : source.file.notes) {
+            if (source.simulator != nullptr) { notes.push_back(source.name + ": " + note); }
+        }
         GYROLOG_TRY(ModelFile file, model_of_sensor(std::move(source.file), sensor, path));
         models.push_back(std::move(file.model));
     }
@@ -81,7 +86,7 @@ Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<
         given.push_back(std::move(units));
     }
     use_models(knowledge, given);
-    return {};
+    return notes;
 }
 
 }  // namespace gyrolog

@@ -19,8 +19,10 @@ TimeSpan still_part_of(const Recording& recording);
 Result<Recording> rows_at_rest(const Recording& recording, const TimeSpan& still);
 
 // Puts the models of these files in place of what is known: one for all units, or one for each. An
-// accelerometer is known as accelerometer_as_gyro() has it.
-Status use_model_files(std::vector<AxisKnowledge>& knowledge, const std::vector<std::string>& paths,
-                       double rate_hz, SensorKind sensor);
+// accelerometer is known as accelerometer_as_gyro() has it. Gives back what was taken for what in those of
+// other simulators.
+Result<std::vector<std::string>> use_model_files(std::vector<AxisKnowledge>& knowledge,
+                                                 const std::vector<std::string>& paths, double rate_hz,
+                                                 SensorKind sensor);
 
 }  // namespace gyrolog

@@ -54,8 +54,8 @@ Result<CorrectedOutput> corrected_output(const std::string& path, const ModelSou
         if (!std::ranges::any_of(simulator_endings, ends_in)) { return CorrectedOutput{path}; }
         return invalid_argument(
             fmt::format("--model-out '{}': the model is no simulator's file: write a .json, of "
-                        "which `gyrolog export MODEL.json -o {} --for NAME` makes one",
-                        path, path));
+                        "which `gyrolog export` makes one",
+                        path));
     }
     const SimulatorFileKind& kind = source->simulator->kind(source->sensor);
     const std::string own = std::filesystem::path(source->file_path).extension().string();
@@ -65,8 +65,9 @@ Result<CorrectedOutput> corrected_output(const std::string& path, const ModelSou
     }
     if (is_own || is_device(path)) { return CorrectedOutput{path, source}; }
     return invalid_argument(
-        fmt::format("--model-out '{}': the model is {}: write the same ({}), or gyrolog's own (.model.json)",
-                    path, kind.called, fmt::join(kind.endings, ", ")));
+        fmt::format("--model-out '{}': the model is {}: write the same ({}), or gyrolog's own ({})", path,
+                    kind.called, fmt::join(kind.endings, ", "),
+                    std::ranges::count(kind.endings, ".json") > 0 ? ".model.json" : ".json"));
 }
 
 Result<std::string> corrected_text(const CorrectedOutput& output, const SensorModel& corrected,

@@ -125,7 +125,8 @@ def check_commands(gyrolog, folder, plain, better):
     run(gyrolog, "capture", "--device", f"sim:model={better}", "--duration", "2s", "-o", folder / "c.pcapng")
     run(gyrolog, "export", better, "-o", folder / "x.xml", "--for", "mjcf")
     run(gyrolog, "report", night, "--model", better, "-o", folder / "r.html", "--simulations", "20")
-    run(gyrolog, "denoise", night, "--model", better, "-o", folder / "d.csv")
+    done = run(gyrolog, "denoise", night, "--model", better, "-o", folder / "d.csv")
+    assert "better.sdf: the model is taken from an imu sensor of SDF" in done.stdout + done.stderr, done
     for name, said in (("better.xyz", "write the same"), ("better.mjcf", "write the same"), ("better.yaml", "write the same")):
         assert said in run(gyrolog, "diagnose", night, "--model", plain, "--model-out", folder / name, code=2).stderr
     assert "are the same file" in run(gyrolog, "diagnose", night, "--model", f"{plain}#imu", "--model-out", plain,
