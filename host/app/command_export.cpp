@@ -25,10 +25,19 @@ struct ExportOptions {
     std::optional<double> lsb_dps;
     PartChoice part;
     TextChoice text{};
-    std::string simulator;  // empty: by the output's ending
+    std::string target;  // a simulator or a filter; empty: by the output's ending
     std::string horizon = "1h";
     std::uint64_t seed = 1;
+    double inflate = 1.0;
 };
+
+std::string known_filters() {
+    std::string names;
+    for (const FilterFormat* format : filter_formats()) {
+        names += (names.empty() ? "" : ", ") + std::string(format->name);
+    }
+    return names;
+}
 
 std::string known_simulators() {
     std::string names;
@@ -39,10 +48,14 @@ std::string known_simulators() {
 }
 
 Status export_for_simulator(Console& console, const ExportOptions& options) {
-    const SimulatorFormat* format = find_simulator_format(options.simulator);
+    const SimulatorFormat* format = find_simulator_format(options.target);
     if (format == nullptr) {
-        return invalid_argument("--for: there is no simulator '" + options.simulator + "'; there are " +
-                                known_simulators());
+        return invalid_argument("--for: there is no simulator or filter '" + options.target +
+                                "'; there are the simulators " + known_simulators() + " and the filters " +
+                                known_filters());
+    }
+    if (options.inflate != 1.0) {
+        return invalid_argument("--inflate is for filters; a simulator is to have the noise that there is");
     }
     if (!is_model_file(options.source)) {
         return invalid_argument("--for needs a model: `gyrolog analyze " + options.source +
@@ -70,7 +83,19 @@ std::string known_endings() {
     return endings;
 }
 
-Status export_model(const ExportOptions& options, const ExportFormat& format) {
+// What a filter would miss is said here as well: its file may be read by a program only.
+Status write_noise(Console& console, const ExportOptions& options, const ExportFormat& format,
+                   ExportSource source) {
+    source.inflate = options.inflate;
+    if (format.filter != nullptr) {
+        for (const std::string& missing : missing_numbers(*format.filter, source)) {
+            console.err << "gyrolog export: warning: left out: " << missing << '\n';
+        }
+    }
+    return write_export(format, source, options.output);
+}
+
+Status export_model(Console& console, const ExportOptions& options, const ExportFormat& format) {
     if (format.needs != ExportFormat::Needs::noise) {
         return Error{ErrorCode::invalid_argument, "a model has no samples for a " +
                                                       std::string(format.ending) +
@@ -80,7 +105,7 @@ Status export_model(const ExportOptions& options, const ExportFormat& format) {
     if (source.file.unstated.rate) {
         return Error{ErrorCode::malformed, "model '" + options.source + "': rate_hz is missing"};
     }
-    return format.write(export_source(source.file.model, source.name), options.output);
+    return write_noise(console, options, format, export_source(source.file.model, source.name));
 }
 
 bool has_rates(const Recording& recording) {
@@ -116,7 +141,16 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     if (format.needs == ExportFormat::Needs::noise && source.gyro.empty()) {
         return Error{ErrorCode::failed, options.source + ": there is no gyro named gx, gy or gz"};
     }
-    return format.write(source, options.output);
+    return write_noise(console, options, format, source);
+}
+
+Status export_noise_or_samples(Console& console, const ExportOptions& options, const ExportFormat& format) {
+    if (options.inflate != 1.0 && format.filter == nullptr) {
+        return invalid_argument("--inflate is for filters: Kalibr's .yaml, and those of --for, " +
+                                known_filters());
+    }
+    return options.source.ends_with(".json") ? export_model(console, options, format)
+                                             : export_recording(console, options, format);
 }
 
 ExitCode export_to_file(Console& console, const ExportOptions& options) {
@@ -131,8 +165,11 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
                             {ErrorCode::invalid_argument,
                              "--from, --to and --still are for a recording; a model has no time"});
     }
-    if (!options.simulator.empty()) {
-        const Status done = export_for_simulator(console, options);
+    if (!options.target.empty()) {
+        const FilterFormat* filter = find_filter_format(options.target);
+        const Status done = filter != nullptr
+                                ? export_noise_or_samples(console, options, export_format_of(*filter))
+                                : export_for_simulator(console, options);
         if (!done.ok()) { return report_error(console, "export", done.error()); }
         console.err << "written: " << options.output << '\n';
         return ExitCode::ok;
@@ -144,8 +181,7 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
             {ErrorCode::invalid_argument,
              "'" + options.output + "' has none of the endings that tell the format: " + known_endings()});
     }
-    const Status done =
-        is_model ? export_model(options, *format) : export_recording(console, options, *format);
+    const Status done = export_noise_or_samples(console, options, *format);
     if (!done.ok()) { return report_error(console, "export", done.error()); }
     console.err << "written: " << options.output << '\n';
     return ExitCode::ok;
@@ -165,18 +201,24 @@ Action setup_export(CLI::App& app) {
            "gyroparams), .tuning.json (Kalman filter)")
         ->type_name("FILE")
         ->required();
-    CLI::Option* simulator =
+    CLI::Option* target =
         app.add_option(
-               "--for", options->simulator,
-               "Write the model as this simulator's own file, whatever the ending: " + known_simulators())
+               "--for", options->target,
+               "Write the model as this simulator's own file, whatever the ending: " + known_simulators() +
+                   "; or the noise of a recording or model as this filter takes it: " + known_filters())
             ->type_name("NAME");
     app.add_option("--horizon", options->horizon,
-                   "With --for: averaging times up to this count where noise can only be approximated")
+                   "With --for and a simulator: averaging times up to this count where noise can only be "
+                   "approximated")
         ->type_name("TIME")
         ->check(duration())
-        ->needs(simulator)
+        ->needs(target)
         ->capture_default_str();
-    app.add_option("--seed", options->seed, "With --for and a data sheet: another unit")->needs(simulator);
+    app.add_option("--seed", options->seed, "With --for and a data sheet: another unit")->needs(target);
+    app.add_option("--inflate", options->inflate,
+                   "For filters: multiply all deviations and densities; the file's head says so")
+        ->type_name("FACTOR")
+        ->check(positive_number());
     app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the one in the file")
         ->type_name("HZ")
         ->check(sampling_rate());

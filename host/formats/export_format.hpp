@@ -9,6 +9,7 @@
 #include "analysis/noise/sensor_unit.hpp"
 #include "host/base/result.hpp"
 #include "host/formats/export_source.hpp"
+#include "host/formats/filters/filter_format.hpp"
 
 namespace gyrolog {
 
@@ -23,7 +24,13 @@ struct ExportFormat {
     Needs needs;
     Sensors sensors;  // those of the analysis that it needs
     Status (*write)(const ExportSource& source, const std::string& path);
+    const FilterFormat* filter = nullptr;  // that the format is of; then it writes, and `write` is null
 };
+
+Status write_export(const ExportFormat& format, const ExportSource& source, const std::string& path);
+
+// Of --for: of a filter that no ending tells.
+ExportFormat export_format_of(const FilterFormat& filter);
 
 std::span<const ExportFormat> export_formats();
 

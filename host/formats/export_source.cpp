@@ -50,6 +50,25 @@ std::vector<ExportedAxis> exported_axes(const std::array<AxisModel, 3>& axes) {
     return exported;
 }
 
+// One value for three axes: the coarsest.
+std::optional<double> accelerometer_step_m_s2(const Recording& recording) {
+    std::optional<double> step;
+    for (const char* name : axis_names) {
+        const Column* column = recording.find(std::string("a") + name);
+        if (column != nullptr && column->is_counts() && column->unit == "m/s^2") {
+            step = std::max(step.value_or(0.0), column->scale);
+        }
+    }
+    return step;
+}
+
+void add_effects(std::vector<std::string>& effects, const std::vector<EffectModel>& of, const char* sensor) {
+    for (const EffectModel& effect : of) {
+        const std::string name = printable(effect.effect) + " of the " + sensor;
+        if (std::ranges::find(effects, name) == effects.end()) { effects.push_back(name); }
+    }
+}
+
 }  // namespace
 
 const ExportedAxis* ExportSource::gyro_axis(std::string_view axis) const {
@@ -73,6 +92,7 @@ ExportSource export_source(const Recording& recording, const AnalysisReport& rep
             source.full_scale_rad_s = codes_of_a_side * column->scale;
         }
     }
+    source.lsb_m_s2 = accelerometer_step_m_s2(recording);
     if (report.accelerometer && !report.accelerometer->unit.is_counts()) {
         source.accelerometer = exported_axes(report.accelerometer->axes);
         for (ExportedAxis& axis : source.accelerometer) { axis.bias = 0.0; }  // gravity hides it
@@ -88,7 +108,12 @@ ExportSource export_source(const SensorModel& model, const std::string& name) {
     if (model.lsb_rad_s > 0.0) { source.lsb_rad_s = model.lsb_rad_s; }
     source.temperature = model.temperature;
     source.gyro = exported_axes(model.axes);
-    if (model.accelerometer) { source.accelerometer = exported_axes(model.accelerometer->axes); }
+    add_effects(source.effects, model.effects, "gyro");
+    if (model.accelerometer) {
+        source.accelerometer = exported_axes(model.accelerometer->axes);
+        if (model.accelerometer->lsb_m_s2 > 0.0) { source.lsb_m_s2 = model.accelerometer->lsb_m_s2; }
+        add_effects(source.effects, model.accelerometer->effects, "accelerometer");
+    }
     return source;
 }
 

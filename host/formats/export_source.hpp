@@ -34,7 +34,10 @@ struct ExportSource {
     std::vector<ExportedAxis> accelerometer;  // in m/s^2 in place of rad/s
     std::optional<double> full_scale_rad_s;
     std::optional<double> lsb_rad_s;
+    std::optional<double> lsb_m_s2;
     std::optional<TemperatureModel> temperature;
+    std::vector<std::string> effects;  // of a model, each a name with its sensor
+    double inflate = 1.0;              // for filters: what their deviations and densities are multiplied by
     const Recording* recording = nullptr;  // absent of a model
     const AnalysisReport* report = nullptr;
 
