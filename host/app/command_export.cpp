@@ -18,6 +18,8 @@
 namespace gyrolog {
 namespace {
 
+constexpr const char* default_horizon = "1h";
+
 struct ExportOptions {
     std::string source;
     std::string output;
@@ -26,7 +28,7 @@ struct ExportOptions {
     PartChoice part;
     TextChoice text{};
     std::string target;  // a simulator or a filter; empty: by the output's ending
-    std::string horizon = "1h";
+    std::string horizon = default_horizon;
     std::uint64_t seed = 1;
     double inflate = 1.0;
 };
@@ -145,6 +147,9 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
 }
 
 Status export_noise_or_samples(Console& console, const ExportOptions& options, const ExportFormat& format) {
+    if (options.horizon != default_horizon) {
+        return invalid_argument("--horizon is for simulators; a filter takes the terms as they are");
+    }
     if (options.inflate != 1.0 && format.filter == nullptr) {
         return invalid_argument("--inflate is for filters: Kalibr's .yaml, and those of --for, " +
                                 known_filters());

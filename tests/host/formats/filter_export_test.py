@@ -275,6 +275,7 @@ def main():
             assert not [key for key in reader(out.read_text()) if re.search("acc", key, re.I)], out.read_text()
         assert "--inflate is for filters" in export(model, "-o", out, "--for", "sdf", "--inflate", 2, code=2)
         assert "--inflate is for filters" in export(model, "-o", pathlib.Path(folder, "a.m"), "--inflate", 2, code=2)
+        assert "--horizon is for simulators" in export(model, "-o", out, "--for", "gtsam", "--horizon", "9m", code=2)
         assert "orb-slam3" in export(model, "-o", out, "--for", "nothing", code=2)
         # Simulated, and analysed back.
         subprocess.run([program, "simulate", model, "-o", recording, "--duration", "40m", "--seed", "5"], check=True,
