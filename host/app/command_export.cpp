@@ -154,8 +154,8 @@ Status export_noise_or_samples(Console& console, const ExportOptions& options, c
         return invalid_argument("--inflate is for filters: Kalibr's .yaml, and those of --for, " +
                                 known_filters());
     }
-    return options.source.ends_with(".json") ? export_model(console, options, format)
-                                             : export_recording(console, options, format);
+    return is_model_file(options.source) ? export_model(console, options, format)
+                                         : export_recording(console, options, format);
 }
 
 ExitCode export_to_file(Console& console, const ExportOptions& options) {

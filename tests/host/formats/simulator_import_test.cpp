@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host/formats/filters/filter_format.hpp"
 #include "host/formats/input_limits.hpp"
-#include "host/formats/kalibr_yaml.hpp"
 #include "host/formats/model_source.hpp"
 #include "host/formats/simulators/simulator_format.hpp"
 #include "tests/host/formats/simulator_files.hpp"
@@ -221,7 +221,9 @@ SensorModel held_model(const Holding& holding) {
 }
 
 std::string exported(const Holding& holding, const SensorModel& model) {
-    if (holding.name == "kalibr") { return kalibr_yaml(export_source(model, "m.json")); }
+    if (holding.name == "kalibr") {
+        return filter_text(*find_filter_format("kalibr"), export_source(model, "m.json"));
+    }
     return simulator_text(*find_simulator_format(holding.name), model, "m.json", 600.0);
 }
 
