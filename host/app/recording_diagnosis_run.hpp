@@ -23,8 +23,8 @@ struct RecordingDiagnosisRequest {
     std::string holdout_path;  // a second recording, on which the gap is measured; empty: none
     std::string json_path;     // "-" is standard output; empty: not wanted
     std::string plot_path;
-    std::string model_out_path;     // the model with the causes added
-    double horizon_s = 3600.0;      // of a simulator's file that it is: noise is nearest up to this
+    std::string model_out_path;  // the model with the causes added
+    double horizon_s = 3600.0;   // of a simulator's file that it is: noise is nearest up to this
     bool is_verbose = false;
     bool with_unnamed = false;      // and what was modelled without a name
     std::optional<double> rate_hz;  // in place of the one in the file
