@@ -117,10 +117,11 @@ private:
         return attribute ? values_.number(first_number(attribute), name, range) : otherwise;
     }
 
-    // Of the gyro, or of the simulation: the last option of several counts.
+    // Of the gyro, or of the simulation: the last option of several counts. Without nsample interval is not
+    // heeded, see facts.
     double sample_s() {
         const double interval_s = number(gyro_, "interval", Range::not_negative, 0.0);
-        if (interval_s > 0.0) {
+        if (interval_s > 0.0 && number(gyro_, "nsample", Range::not_negative, 0.0) > 0.0) {
             source_of_rate_ = "by the gyro's interval";
             return interval_s;
         }

@@ -146,9 +146,10 @@ TEST(SimulatorImport, ReadsAGyroOfMujoco) {
     EXPECT_EQ(source.file.model.full_scale_rad_s, 34.9);
     EXPECT_EQ(source.file.model.saturation_rad_s, 34.9);
     const std::string later =
-        with(robot_mjcf, "noise=\"5e-4\"", "noise='5e-4' delay=\"0.003\" interval=\"0.01 0\"");
+        with(robot_mjcf, "noise=\"5e-4\"", "noise='5e-4' delay=\"0.003\" interval=\"0.01 0\" nsample=\"2\"");
     EXPECT_EQ(source_of(later).file.model.latency_s, 0.003);
     EXPECT_EQ(source_of(later).file.model.rate_hz, 100.0);
+    EXPECT_EQ(source_of(with(later, " nsample=\"2\"", "")).file.model.rate_hz, 250.0);
     EXPECT_EQ(source_of(with(robot_mjcf, " timestep=\"0.004\"", "")).file.model.rate_hz, 500.0);
 }
 
