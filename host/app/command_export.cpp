@@ -103,7 +103,7 @@ Status export_model(Console& console, const ExportOptions& options, const Export
                                                       std::string(format.ending) +
                                                       ": `gyrolog simulate` makes a recording of it"};
     }
-    GYROLOG_TRY(const ModelSource source, read_model_source(options.source, 1));
+    GYROLOG_TRY(const ModelSource source, read_model_source(options.source, options.seed));
     if (source.file.unstated.rate) {
         return Error{ErrorCode::malformed, "model '" + options.source + "': rate_hz is missing"};
     }

@@ -108,14 +108,20 @@ std::vector<std::string> lines_of(std::string_view text) {
     return lines;
 }
 
-// Puts a number where a plain one stood. The marks count from 0.
-bool replace_number(std::vector<std::string>& lines, const YAML::Node& value, const std::string& number) {
+// Puts a number where a plain one stood, right behind its own key: a line may have several, and an alias is
+// marked where its anchor is. The marks count from 0.
+bool replace_number(std::vector<std::string>& lines, std::string_view key, const YAML::Node& value,
+                    const std::string& number) {
     const auto line = static_cast<std::size_t>(std::max(0, value.Mark().line));
     const std::string& old = value.Scalar();
     if (line >= lines.size() || old.empty()) { return false; }
-    const std::size_t colon = lines[line].find(':');
-    const std::size_t from = colon == std::string::npos ? colon : lines[line].find(old, colon + 1);
-    if (from == std::string::npos) { return false; }
+    const std::size_t from =
+        std::min(static_cast<std::size_t>(std::max(0, value.Mark().column)), lines[line].size());
+    std::string before = lines[line].substr(0, from);
+    before.erase(before.find_last_not_of(" \t") + 1);
+    if (!before.ends_with(std::string(key) + ":") || lines[line].compare(from, old.size(), old) != 0) {
+        return false;
+    }
     lines[line].replace(from, old.size(), number);
     return true;
 }
@@ -170,7 +176,7 @@ public:
             const std::string number = fmt::format("{:.9g}", value);
             const char* neighbour = key == walk_key ? density_key : walk_key;
             done = done &&
-                   (there.IsDefined() && there.IsScalar() ? replace_number(lines, there, number)
+                   (there.IsDefined() && there.IsScalar() ? replace_number(lines, key, there, number)
                                                           : add_number(lines, imu[neighbour], key, number));
         }
         if (!done) {

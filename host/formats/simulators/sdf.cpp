@@ -159,6 +159,10 @@ void change_noise(pugi::xml_node noise, const SimulatorSource& source, std::size
     set_attribute(noise, "type", rounds ? "gaussian_quantized" : "gaussian");
     if (noise.child("type")) { noise.remove_child("type"); }
     set_number(noise, "mean", source.bias_rad_s[axis]);
+    // A bias that is known takes the place of one that is drawn, which would come on top.
+    for (const char* drawn : {"bias_mean", "bias_stddev"}) {
+        if (source.bias_rad_s[axis] != 0.0 && noise.child(drawn)) { set_number(noise, drawn, 0.0); }
+    }
     set_number(noise, "stddev", source.sample_sd_rad_s(axis));
     const NoiseProjection& of = source.noise[axis];
     const bool has_slow = of.gauss_markov.sigma_rad_per_s > 0.0;

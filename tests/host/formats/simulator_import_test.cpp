@@ -139,6 +139,35 @@ TEST(SimulatorImport, TakesWhatAPluginTakesForWhatIsNotStated) {
         HasSubstr("does not state gyroscopeRandomWalk (3.879e-05), gyroscopeBiasCorrelationTime (1000)"));
 }
 
+// Several numbers stand in a line, and a number is another's: nothing but its own place is written to.
+TEST(SimulatorImport, KalibrsNumbersAreChangedInTheirOwnPlaceOrNotAtAll) {
+    const std::string one_line =
+        "imu0: {\n  gyroscope_noise_density: 1.0e-3, accelerometer_random_walk: 2.0e-5, "
+        "gyroscope_random_walk: 2.0e-5, update_rate: 200.0}\n";
+    ModelSource source = source_of(one_line);
+    SensorModel model = source.file.model;
+    model.axes[0].noise.K_rad_per_s_sqrt_s = 7e-5;
+    const auto changed = changed_simulator_file(source, model, "robot", 600.0);
+    ASSERT_TRUE(changed.ok()) << changed.error().message;
+    EXPECT_THAT(changed->text, HasSubstr("accelerometer_random_walk: 2.0e-5, gyroscope_random_walk: "));
+    EXPECT_THAT(changed->text, Not(HasSubstr("gyroscope_random_walk: 2.0e-5")));
+    const std::string aliased =
+        "imu0:\n  gyroscope_noise_density: 1.0e-3\n  accelerometer_random_walk: &walk 2.0e-5\n"
+        "  gyroscope_random_walk: *walk\n  update_rate: 200.0\n";
+    ModelSource shared = source_of(aliased);
+    EXPECT_FALSE(changed_simulator_file(shared, model, "robot", 600.0).ok());
+}
+
+TEST(SimulatorImport, ABiasThatIsKnownTakesThePlaceOfOneThatIsDrawn) {
+    const ModelSource source = source_of(with(tutorial_sdf, "<mean>", "<bias_mean>0.01</bias_mean><mean>"));
+    SensorModel model = source.file.model;
+    for (AxisModel& axis : model.axes) { axis.bias_rad_s = 0.02; }
+    const auto changed = changed_simulator_file(source, model, "robot", 600.0);
+    ASSERT_TRUE(changed.ok()) << changed.error().message;
+    EXPECT_THAT(changed->text, Not(HasSubstr("<bias_mean>0.01")));
+    EXPECT_THAT(changed->text, HasSubstr("<bias_mean>0</bias_mean>"));
+}
+
 TEST(SimulatorImport, ReadsAGyroOfMujoco) {
     const ModelSource source = source_of(robot_mjcf);
     EXPECT_EQ(source.file.model.rate_hz, 250.0);
