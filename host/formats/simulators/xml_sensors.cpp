@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -42,17 +43,29 @@ std::vector<FoundSensor> sensors_in(pugi::xml_document& document) {
 
 constexpr std::size_t name_bytes_most = 120;
 
-// The names of what it stands in, and its own.
+// The names of what it stands in, or what that refers to (URDF's gazebo), and its own.
 std::string name_of(pugi::xml_node element) {
     std::string name;
     for (; element; element = element.parent()) {
-        const std::string_view own = element.attribute("name").value();
+        const pugi::xml_attribute called = element.attribute("name");
+        const std::string_view own = (called ? called : element.attribute("reference")).value();
         if (own.empty()) { continue; }
         if (name.size() > name_bytes_most) { return "..." + name; }
         if (!name.empty()) { name.insert(0, "::"); }
         name.insert(0, printable(own.substr(0, name_bytes_most)));
     }
     return name;
+}
+
+// Sensors with one name, or without any, are told apart by their order: "r::imu[1]", "r::imu[2]".
+std::vector<std::string> told_apart(std::vector<std::string> names) {
+    std::map<std::string, std::pair<std::size_t, std::size_t>> seen;  // how many, and how many so far
+    for (const std::string& name : names) { ++seen[name].first; }
+    for (std::string& name : names) {
+        auto& [all, so_far] = seen.at(name);
+        if (all > 1) { name += fmt::format("[{}]", ++so_far); }
+    }
+    return names;
 }
 
 void put_head_of(const XmlSensorKind& kind, const SimulatorSource& source, std::span<const std::string> head,
@@ -65,6 +78,7 @@ public:
     XmlSensors(std::unique_ptr<pugi::xml_document> document, std::vector<FoundSensor> found)
         : document_(std::move(document)), found_(std::move(found)) {
         for (const FoundSensor& sensor : found_) { names_.push_back(name_of(sensor.element)); }
+        names_ = told_apart(names_);
     }
 
     const std::vector<std::string>& sensors() const override { return names_; }

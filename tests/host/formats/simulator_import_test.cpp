@@ -168,6 +168,29 @@ TEST(SimulatorImport, ABiasThatIsKnownTakesThePlaceOfOneThatIsDrawn) {
     EXPECT_THAT(changed->text, HasSubstr("<bias_mean>0</bias_mean>"));
 }
 
+TEST(SimulatorImport, SensorsOfOneNameAreToldApart) {
+    const TemporaryFolder folder;
+    const auto imu = [](const char* reference, const char* stddev) {
+        return std::string("<gazebo reference='") + reference +
+               "'><sensor name='imu' "
+               "type='imu'><update_rate>100</update_rate><imu><angular_velocity><x><noise "
+               "type='gaussian'><mean>0</mean><stddev>" +
+               stddev + "</stddev></noise></x></angular_velocity></imu></sensor></gazebo>";
+    };
+    const auto sd_of = [&](const std::string& text, const std::string& sensor) {
+        std::ofstream(folder.path("robot.urdf")) << text;
+        const auto source = read_model_source(folder.path("robot.urdf") + "#" + sensor, 1);
+        return source.ok() ? source->file.model.axes[0].noise.N_rad_per_sqrt_s * 10.0 : 0.0;
+    };
+    const std::string two = "<robot name='r'>" + imu("left", "0.01") + imu("right", "0.02") + "</robot>";
+    EXPECT_NEAR(sd_of(two, "left::imu"), 0.01, 1e-12);
+    EXPECT_NEAR(sd_of(two, "right::imu"), 0.02, 1e-12);
+    EXPECT_EQ(sd_of(two, "imu"), 0.0) << "which one?";
+    const std::string same = "<robot name='r'>" + imu("base", "0.01") + imu("base", "0.02") + "</robot>";
+    EXPECT_EQ(sd_of(same, "r::base::imu"), 0.0) << "which one?";
+    EXPECT_NEAR(sd_of(same, "imu[2]"), 0.02, 1e-12);
+}
+
 TEST(SimulatorImport, ReadsAGyroOfMujoco) {
     const ModelSource source = source_of(robot_mjcf);
     EXPECT_EQ(source.file.model.rate_hz, 250.0);
