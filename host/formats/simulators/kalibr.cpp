@@ -29,7 +29,6 @@ constexpr SimulatorFileKind kalibr_kind = {
 constexpr const char* density_key = "gyroscope_noise_density";
 constexpr const char* walk_key = "gyroscope_random_walk";
 
-
 // Whether a line states the key.
 bool states(std::string_view line, std::string_view key) {
     const std::size_t from = line.find_first_not_of(" \t");
