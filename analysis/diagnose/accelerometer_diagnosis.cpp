@@ -1,7 +1,7 @@
 #include "analysis/diagnose/accelerometer_diagnosis.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 

@@ -450,9 +450,11 @@ Action setup_denoise(CLI::App& app) {
     auto request = std::make_shared<Request>();
     add_filter_options(app, *request);
     add_input_options(app, *request);
-    app.add_option("-o,--output", request->output,
-                   "The denoised recording: gx gy gz, with time stamps and other columns as they were (.csv, "
-                   ".gz, .xz, .zst)")
+    app.add_option(
+           "-o,--output", request->output,
+           "The denoised recording: gx gy gz, with time stamps and other columns as they were, or ax ay az "
+           "with the temperature (.csv, "
+           ".gz, .xz, .zst)")
         ->type_name("FILE");
     app.add_flag("--all-methods", request->all_methods, "Report all three methods side by side");
     app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")

@@ -96,7 +96,7 @@ public:
         const double rate_hz = 1.0 / sample_s();
         const double sd_rad_s = number(gyro_, "noise", Range::not_negative, 0.0);
         const double cutoff_rad_s = number(gyro_, "cutoff", Range::not_negative, 0.0);
-        file_.model.latency_s = number(gyro_, "delay", Range::not_negative, 0.0);
+        if (keeps_readings()) { file_.model.latency_s = number(gyro_, "delay", Range::not_negative, 0.0); }
         if (values_.problem()) { return malformed(*values_.problem()); }
         file_.unrated_sd_rad_s.fill(sd_rad_s);
         state_rate(file_, rate_hz);
@@ -117,11 +117,13 @@ private:
         return attribute ? values_.number(first_number(attribute), name, range) : otherwise;
     }
 
-    // Of the gyro, or of the simulation: the last option of several counts. Without nsample interval is not
-    // heeded, see facts.
+    // Without, interval and delay are not heeded: see facts.
+    bool keeps_readings() { return number(gyro_, "nsample", Range::not_negative, 0.0) > 0.0; }
+
+    // Of the gyro, or of the simulation: the last option of several counts.
     double sample_s() {
         const double interval_s = number(gyro_, "interval", Range::not_negative, 0.0);
-        if (interval_s > 0.0 && number(gyro_, "nsample", Range::not_negative, 0.0) > 0.0) {
+        if (interval_s > 0.0 && keeps_readings()) {
             source_of_rate_ = "by the gyro's interval";
             return interval_s;
         }
