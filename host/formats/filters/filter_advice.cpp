@@ -97,7 +97,7 @@ std::vector<std::string> filter_advice(const ExportSource& source) {
     add_bias_instability(advice, accelerometer, source.accelerometer);
     if (source.report != nullptr) {
         add_of_axes(advice, gyro, source.report->axes);
-        if (source.report->accelerometer) {
+        if (source.report->accelerometer && !source.accelerometer.empty()) {  // counts have no unit
             add_of_axes(advice, accelerometer, source.report->accelerometer->axes);
         }
         for (const std::string& warning : source.report->warnings) { advice.push_back(printable(warning)); }
