@@ -160,6 +160,7 @@ Result<ModelSource> parse_model_source(const std::string& text, const ModelPath&
 
 Result<ChangedFile> changed_simulator_file(const ModelSource& source, const SensorModel& model,
                                            const std::string& from, double horizon_s) {
+    if (!(model.rate_hz > 0.0)) { return invalid_argument("the model's rate is not known"); }
     const SimulatorAbilities& abilities = source.simulator->kind(source.sensor).abilities;
     const SimulatorSource numbers = simulator_source(model, from, abilities, horizon_s);
     std::vector<std::string> head = head_lines(numbers, abilities);

@@ -44,8 +44,9 @@ struct ChangedFile {
     std::vector<std::string> told;  // of what is approximated there, and what it cannot take
 };
 
-// `from`: what the head says of where the numbers are from. The horizon as simulator_text() has it. Error
-// `unsupported` as SimulatorFile::changed(); also where the file, read again, is not what was to be written.
+// `from`: what the head says of where the numbers are from. The horizon as simulator_text() has it. Errors:
+// `invalid_argument` where the model's rate is not known; `unsupported` as SimulatorFile::changed(), also
+// where the file, read again, is not what was to be written.
 Result<ChangedFile> changed_simulator_file(const ModelSource& source, const SensorModel& model,
                                            const std::string& from, double horizon_s);
 

@@ -159,7 +159,10 @@ TEST(SimulatorImport, KalibrsNumbersAreChangedInTheirOwnPlaceOrNotAtAll) {
 }
 
 TEST(SimulatorImport, ABiasThatIsKnownTakesThePlaceOfOneThatIsDrawn) {
-    const ModelSource source = source_of(with(tutorial_sdf, "<mean>", "<bias_mean>0.01</bias_mean><mean>"));
+    ModelSource source = source_of(with(tutorial_sdf, "<mean>", "<bias_mean>0.01</bias_mean><mean>"));
+    EXPECT_FALSE(changed_simulator_file(source, source.file.model, "robot", 600.0).ok())
+        << "no rate is known";
+    state_rate(source.file, 400.0);
     SensorModel model = source.file.model;
     for (AxisModel& axis : model.axes) { axis.bias_rad_s = 0.02; }
     const auto changed = changed_simulator_file(source, model, "robot", 600.0);
