@@ -1,19 +1,19 @@
 // The overlapping Allan deviation, intervals and all, beside the loop that anyone would write first: double
-// precision, its theta built once, compiled with the same flags. Both begin with the samples in memory and
+// precision, its theta built once, compiled with -Ofast. Both begin with the samples in memory and
 // take turns on one thread, so that whatever else the machine does slows both; `x_faster` is the ratio of
 // their CPU times, and the time shown is that of allan_deviation().
 
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <numeric>
 #include <random>
 
 #include <benchmark/benchmark.h>
 
 #include "analysis/allan/allan_deviation.hpp"
-#include "analysis/allan/averaging_factors.hpp"
 #include "analysis/allan/difference_sums.hpp"
+#include "tests/benchmark/cpu_time.hpp"
+#include "tests/benchmark/obvious_curve.hpp"
 
 namespace gyrolog {
 namespace {
@@ -42,38 +42,6 @@ Column reals_of(const Record& record) {
     return column;
 }
 
-double cpu_seconds() {
-    std::timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-template <typename Work>
-double cpu_seconds_of(const Work& work) {
-    const double begin = cpu_seconds();
-    work();
-    return cpu_seconds() - begin;
-}
-
-double obvious_deviation(const std::vector<double>& theta, std::size_t m, double tau_s) {
-    double sum = 0.0;
-    const std::size_t terms = theta.size() - 2 * m;
-    for (std::size_t k = 0; k < terms; ++k) {
-        const double d = theta[k + 2 * m] - 2.0 * theta[k + m] + theta[k];
-        sum += d * d;
-    }
-    return std::sqrt(sum / (2.0 * tau_s * tau_s * static_cast<double>(terms)));
-}
-
-void obvious_curve(const std::vector<double>& rate, double rate_hz) {
-    std::vector<double> theta(rate.size() + 1);
-    for (std::size_t i = 0; i < rate.size(); ++i) { theta[i + 1] = theta[i] + (rate[i] + 20.0) / rate_hz; }
-    for (const std::int64_t m : averaging_factors(static_cast<std::int64_t>(rate.size()))) {
-        benchmark::DoNotOptimize(
-            obvious_deviation(theta, static_cast<std::size_t>(m), static_cast<double>(m) / rate_hz));
-    }
-}
-
 void deviation_beside_obvious_loop(benchmark::State& state, const Record& record, const Column& column) {
     const std::vector<double> rate = column.values();
     const std::vector<Segment> whole = {{0, record.samples, 0}};
@@ -82,7 +50,8 @@ void deviation_beside_obvious_loop(benchmark::State& state, const Record& record
     for (auto _ : state) {
         const double before_s = ours_s;
         for (int axis = 0; axis < record.axes; ++axis) {
-            obvious_s += cpu_seconds_of([&] { obvious_curve(rate, record.rate_hz); });
+            obvious_s +=
+                cpu_seconds_of([&] { benchmark::DoNotOptimize(obvious_curve(rate, record.rate_hz)); });
             ours_s += cpu_seconds_of(
                 [&] { benchmark::DoNotOptimize(allan_deviation(column, whole, record.rate_hz)); });
         }
