@@ -49,6 +49,19 @@ std::string known_simulators() {
     return names;
 }
 
+// The model, read at --rate where that is given; what was taken for granted is said.
+Result<ModelSource> rated_model(Console& console, const ExportOptions& options) {
+    GYROLOG_TRY(ModelSource source, read_model_source(options.source, options.seed));
+    for (const std::string& note : source.file.notes) { console.err << "gyrolog export: " << note << '\n'; }
+    if (options.rate_hz) {
+        state_rate(source.file, *options.rate_hz);
+    } else if (source.file.unstated.rate) {
+        return Error{ErrorCode::malformed,
+                     "model '" + options.source + "': rate_hz is missing: state it there, or give --rate"};
+    }
+    return source;
+}
+
 Status export_for_simulator(Console& console, const ExportOptions& options) {
     const SimulatorFormat* format = find_simulator_format(options.target);
     if (format == nullptr) {
@@ -64,16 +77,12 @@ Status export_for_simulator(Console& console, const ExportOptions& options) {
                                 " --model MODEL.json` makes one of a recording");
     }
     GYROLOG_TRY(const double horizon_s, parse_duration_s(options.horizon));
-    GYROLOG_TRY(const ModelSource source, read_model_source(options.source, options.seed));
-    const ModelFile& file = source.file;
-    for (const std::string& note : file.notes) { console.err << "gyrolog export: " << note << '\n'; }
-    if (horizon_s * file.model.rate_hz < 1.0) {
+    GYROLOG_TRY(const ModelSource source, rated_model(console, options));
+    const SensorModel& model = source.file.model;
+    if (horizon_s * model.rate_hz < 1.0) {
         return invalid_argument("--horizon: shorter than one sample of the model");
     }
-    if (file.unstated.rate) {
-        return Error{ErrorCode::malformed, "model '" + options.source + "': rate_hz is missing"};
-    }
-    const std::string text = simulator_text(*format, file.model, source.name, horizon_s);
+    const std::string text = simulator_text(*format, model, source.name, horizon_s);
     return write_file(options.output, as_bytes(text));
 }
 
@@ -103,10 +112,7 @@ Status export_model(Console& console, const ExportOptions& options, const Export
                                                       std::string(format.ending) +
                                                       ": `gyrolog simulate` makes a recording of it"};
     }
-    GYROLOG_TRY(const ModelSource source, read_model_source(options.source, options.seed));
-    if (source.file.unstated.rate) {
-        return Error{ErrorCode::malformed, "model '" + options.source + "': rate_hz is missing"};
-    }
+    GYROLOG_TRY(const ModelSource source, rated_model(console, options));
     return write_noise(console, options, format, export_source(source.file.model, source.name));
 }
 
@@ -224,7 +230,7 @@ Action setup_export(CLI::App& app) {
                    "For filters: multiply all deviations and densities; the file's head says so")
         ->type_name("FACTOR")
         ->check(positive_number());
-    app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the one in the file")
+    app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the one in the recording or model")
         ->type_name("HZ")
         ->check(sampling_rate());
     add_part_options(app, options->part);

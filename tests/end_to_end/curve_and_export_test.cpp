@@ -100,6 +100,30 @@ TEST(Export, OfAModelGivesItsNoiseAndNoSamples) {
     EXPECT_THAT(samples.err, HasSubstr("a model has no samples"));
 }
 
+TEST(Export, OfAModelTakesItsRateFromTheOptionAndTellsTheModelsNotes) {
+    const TemporaryFolder folder;
+    const std::string model = folder.path("robot.sdf");
+    std::ofstream(model) << "<sdf version='1.9'><sensor name='imu' type='imu'><imu><angular_velocity>"
+                            "<x><noise type='gaussian'><stddev>0.01</stddev></noise></x>"
+                            "</angular_velocity></imu></sensor></sdf>";
+    const std::string simulator = folder.path("out.sdf");
+    const std::string filter = folder.path("imu.yaml");
+    for (const std::vector<std::string>& to :
+         {std::vector<std::string>{"--for", "sdf", "-o", simulator}, {"-o", filter}}) {
+        std::vector<std::string> command = {"export", model};
+        command.insert(command.end(), to.begin(), to.end());
+        const ProgramResult without = run_gyrolog(command);
+        EXPECT_EQ(without.exit_code, 1);
+        EXPECT_THAT(without.err, HasSubstr("give --rate"));
+        command.insert(command.end(), {"--rate", "400"});
+        const ProgramResult with = run_gyrolog(command);
+        EXPECT_EQ(with.exit_code, 0) << with.err;
+        EXPECT_THAT(with.err, HasSubstr("the model is taken from an imu sensor of SDF"));
+    }
+    EXPECT_THAT(read_whole_file(simulator), HasSubstr("<update_rate>400</update_rate>"));
+    EXPECT_THAT(read_whole_file(filter), HasSubstr("\ngyroscope_noise_density: 0.0005\n"));
+}
+
 TEST(Analyze, RefusesAFigureThatIsNoPng) {
     const TemporaryFolder folder;
     const std::string plot = folder.path("a.jpg");
