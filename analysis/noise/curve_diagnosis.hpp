@@ -3,8 +3,8 @@
 // Residuals are 20 log10(measured / model), with the likelihood of curve_scatter.hpp. The model's terms are
 // free within their stated uncertainty, without one they are fixed. A change is a term of the model whose
 // size becomes free, or a term that the model lacks. That change is made which lowers Schwarz's criterion
-// most, as long as it falls by more than 6, and one is taken back without which the criterion rises by less
-// than 2 (both as in curve_model.hpp).
+// most, as long as it falls by more than 10 ("very strong" by Kass and Raftery (1995), table 2), six changes
+// at most. One is taken back without which the criterion rises by less than 2 (as in curve_model.hpp).
 //
 // The scatter of the record behind the curve is known by the smooth part of the residuals only. So gaps are
 // measured in what the complete noise model, fitted to the measured curve, leaves over.

@@ -15,7 +15,7 @@ namespace gyrolog {
 // World time 0 is the recording's first sampling instant; time runs on the recording's grid, at its rate.
 //
 // Rates: ref_x ref_y ref_z, or else the rate of the orientation ref_qw ... ref_qz, which leaves a bandwidth
-// of 5.8 Hz and, of a real one by optical markers at rest, 0.2 to 0.6 deg/s of noise (orientation_rate.hpp,
+// of 12.5 Hz and, of a real one by optical markers at rest, 0.4 to 1.5 deg/s of noise (orientation_rate.hpp,
 // METHODS.md). An axis without reference is taken not to turn. Between samples: the cubic through the four
 // nearest where they follow each other without a hole, else a straight line. Where the reference is not known
 // (NaN) for no more than 0.1 s (at least two rows), and in a hole of the recording, a straight line joins
