@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace gyrolog {
 namespace {
@@ -52,10 +53,15 @@ double filtered(const double* x, const Taps& h) {
 double Decimator::power_gain(double cycles_per_output) {
     const Taps& h = filter();
     const double omega = 2.0 * pi * cycles_per_output / factor;
-    constexpr double middle = (taps - 1) / 2.0;
+    // cos((m + 1/2) omega) from the middle outwards by the recurrence of Chebyshev's polynomials: bins are
+    // many.
+    const double twice = 2.0 * std::cos(omega);
+    double before = std::cos(0.5 * omega);
+    double now = before;
     double gain = 0.0;
-    for (std::size_t i = 0; i < taps / 2; ++i) {
-        gain += 2.0 * h[i] * std::cos(omega * (static_cast<double>(i) - middle));
+    for (std::size_t i = taps / 2; i-- > 0;) {
+        gain += 2.0 * h[i] * now;
+        before = std::exchange(now, twice * now - before);
     }
     return gain * gain;
 }
