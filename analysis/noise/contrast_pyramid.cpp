@@ -44,12 +44,25 @@ public:
     }
 
 private:
+    // Cosines of even order are symmetric about the block's middle, those of odd order antisymmetric.
     void transform() {
+        const std::size_t length = sums_.size() + 1;
+        const std::size_t half = (length + 1) / 2;
+        for (std::size_t i = 0; i < length / 2; ++i) {
+            for (std::size_t b = 0; b < batch; ++b) {
+                const double first = values_[i][b];
+                const double last = values_[length - 1 - i][b];
+                values_[i][b] = first + last;
+                values_[length - 1 - i][b] = first - last;
+            }
+        }
         for (std::size_t k = 0; k < sums_.size(); ++k) {
+            const bool is_even = k % 2 == 1;  // row k is of order k + 1
             std::array<double, batch> coefficient{};
-            for (std::size_t i = 0; i <= sums_.size(); ++i) {
+            for (std::size_t i = 0; i < half; ++i) {
                 const double weight = rows_[k][i];
-                for (std::size_t b = 0; b < batch; ++b) { coefficient[b] += weight * values_[i][b]; }
+                const std::array<double, batch>& value = values_[is_even ? i : length - 1 - i];
+                for (std::size_t b = 0; b < batch; ++b) { coefficient[b] += weight * value[b]; }
             }
             double squares = 0.0;
             for (const double c : coefficient) { squares += c * c; }

@@ -67,10 +67,10 @@ LikelihoodMaximum maximise(const NoiseLikelihood& likelihood, std::span<const do
                            std::span<const std::size_t> held) {
     constexpr int most_steps = 40;
     constexpr double settled = 1e-7;  // gain that a further step promises
-    LikelihoodMaximum best{{start.begin(), start.end()}, likelihood.value(start)};
+    NoiseLikelihood::Evaluation at = likelihood.evaluate(start);
+    LikelihoodMaximum best{{start.begin(), start.end()}, at.value};
     if (!std::isfinite(best.value)) { return best; }
     for (int pass = 0; pass < most_steps; ++pass) {
-        const NoiseLikelihood::Evaluation at = likelihood.evaluate(best.squares);
         std::vector<std::size_t> moving;
         for (std::size_t j = 0; j < start.size(); ++j) {
             if (std::ranges::find(held, j) != held.end()) { continue; }
@@ -78,20 +78,28 @@ LikelihoodMaximum maximise(const NoiseLikelihood& likelihood, std::span<const do
         }
         if (moving.empty()) { break; }
         const std::vector<double> step = scoring_step(at, moving);
-        LikelihoodMaximum next;
-        for (int halving = 0; halving < 30; ++halving) {
-            const double part = std::exp2(-halving);
-            next.squares = best.squares;
+        if (0.5 * dot(at.gradient, step) < settled) { break; }
+        const auto stepped = [&](double part) {
+            std::vector<double> squares = best.squares;
             for (std::size_t j = 0; j < step.size(); ++j) {
-                next.squares[j] = std::max(best.squares[j] + part * step[j], 0.0);
+                squares[j] = std::max(squares[j] + part * step[j], 0.0);
             }
+            return squares;
+        };
+        // Most steps are taken whole: then the derivatives are there for the next one.
+        LikelihoodMaximum next{stepped(1.0), 0.0};
+        at = likelihood.evaluate(next.squares);
+        next.value = at.value;
+        const bool whole = next.value >= best.value;
+        for (int halving = 1; halving < 30 && !(next.value >= best.value); ++halving) {
+            next.squares = stepped(std::exp2(-halving));
             next.value = likelihood.value(next.squares);
-            if (next.value >= best.value) { break; }
         }
         if (!(next.value >= best.value)) { break; }
         const double gain = next.value - best.value;
         best = std::move(next);
         if (gain < settled) { break; }
+        if (!whole) { at = likelihood.evaluate(best.squares); }
     }
     return best;
 }
