@@ -1,6 +1,7 @@
 #include "analysis/recording/grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -76,6 +77,24 @@ TEST(Grid, IsNotMisledByStampsRoundedToMilliseconds) {
     EXPECT_EQ(grid.stamps, StampKind::sampling);
     EXPECT_THAT(grid.dropouts, IsEmpty());
     EXPECT_NEAR(grid.rate_hz, 285.7143, 1e-3);
+}
+
+// Holes longer than all that was recorded: one of an hour, or a logger that wakes for a minute in ten.
+TEST(Grid, OfStretchesWithLongHolesKeepsTheRate) {
+    for (const auto& [stretches, stretch_s, hole_s] :
+         {std::array{2.0, 1200.0, 3600.0}, {10.0, 60.0, 540.3}}) {
+        std::vector<double> t_s;
+        for (double stretch = 0.0; stretch < stretches; ++stretch) {
+            for (double i = 0.0; i < stretch_s * 50.0; ++i) {
+                t_s.push_back(stretch * (stretch_s + hole_s) + i / 50.0);
+            }
+        }
+        const Grid grid = grid_from_stamps(t_s);
+        EXPECT_EQ(grid.stamps, StampKind::sampling);
+        EXPECT_NEAR(grid.rate_hz, 50.0, 1e-4);
+        ASSERT_EQ(static_cast<double>(grid.segments.size()), stretches);
+        EXPECT_NEAR(static_cast<double>(missing_in(grid).front()), hole_s * 50.0, 2.0);
+    }
 }
 
 // Bursts as a serial port makes them: four of five samples arrive 2 ms after each other, then nothing for 42
