@@ -45,6 +45,7 @@ constexpr ChainLink links[] = {
     effect(temp_cubic_effect),
     effect(temp_lag_effect),
     effect(temperature_table_effect),
+    effect(time_table_effect),
     own(make_rate_ramp),
     // noise
     own(make_flicker_noise),
@@ -67,6 +68,7 @@ constexpr ChainLink links[] = {
     effect(common_mode_effect),
     // the sensor's bandwidth
     effect(lowpass_effect),
+    effect(biquad_effect),
     own(make_noise_sum),
     // a line as high as it shows: the filter passed it at its true frequency, not at the one it folds to
     effect(tone_effect),

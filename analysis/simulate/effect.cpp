@@ -119,6 +119,9 @@ std::optional<std::string> effect_refusal(const EffectModel& effect) {
         }
     }
     if (const auto refusal = refusal_of_columns(*definition, effect)) { return name + " " + *refusal; }
+    if (definition->refusal != nullptr) {
+        if (const auto refusal = definition->refusal(effect)) { return name + " " + *refusal; }
+    }
     for (const std::string& axis : effect.axes) {
         if (std::ranges::find(axis_names, axis) == axis_names.end()) {
             return name + " names an axis " + name_in_quotes(axis) + " that is not x, y or z";

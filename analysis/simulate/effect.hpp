@@ -52,6 +52,8 @@ struct EffectDefinition {
     std::string_view source;  // of the formula, with equation or section; for what is plain: ""
     std::span<const EffectParam> params;
     std::unique_ptr<Stage> (*make)(const EffectUse&);
+    // Why parameters that are each in their range cannot be simulated together.
+    std::optional<std::string> (*refusal)(const EffectModel&) = nullptr;
     // The parameter, if any, by which the sensor's true rate exceeds the nominal one, relative.
     std::string_view rate_error{};
     // The parameter, if any, in deg/s, that is the converter's step on its axes; see converter_step_rad_s().

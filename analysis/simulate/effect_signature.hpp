@@ -74,6 +74,7 @@ enum class EvidenceMethod {
     stamp_gaps,
     stamp_rate,
     stamp_jitter,
+    described,  // by a person: nothing looks for it unasked
 };
 
 enum class PlaceKind { spectrum, time, instant, temperature, acceleration, rate, amplitude, structure };

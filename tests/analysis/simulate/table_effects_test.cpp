@@ -128,6 +128,19 @@ TEST(DensityTable, MayBeNextToNothingInHalfOfTheBand) {
                 0.05 * 0.02 * 0.02 * rate_hz);
 }
 
+TEST(TimeTable, IsStraightBetweenItsPointsAndLevelBeyondThem) {
+    const SensorModel model = with_table(
+        ideal_model(),
+        table_entry("time_table", {{"t_s", {1.0, 2.0, 4.0}}, {"bias_dps", {0.0, 1.0, -1.0}}}, {"y"}));
+    const Simulated out = simulate(model, rate_hz, 3, 1);
+    for (const auto& [at_s, bias_dps] : std::vector<std::pair<double, double>>{
+             {0.0, 0.0}, {1.0, 0.0}, {1.5, 0.5}, {2.0, 1.0}, {3.0, 0.0}, {4.0, -1.0}, {6.0, -1.0}}) {
+        const auto i = static_cast<std::size_t>(at_s * rate_hz);
+        EXPECT_NEAR(out.rate_rad_s[1][i], bias_dps * rad_per_deg, 1e-12) << at_s;
+        EXPECT_EQ(out.rate_rad_s[0][i], 0.0);
+    }
+}
+
 TEST(TemperatureTable, IsStraightBetweenItsPointsAndLevelBeyondThem) {
     auto world = std::make_shared<FormulaWorld>();
     world->temperature_C = [](double t_s) { return 20.0 + t_s; };
