@@ -16,6 +16,7 @@
 #include "analysis/diagnose/estimators/catalogue.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/measures/unreferenced_motion.hpp"
+#include "analysis/diagnose/selection/asked_effect.hpp"
 #include "analysis/diagnose/selection/better_shape.hpp"
 #include "analysis/diagnose/selection/cause_probability.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
@@ -81,6 +82,7 @@ public:
         describe_places();
         if (has_gap) { decide(); }
         if (!widen_uncertainties()) { return std::nullopt; }
+        answer_questions();
         return std::move(answer_);
     }
 
@@ -427,6 +429,15 @@ private:
             answer_.causes[i].finding = std::move((*known)[i]);
         }
         return true;
+    }
+
+    void answer_questions() {
+        if (options_.asked.empty()) { return; }
+        const Observation alone(prediction_, recording_, options_.seed);
+        const Observation beside = alone.under(answer_.corrected);
+        for (const DescribedEffect& described : options_.asked) {
+            answer_.asked.push_back(asked(described, beside, alone));
+        }
     }
 
     std::shared_ptr<const Recording> recording_;

@@ -35,6 +35,8 @@ struct DiagnosisOptions {
     unsigned threads = 0;
     double simulations_bytes_most = resolution::simulations_bytes_most;
     std::shared_ptr<const Recording> holdout{};
+    // Effects that a person describes; without effect_refusal().
+    std::vector<DescribedEffect> asked{};
     // With what is being done and its share from 0 to 1; false ends the work.
     std::function<bool(const char*, double)> on_progress{};
 };

@@ -132,6 +132,33 @@ struct Gap {
     double hi = 0.0;
 };
 
+// An effect that a person describes, to ask whether the data call for it.
+struct DescribedEffect {
+    std::string name;   // the person's own
+    EffectModel entry;  // one of the simulator's effects, with the described parameters or table
+};
+
+struct Asked {
+    DescribedEffect described;
+    // How much of it there is: 1 as described. Nothing of an effect without a size that could vary.
+    struct Amount {
+        double value = 0.0;
+        double sd = 0.0;
+    };
+    // The log-likelihood with it, of the most likely amount, less the one without it.
+    struct Answer {
+        std::optional<Amount> amount;
+        double gain_nats = 0.0;
+        double described_nats = 0.0;  // of what is described
+        // That chance gains as much: of an amount by Wilks 1938; of what is taken as described no more than
+        // exp(-gain_nats), by Markov's inequality.
+        double p = 1.0;
+        bool is_called_for = false;
+    };
+    Answer beside;  // the causes
+    Answer alone;   // in the first model
+};
+
 struct Untestable {
     std::string effect;
     std::string why;  // "the recording has no temperature"
@@ -216,6 +243,7 @@ struct Diagnosis {
     std::string held_out;  // the name of the second recording that the gap was measured on; empty without one
     std::vector<GapDomain> domains;
     std::vector<Untestable> untestable;
+    std::vector<Asked> asked;                  // in the order of the questions
     std::vector<std::string> next_recordings;  // what would settle what is open, in sentences
     std::vector<std::string> warnings;
     SensorModel corrected;  // the model with the causes added and its noise refitted

@@ -67,6 +67,9 @@ ExitCode diagnose_either(Console& console, DiagnoseOptions& options) {
             "give the --model that the recording is to be held against, or --auto for one of white "
             "noise and a bias");
     }
+    if (!request.asked_paths.empty() && (options.sensor != "gyro" || request.average > 1)) {
+        return wrong("--ask is for the gyro's samples as they are: without --sensor and --average");
+    }
     return diagnose_recordings(console, options);
 }
 
@@ -116,6 +119,11 @@ Action setup_diagnose(CLI::App& app) {
     app.add_option("--holdout", request.holdout_path,
                    "A second recording of the sensor: the gap is measured on it")
         ->type_name("RECORDING");
+    app.add_option("--ask", request.asked_paths,
+                   "An effect described in a file (gyrolog-effect/1): whether the data call for it; may be "
+                   "given again")
+        ->type_name("FILE.json")
+        ->allow_extra_args(false);
     app.add_option("--average", request.average,
                    "Look at means of N samples: all of a long recording, for what is slow")
         ->type_name("N")
@@ -147,9 +155,9 @@ Action setup_diagnose(CLI::App& app) {
         ->capture_default_str();
     add_part_options(app, request.part);
     for (const char* of_recordings :
-         {"--auto", "--verbose", "--unnamed", "--holdout", "--average", "--simulations", "--seed",
-          "--threads", "--lsb-dps", "--rate", "--columns", "--unit", "--acc-unit", "--lsb-g", "--sensor",
-          "--from", "--to", "--still", "--jsonl"}) {
+         {"--auto",  "--verbose", "--unnamed", "--holdout", "--ask",     "--average", "--simulations",
+          "--seed",  "--threads", "--lsb-dps", "--rate",    "--columns", "--unit",    "--acc-unit",
+          "--lsb-g", "--sensor",  "--from",    "--to",      "--still",   "--jsonl"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

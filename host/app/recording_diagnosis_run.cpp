@@ -25,6 +25,7 @@
 #include "host/app/result_output.hpp"
 #include "host/app/sensor_choice.hpp"
 #include "host/base/file_output.hpp"
+#include "host/formats/described_effect_json.hpp"
 #include "host/formats/diagnosis_json.hpp"
 #include "host/formats/diagnosis_text.hpp"
 #include "host/formats/effect_words.hpp"
@@ -171,6 +172,23 @@ Status write_results(Console& console, const RecordingDiagnosisRequest& request,
     return done;
 }
 
+// What is asked is looked for in all samples at once.
+Result<std::vector<DescribedEffect>> read_questions(const RecordingDiagnosisRequest& request,
+                                                    const DiagnosisInput& read) {
+    std::vector<DescribedEffect> questions;
+    if (request.asked_paths.empty()) { return questions; }
+    if (read.means != nullptr) {
+        return invalid_argument(
+            "--ask: the recording is too long to be looked at in one piece: take a part "
+            "of it with --from and --to");
+    }
+    for (const std::string& path : request.asked_paths) {
+        GYROLOG_TRY(DescribedEffect described, read_described_effect(path));
+        questions.push_back(std::move(described));
+    }
+    return questions;
+}
+
 // `source`: the model; null: one of the recording's own.
 Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisRequest& request,
                                 const ModelSource* source, SensorKind sensor) {
@@ -201,6 +219,7 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
     }
     DiagnosisOptions options = options_of(console, request);
     options.holdout = second.samples;
+    GYROLOG_TRY(options.asked, read_questions(request, read));
     const std::string name = is_plain ? "white noise and bias" : source->name;
     auto diagnosis = read.means != nullptr
                          ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
@@ -245,9 +264,10 @@ std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis) {
 
 ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisRequest& request) {
     const auto fail = [&](const Error& error) { return report_error(console, "diagnose", error); };
-    const NamedPath read[] = {{"RECORDING", request.recording_path},
-                              {"--model", request.model_path},
-                              {"--holdout", request.holdout_path}};
+    std::vector<NamedPath> read = {{"RECORDING", request.recording_path},
+                                   {"--model", request.model_path},
+                                   {"--holdout", request.holdout_path}};
+    for (const std::string& path : request.asked_paths) { read.push_back({"--ask", path}); }
     const NamedPath written[] = {{"--json", request.json_path},
                                  {"--plot", request.plot_path},
                                  {"--model-out", request.model_out_path}};

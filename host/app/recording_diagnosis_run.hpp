@@ -19,9 +19,10 @@ namespace gyrolog {
 
 struct RecordingDiagnosisRequest {
     std::string recording_path;
-    std::string model_path;    // empty: a plain model of the recording's own (plain_model.hpp)
-    std::string holdout_path;  // a second recording, on which the gap is measured; empty: none
-    std::string json_path;     // "-" is standard output; empty: not wanted
+    std::string model_path;                // empty: a plain model of the recording's own (plain_model.hpp)
+    std::vector<std::string> asked_paths;  // of effects that a person describes
+    std::string holdout_path;              // a second recording, on which the gap is measured; empty: none
+    std::string json_path;                 // "-" is standard output; empty: not wanted
     std::string plot_path;
     std::string model_out_path;  // the model with the causes added
     double horizon_s = 3600.0;   // of a simulator's file that it is: noise is nearest up to this

@@ -128,6 +128,27 @@ Json unnamed_json(const Unnamed& unnamed) {
 
 Json left_json(const Left& left) { return {{"where", whole_place_json(left.where)}, {"size", left.size}}; }
 
+Json answer_json(const Asked::Answer& answer) {
+    Json json = {{"called_for", answer.is_called_for},
+                 {"gain_nats", answer.gain_nats},
+                 {"as_described_nats", answer.described_nats},
+                 {"p", answer.p}};
+    if (answer.amount) {
+        json["amount"] = answer.amount->value;
+        json["amount_sd"] = answer.amount->sd;
+    }
+    return json;
+}
+
+Json asked_json(const Asked& asked) {
+    const EffectModel& entry = asked.described.entry;
+    return {{"name", asked.described.name},
+            {"effect", entry.effect},
+            {"axes", entry.axes},
+            {"beside_causes", answer_json(asked.beside)},
+            {"alone", answer_json(asked.alone)}};
+}
+
 Json domain_json(const GapDomain& domain) {
     Json json;
     json["name"] = domain.name;
@@ -239,6 +260,7 @@ Json diagnosis_object(const Diagnosis& diagnosis) {
     for (const Untestable& one : diagnosis.untestable) {
         json["untestable"].push_back({{"effect", one.effect}, {"why", one.why}});
     }
+    for (const Asked& one : diagnosis.asked) { json["asked"].push_back(asked_json(one)); }
     json["next_recordings"] = diagnosis.next_recordings;
     json["warnings"] = diagnosis.warnings;
     return json;

@@ -15,6 +15,9 @@
 //                            recording that would decide)
 //   noise_refitted           where the model's noise held part of the causes: [{axis, coefficient "N", "B" or
 //                            "K", stated, fitted, sd}] in the model file's units
+//   asked                    only where something was asked (--ask): [{name, effect, axes, beside_causes,
+//   alone}],
+//                            both {called_for, gain_nats, as_described_nats, p, amount, amount_sd}
 //   unnamed                  what was modelled without an effect: [{form, axes, where, share}]; form:
 //                            "density", "drift", "temperature", "rate", "level", "masked"
 //   left                     what nothing describes, the largest first: [{where, size}], size in floors

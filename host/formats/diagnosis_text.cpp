@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
 #include "host/formats/diagnosis_details.hpp"
 #include "host/formats/effect_words.hpp"
 #include "host/formats/place_text.hpp"
@@ -283,6 +284,32 @@ std::string verdict_on(const std::string& causes, const Diagnosis& diagnosis, st
     return fmt::format("unexplained: there is a gap, and {} {} too little of it", causes, explain);
 }
 
+std::string amount_text(const Asked::Answer& answer) {
+    return answer.amount ? fmt::format("{} times what is described, ",
+                                       with_uncertainty(answer.amount->value, answer.amount->sd))
+                         : "";
+}
+
+std::string asked_sentence(const Diagnosis& diagnosis, const Asked& asked) {
+    const std::vector<std::string>& axes = asked.described.entry.axes;
+    const Asked::Answer& beside = asked.beside;
+    const Asked::Answer& alone = asked.alone;
+    std::string text =
+        fmt::format("{}{}: the data {} for it ({}{})", printable(asked.described.name),
+                    axes.empty() ? "" : " on " + listed(axes), beside.is_called_for ? "call" : "do not call",
+                    amount_text(beside), probability_text(beside.p));
+    if (diagnosis.causes.empty()) { return text; }
+    return text + fmt::format("; without the causes that were found they {} ({}{})",
+                              alone.is_called_for ? "would" : "would not", amount_text(alone),
+                              probability_text(alone.p));
+}
+
+std::vector<std::string> asked_sentences(const Diagnosis& diagnosis) {
+    std::vector<std::string> sentences;
+    for (const Asked& one : diagnosis.asked) { sentences.push_back(asked_sentence(diagnosis, one)); }
+    return sentences;
+}
+
 }  // namespace
 
 std::string passes_text(const Diagnosis& diagnosis) {
@@ -340,6 +367,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis, Wording wording) {
         text += "\n" + wrapped_text("", "left: " + sentences.left);
         for (const std::string& item : sentences.left_items) { text += wrapped_text("  - ", item); }
     }
+    text += sentences_text("what was asked", asked_sentences(diagnosis));
     text += sentences_text("recordings that would tell more", diagnosis.next_recordings);
     if (wording == Wording::whole) { text += diagnosis_details(diagnosis); }
     text += sentences_text("warnings", diagnosis.warnings);

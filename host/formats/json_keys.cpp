@@ -226,6 +226,19 @@ std::map<std::string, double> JsonKeys::uncertainties(const Json& value, const s
     return numbers;
 }
 
+std::map<std::string, std::vector<double>> JsonKeys::columns(const Json& value, const std::string& key) {
+    std::map<std::string, std::vector<double>> columns;
+    if (!value.is_object()) { fail(name(key), "is not an object of columns"); }
+    for (const auto& item : value.items()) {
+        const std::string where = name(key) + "." + item.key();
+        if (!item.value().is_array()) { fail(where, "is not a list of numbers"); }
+        for (const Json& number : item.value()) {
+            columns[item.key()].push_back(number_in(number, where + "[]", Range::any));
+        }
+    }
+    return columns;
+}
+
 double JsonKeys::number_in(const Json& value, const std::string& where, Range range) {
     if (!value.is_number()) {
         fail(where, "is not a finite number");

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "analysis/simulate/sensor_model.hpp"
 #include "host/base/result.hpp"
@@ -61,6 +62,9 @@ public:
     Matrix3 matrix(const std::string& key) { return matrix_in(need(key), name(key)); }
     // An object of numbers.
     std::map<std::string, double> uncertainties(const Json& value, const std::string& key);
+
+    // An object of lists of numbers.
+    std::map<std::string, std::vector<double>> columns(const Json& value, const std::string& key);
 
     double number_in(const Json& value, const std::string& where, Range range);
     std::string text_in(const Json& value, const std::string& where);

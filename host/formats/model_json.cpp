@@ -120,19 +120,6 @@ TemperatureModel read_temperature(Keys& keys) {
     return temperature;
 }
 
-std::map<std::string, std::vector<double>> read_table(Keys& keys, const Json& table) {
-    std::map<std::string, std::vector<double>> columns;
-    if (!table.is_object()) { keys.fail(keys.name("table"), "is not an object of columns"); }
-    for (const auto& item : table.items()) {
-        const std::string where = keys.name("table") + "." + item.key();
-        if (!item.value().is_array()) { keys.fail(where, "is not a list of numbers"); }
-        for (const Json& number : item.value()) {
-            columns[item.key()].push_back(keys.number_in(number, where + "[]", Range::any));
-        }
-    }
-    return columns;
-}
-
 // The effect behind a form that has no name of its own; empty where there is none.
 std::string effect_of_form(std::string_view form) {
     for (const ChainLink& link : signal_chain()) {
@@ -169,7 +156,7 @@ EffectModel read_effect(Keys& keys, EffectNamer name_of) {
             effect.axes.push_back(keys.text_in(axis, keys.name("axes") + "[]"));
         }
     }
-    if (const Json* table = keys.find("table")) { effect.table = read_table(keys, *table); }
+    if (const Json* table = keys.find("table")) { effect.table = keys.columns(*table, "table"); }
     Json carried = keys.left_over();
     carried.erase("params");
     if (const Json* params = keys.find("params")) {

@@ -173,6 +173,7 @@ std::vector<CatalogueEntry> make_catalogue(const std::shared_ptr<const Predictio
     for (const ChainLink& link : signal_chain()) {
         if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
         if (!link.effect->form.empty()) { continue; }
+        if (link.effect->signature->method == EvidenceMethod::described) { continue; }
         catalogue.push_back({link.effect, nullptr, lacking(*link.effect->signature, *prediction)});
     }
     parallel_for(catalogue.size(), threads, [&](std::size_t i) {

@@ -135,6 +135,29 @@ TEST_F(DiagnoseCommand, WithoutAModelItIsHeldAgainstItsOwnWhiteNoiseAndBias) {
     EXPECT_THAT(err.str(), HasSubstr("no part of four seconds in which nothing turns"));
 }
 
+TEST_F(DiagnoseCommand, AnswersWhatAPersonAsks) {
+    SensorModel heated = typical_mpu9250();
+    heated.effects.push_back(
+        {"time_table", {"z"}, {}, "", {{"t_s", {0.0, 30.0, 60.0}}, {"bias_dps", {0.0, 0.1, 0.0}}}});
+    write_recording_of(heated);
+    const std::string heater = folder.path("heater.json");
+    std::ofstream(heater) << R"({"schema": "gyrolog-effect/1", "name": "heater", "effect": "time_table",
+        "axes": ["z"], "table": {"t_s": [0, 30, 60], "bias_dps": [0, 0.1, 0]}})";
+    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--ask", heater, "--json", "-"}),
+              ExitCode::ok)
+        << err.str();
+    const json asked = json::parse(out.str())["asked"];
+    ASSERT_EQ(asked.size(), 1U);
+    EXPECT_EQ(asked[0]["name"], "heater");
+    EXPECT_EQ(asked[0]["alone"]["called_for"], true);
+    EXPECT_NEAR(asked[0]["alone"]["amount"].get<double>(), 1.0, 0.2);
+
+    EXPECT_EQ(diagnose({recording, "--model", model, "--ask", model}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("not 'gyrolog-effect/1'"));
+    EXPECT_EQ(diagnose({recording, "--model", model, "--ask", heater, "--average", "10"}), ExitCode::usage);
+    EXPECT_EQ(diagnose({recording, "--model", model, "--ask", heater, "--json", heater}), ExitCode::usage);
+}
+
 TEST_F(DiagnoseCommand, WarnsOfASensorThatWasTurnedWithoutAReference) {
     SensorModel swung = typical_mpu9250();
     write_recording_of(swung);

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/formats/diagnosis_text.hpp"
 #include "tests/host/formats/diagnosis_cases.hpp"
 
 namespace gyrolog {
@@ -89,38 +90,17 @@ void expect_cause(const json& cause) {
 }
 
 void expect_schema(const json& answer) {
-    expect_keys(answer,
-                {{"schema", "string"},
-                 {"verdict", "string"},
-                 {"p_none", "number"},
-                 {"p_left", "number"},
-                 {"causes", "array"},
-                 {"unnamed", "array"},
-                 {"left", "array"},
-                 {"where", "object"},
-                 {"gap_before", "object"},
-                 {"gap_named", "object"},
-                 {"gap_after", "object"},
-                 {"shrink", "number"},
-                 {"shrink_lo", "number"},
-                 {"shrink_hi", "number"},
-                 {"shrink_modelled", "number"},
-                 {"held_out", "string"},
-                 {"not_held_out", "array"},
-                 {"recording", "string"},
-                 {"model", "string"},
-                 {"rate_hz", "number"},
-                 {"duration_s", "number"},
-                 {"samples", "number"},
-                 {"axes", "array"},
-                 {"simulations", "number"},
-                 {"seed", "number"},
-                 {"domains", "array"},
-                 {"band_probability", "number"},
-                 {"untestable", "array"},
-                 {"next_recordings", "array"},
-                 {"warnings", "array"},
-                 {"reported_by", "string"}},
+    expect_keys(answer, {{"schema", "string"},    {"verdict", "string"},     {"p_none", "number"},
+                         {"p_left", "number"},    {"causes", "array"},       {"unnamed", "array"},
+                         {"left", "array"},       {"where", "object"},       {"gap_before", "object"},
+                         {"gap_named", "object"}, {"gap_after", "object"},   {"shrink", "number"},
+                         {"shrink_lo", "number"}, {"shrink_hi", "number"},   {"shrink_modelled", "number"},
+                         {"held_out", "string"},  {"not_held_out", "array"}, {"recording", "string"},
+                         {"model", "string"},     {"rate_hz", "number"},     {"duration_s", "number"},
+                         {"samples", "number"},   {"axes", "array"},         {"simulations", "number"},
+                         {"seed", "number"},      {"domains", "array"},      {"band_probability", "number"},
+                         {"untestable", "array"}, {"asked?", "array"},       {"next_recordings", "array"},
+                         {"warnings", "array"},   {"reported_by", "string"}},
                 "answer");
     EXPECT_EQ(answer["schema"], "gyrolog-diagnosis/2");
     for (const char* gap : {"gap_before", "gap_named", "gap_after"}) {
@@ -169,6 +149,28 @@ TEST(DiagnosisJson, HasEveryKeyOfTheContractWithItsType) {
 }
 
 // Every key of the contract with its value; what else is there may be there.
+TEST(DiagnosisJson, AnswersWhatWasAsked) {
+    Diagnosis diagnosis;
+    EXPECT_FALSE(json::parse(diagnosis_json(diagnosis)).contains("asked"));
+    Asked::Answer beside;
+    beside.amount = {0.9, 0.1};
+    beside.is_called_for = true;
+    beside.gain_nats = 40.0;
+    diagnosis.asked = {{{"heater", {"time_table", {"z"}, {}, "", {}}}, beside, {}}};
+    const json asked = json::parse(diagnosis_json(diagnosis))["asked"][0];
+    EXPECT_EQ(asked["name"], "heater");
+    EXPECT_EQ(asked["effect"], "time_table");
+    EXPECT_EQ(asked["axes"], json({"z"}));
+    EXPECT_EQ(asked["beside_causes"]["amount"], 0.9);
+    EXPECT_EQ(asked["beside_causes"]["called_for"], true);
+    EXPECT_EQ(asked["alone"]["called_for"], false);
+    EXPECT_FALSE(asked["alone"].contains("amount"));
+    EXPECT_NE(diagnosis_text(diagnosis).find("heater on z: the data call for it (0.90 ± 0.10 times what is "
+                                             "described"),
+              std::string::npos)
+        << diagnosis_text(diagnosis);
+}
+
 TEST(DiagnosisJson, SaysTheContractsExample) {
     const json contract = json::parse(R"({
         "schema": "gyrolog-diagnosis/2",
