@@ -7,6 +7,7 @@
 #include "port.h"
 
 enum {
+    FUNCTION_SPI = 2,  // UM11126, Flexcomm PSELID; a reset leaves the interface without a function
     DIVIDER_SLOW = CORE_HZ / 1000000U - 1U,
     DIVIDER_FAST = CORE_HZ / 12000000U - 1U,
 };
@@ -19,6 +20,7 @@ enum {
 void spi_start(void) {
     CLOCK_EnableClock(kCLOCK_Hs_Lspi);
     RESET_PeripheralReset(kHSLSPI_RST_SHIFT_RSTn);
+    FLEXCOMM8->PSELID = FLEXCOMM_PSELID_PERSEL(FUNCTION_SPI);
     SPI8->FIFOCFG = SPI_FIFOCFG_ENABLETX_MASK | SPI_FIFOCFG_ENABLERX_MASK | SPI_FIFOCFG_EMPTYTX_MASK |
                     SPI_FIFOCFG_EMPTYRX_MASK;
     SPI8->DIV = DIVIDER_SLOW;
