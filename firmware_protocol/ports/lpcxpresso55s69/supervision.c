@@ -1,6 +1,7 @@
 #include "supervision.h"
 
 #include <fsl_clock.h>
+#include <fsl_power.h>
 #include <fsl_reset.h>
 
 #include "../../src/memory.h"
@@ -36,6 +37,8 @@ void supervision_feed(void) {
 void supervision_read_uid(uint8_t uid[GLP_UID_BYTES]) { memcpy(uid, UUID, GLP_UID_BYTES); }
 
 uint32_t supervision_boot_id(void) {
+    // Off after a reset: without them every boot has the same numbers.
+    POWER_DisablePD(kPDRUNCFG_PD_RNG);
     CLOCK_EnableClock(kCLOCK_Rng);
     RESET_PeripheralReset(kRNG_RST_SHIFT_RSTn);
     uint32_t number = 0;
