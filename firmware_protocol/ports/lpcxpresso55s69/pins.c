@@ -32,6 +32,7 @@ void pins_start(void) {
     digital(1U, 2U, 6U, 0U);   // HS_SPI_SCK, D13
     digital(1U, 3U, 6U, 2U);   // HS_SPI_MISO, D12; pulled up: an open line reads FF, which no register holds
     digital(0U, 15U, 3U, 1U);  // CT_INP16, D2; pulled down: an open line is silent
+    digital(0U, 22U, 7U, 0U);  // USB0_VBUS: without it the controller never pulls D+ up
 }
 
 void pins_select_sensor(bool selected) {
