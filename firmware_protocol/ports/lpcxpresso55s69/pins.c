@@ -10,9 +10,15 @@ enum {
     LED_GREEN = 7     // P1_7
 };
 
+// UM11126, IOCON, ASW: 0 opens the switch between a pin and the ADC, but for these pins it is 1.
+static uint32_t analog_switch_open(unsigned port, unsigned pin) {
+    static const uint32_t opened_by_1[] = {0x80049A00U, 0x00000201U};  // P0_9 11 12 15 18 31; P1_0 9
+    return IOCON_PIO_ASW((opened_by_1[port] >> pin) & 1U);
+}
+
 static void digital(unsigned port, unsigned pin, unsigned function, unsigned mode) {
-    IOCON->PIO[port][pin] =
-        IOCON_PIO_FUNC(function) | IOCON_PIO_MODE(mode) | IOCON_PIO_SLEW(1U) | IOCON_PIO_DIGIMODE(1U);
+    IOCON->PIO[port][pin] = IOCON_PIO_FUNC(function) | IOCON_PIO_MODE(mode) | IOCON_PIO_SLEW(1U) |
+                            IOCON_PIO_DIGIMODE(1U) | analog_switch_open(port, pin);
 }
 
 static void output(unsigned pin) {
