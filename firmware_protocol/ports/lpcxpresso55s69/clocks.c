@@ -24,6 +24,7 @@ void clocks_start(void) {
         .pllRate = CORE_HZ,
         .flags = PLL_SETUPFLAG_WAITLOCK};
     CLOCK_SetPLL1Freq(&setup);
+    while (!CLOCK_IsPLL1Locked()) {}  // the call before gives up after 600 us, and does not say so
 
     CLOCK_SetClkDiv(kCLOCK_DivAhbClk, 1U, false);
     CLOCK_AttachClk(kPLL1_to_MAIN_CLK);
