@@ -7,12 +7,15 @@ import struct
 
 from unicorn import arm_const as arm
 
-from machine import Machine, Registers, Violation
-from mpu9250 import PULSE_S
-from usb_device import UsbDevice
+from capture_timer import CaptureTimer
+from lpc17xx_usb import UsbDevice
+from machine import WAIT_FOR_OSCILLATOR_TICKS, Machine, Registers, Violation, field
+from spi_master import SpiMaster
+from watchdog import Watchdog
 
 CORE_HZ = 100_000_000
 CRYSTAL_HZ = 12_000_000
+INTERNAL_HZ = 4_000_000
 OSCILLATOR_TICKS = LOCK_TICKS = 50_000
 TIMER2, USB = 3, 24
 IAP = 0x1FFF1FF0
@@ -20,14 +23,9 @@ IAP_PAGE = 0x1FFF1000
 RAM, RAM_BYTES = 0x10000000, 0x8000
 AHB, AHB_BYTES = 0x2007C000, 0x8000
 SERIAL_NUMBER = struct.pack("<4I", 0x0A0B0C0D, 0x11223344, 0x55667788, 0x99AABBCC)
-POWER_ON, PIN, WATCHDOG, BROWN_OUT = 1, 2, 4, 8
-IDLE_TICKS = 10_000    # an idle main loop is let pass in steps of 100 us
-WAITING_READS = 20     # of one register: the image waits for it
-WAITING_TICKS = 1000
-
-
-def field(value, low, bits):
-    return value >> low & ((1 << bits) - 1)
+RSID = {"power on": 1, "pin": 2, "watchdog": 4, "brown-out": 8}
+LEDS = {"red": (0, 22), "green": (3, 25), "blue": (3, 26)}
+ISOCHRONOUS, BULK, INTERRUPT = 1, 2, 3
 
 
 class Pll:
@@ -90,20 +88,17 @@ class System(Registers):
         self.plls = [Pll("PLL0", pll0, 275_000_000, 550_000_000), Pll("PLL1", pll1, 156_000_000, 320_000_000)]
         self.accesses = 0
         self.oscillator_at = None
-        self.pll_never_locks = False
-        self.last_read, self.reads = None, 0
+        self.crystal_never_starts = self.pll_never_locks = False
 
     def oscillator_runs(self):
-        return self.oscillator_at is not None and self.machine.now >= self.oscillator_at
+        return (self.oscillator_at is not None and self.machine.now >= self.oscillator_at and
+                not self.crystal_never_starts)
 
     def read(self, offset):
         self.accesses += 1
         self.known(offset)
         name = self.names[offset]
-        self.reads = self.reads + 1 if offset == self.last_read else 0
-        self.last_read = offset
-        if self.reads > WAITING_READS:
-            self.machine.pass_time(WAITING_TICKS)
+        self.machine.wait(WAIT_FOR_OSCILLATOR_TICKS)
         if name in ("PLL0STAT", "PLL1STAT"):
             pll = self.plls[name == "PLL1STAT"]
             low = 24 if name == "PLL0STAT" else 8
@@ -133,7 +128,7 @@ class System(Registers):
         self.check_core()
 
     def core_hz(self):
-        hz = self.plls[0].output_hz() or (CRYSTAL_HZ if self["CLKSRCSEL"] == 1 else 4_000_000)
+        hz = self.plls[0].output_hz() or (CRYSTAL_HZ if self["CLKSRCSEL"] == 1 else INTERNAL_HZ)
         return hz // (field(self["CCLKCFG"], 0, 8) + 1)
 
     def check_core(self):
@@ -185,184 +180,96 @@ class Gpio(Registers):
         return self.level[port] >> pin & 1
 
 
-class Ssp(Registers):
+class Ssp(SpiMaster):
     names = {0x00: "CR0", 0x04: "CR1", 0x08: "DR", 0x0C: "SR", 0x10: "CPSR"}
 
     def __init__(self, system, pins, gpio, sensor):
-        super().__init__()
-        self.system, self.pins, self.gpio, self.sensor = system, pins, gpio, sensor
-        self.out, self.received = [], []
-        self.busy_until = None
+        super().__init__(sensor)
+        self.system, self.pins, self.gpio = system, pins, gpio
 
     def rate_hz(self):
         if self["CPSR"] < 2 or self["CPSR"] % 2:
             raise Violation(f"CPSR is {self['CPSR']}")
         return self.system.peripheral_hz("PCLKSEL0", 20) // (self["CPSR"] * (field(self["CR0"], 8, 8) + 1))
 
-    def byte_ticks(self):
-        return 8 * CORE_HZ // self.rate_hz()
+    def connected(self):
+        return all(self.pins.function(0, pin) == 2 for pin in (7, 8, 9))
 
-    def advance(self):
-        while self.busy_until is not None and self.machine.now >= self.busy_until:
-            sent = self.out.pop(0)
-            if self.gpio.out(0, 6) != 0:
-                raise Violation("a byte is sent while the sensor is not selected")
-            connected = all(self.pins.function(0, pin) == 2 for pin in (7, 8, 9))
-            self.received.append(self.sensor.exchange(sent, self.rate_hz()) if connected else 0xFF)
-            if len(self.received) > 8:
-                raise Violation("SSP: receive FIFO overrun")
-            self.busy_until = self.busy_until + self.byte_ticks() if self.out else None
+    def selected(self):
+        return self.gpio.out(0, 6) == 0
 
     def read(self, offset):
         self.system.powered(10, "SSP1")
         self.known(offset)
         name = self.names[offset]
         if name == "SR":
+            self.polled()
             return (not self.out) | (len(self.out) < 8) << 1 | bool(self.received) << 2 | bool(self.out) << 4
         if name == "DR":
-            if not self.received:
-                raise Violation("SSP: read from an empty FIFO")
-            return self.received.pop(0)
+            return self.get()
         return super().read(offset)
 
     def write(self, offset, value):
         self.system.powered(10, "SSP1")
         self.known(offset)
-        if self.names[offset] != "DR":
+        name = self.names[offset]
+        if name == "CR1" and not value & 2:
+            self.drop()
+        if name != "DR":
             if self.out:
                 raise Violation("SSP set up while it sends")
             super().write(offset, value)
             return
         if not self["CR1"] & 2 or self["CR0"] & 0xFF != 0xC7:
             raise Violation(f"SSP sends with CR0 {self['CR0']:04x}, CR1 {self['CR1']:x}: not eight bits in mode 3")
-        if len(self.out) >= 8:
-            raise Violation("SSP: transmit FIFO overrun")
-        self.out.append(value & 0xFF)
-        if self.busy_until is None:
-            self.busy_until = self.machine.now + self.byte_ticks()
-
-    def next_event(self):
-        return self.busy_until
+        self.put(value & 0xFF)
 
 
-class Timer2(Registers):
-    names = {0x00: "IR", 0x04: "TCR", 0x08: "TC", 0x0C: "PR", 0x14: "MCR", 0x28: "CCR", 0x2C: "CR0", 0x70: "CTCR"}
-
+class Timer2(CaptureTimer):
     def __init__(self, system, pins, sensor):
-        super().__init__()
-        self.system, self.pins, self.sensor = system, pins, sensor
-        self.started_at = 0
-        self.sample_at = None
-        self.edges = []  # of the data-ready line: (what TC was, number of the sample)
-        self.reads = 0
+        super().__init__(sensor)
+        self.system, self.pins = system, pins
 
-    def count(self, at):
-        if self["TCR"] != 1 or self["PR"] or self["CTCR"]:
-            return 0
-        divider = CORE_HZ // self.system.peripheral_hz("PCLKSEL1", 12)
-        return (at - self.started_at) // divider & 0xFFFFFFFF
-
-    def advance(self):
-        period = self.sensor.period_s()
-        if period is None:
-            self.sample_at = None
-            return
-        period_ticks = round(period * CORE_HZ)
-        if self.sample_at is None:
-            self.sample_at = self.machine.now + period_ticks
-        while self.sample_at is not None and self.machine.now >= self.sample_at:
-            if self.sensor.sample():
-                self.edge(self.sample_at)
-            self.sample_at += period_ticks
-
-    def edge(self, at):
-        if self.pins.function(0, 4) == 3 and self["CCR"] & 1:
-            self.value[0x2C] = self.count(at)
-            self.edges.append((self.value[0x2C], self.sensor.samples - 1))
-            if self["CCR"] & 4:
-                self.value[0x00] = self["IR"] | 0x10
-
-    def read(self, offset):
+    def touched(self):
         self.system.powered(22, "timer 2")
-        if offset == 0x08:
-            self.reads += 1
-            if self.reads > WAITING_READS:
-                self.machine.pass_time(WAITING_TICKS)
-                self.machine.advance()
-            return self.count(self.machine.now)
-        return super().read(offset)
 
-    def write(self, offset, value):
-        self.system.powered(22, "timer 2")
-        if offset == 0x00:
-            value = self["IR"] & ~value
-        elif offset == 0x04 and value == 1:
-            self.started_at = self.machine.now
-        super().write(offset, value)
+    def clock_hz(self):
+        return self.system.peripheral_hz("PCLKSEL1", 12)
 
-    def next_event(self):
-        return self.sample_at
-
-    def asks(self):
-        return bool(self["IR"] & 0x10)
+    def line_connected(self):
+        return self.pins.function(0, 4) == 3
 
 
-class Watchdog(Registers):
-    names = {0x00: "WDMOD", 0x04: "WDTC", 0x08: "WDFEED", 0x0C: "WDTV", 0x10: "WDCLKSEL"}
+class InternalWatchdog(Watchdog):
+    names = {**Watchdog.names, 0x10: "WDCLKSEL"}
 
-    def __init__(self, timer):
-        super().__init__()
-        self.timer = timer
-        self.half_fed = False
-        self.bites_at = None
-        self.feeds = 0
-
-    def write(self, offset, value):
-        super().write(offset, value)
-        if self.names[offset] != "WDFEED":
-            self.half_fed = False
-            return
-        if value == 0x55 and self.half_fed and self["WDMOD"] & 1:
-            if self["WDCLKSEL"] != 0:
-                raise Violation("the watchdog runs on the clock that it watches")
-            self.bites_at = self.machine.now + self["WDTC"] * 4 * (CORE_HZ // 4_000_000)
-            self.feeds += 1
-            self.timer.reads = 0
-            self.machine.pass_time(IDLE_TICKS)
-        self.half_fed = value == 0xAA
-
-    def next_event(self):
-        return self.bites_at
-
-    def has_bitten(self):
-        return bool(self["WDMOD"] & 2) and self.bites_at is not None and self.machine.now >= self.bites_at
+    def clock_hz(self):
+        if self["WDCLKSEL"] != 0:
+            raise Violation("the watchdog runs on the clock that it watches")
+        return INTERNAL_HZ
 
 
 class Lpc1769:
-    """The part with a sensor and a USB cable. `ahb` is what the second memory holds at reset."""
+    """The part with a sensor and a USB cable. `kept` is what an earlier one kept over its reset."""
 
-    def __init__(self, image, sensor, cause=POWER_ON, ahb=None, seed=1):
+    core_hz, serial_number = CORE_HZ, SERIAL_NUMBER
+
+    def __init__(self, image, sensor, cause="power on", kept=None, seed=1):
         if sum(struct.unpack_from("<8I", image)) % 2**32:
             raise Violation("the boot ROM does not start an image whose first eight words do not add up to 0")
-        self.system, self.pins = System(cause), Pins()
+        self.system, self.pins = System(RSID[cause]), Pins()
         self.gpio = Gpio(self.pins, sensor)
-        self.ssp = Ssp(self.system, self.pins, self.gpio, sensor)
+        self.spi = Ssp(self.system, self.pins, self.gpio, sensor)
         self.timer = Timer2(self.system, self.pins, sensor)
-        self.watchdog = Watchdog(self.timer)
+        self.watchdog = InternalWatchdog()
         self.usb = UsbDevice(self.system, self.pins, range(AHB, AHB + AHB_BYTES))
-        peripherals = [(0x400FC000, self.system), (0x4002C000, self.pins), (0x2009C000, self.gpio), (0x40030000, self.ssp),
+        peripherals = [(0x400FC000, self.system), (0x4002C000, self.pins), (0x2009C000, self.gpio), (0x40030000, self.spi),
                        (0x40090000, self.timer), (0x40000000, self.watchdog), (0x5000C000, self.usb)]
-        noise = self.noise(seed)
-        memory = [(RAM, noise[:RAM_BYTES]), (AHB, ahb or noise[RAM_BYTES:]), (IAP_PAGE, bytes(0x1000))]
-        self.machine = Machine(image, memory, peripherals, seed)
-        for _, peripheral in peripherals:
-            peripheral.machine = self.machine
+        noise = random.Random(seed).randbytes(RAM_BYTES + AHB_BYTES)
+        memory = [(RAM, noise[:RAM_BYTES]), (AHB, kept or noise[RAM_BYTES:]), (IAP_PAGE, bytes(0x1000))]
+        self.machine = Machine(image, memory, peripherals, CORE_HZ, seed)
         self.machine.interrupts.lines = {TIMER2: self.timer.asks, USB: self.usb.asks}
         self.machine.call_at(IAP, self.in_application_programming)
-
-    @staticmethod
-    def noise(seed):
-        return random.Random(seed).randbytes(RAM_BYTES + AHB_BYTES)
 
     def in_application_programming(self):
         command, result = (self.machine.uc.reg_read(register) for register in (arm.UC_ARM_REG_R0, arm.UC_ARM_REG_R1))
@@ -371,9 +278,15 @@ class Lpc1769:
         self.machine.uc.mem_write(result, bytes(4) + SERIAL_NUMBER)
         self.machine.uc.mem_write(RAM + RAM_BYTES - 32, b"\xee" * 32)  # the ROM's own
 
-    def second_memory(self):
+    def kept(self):
+        """The second memory."""
         return bytes(self.machine.uc.mem_read(AHB, AHB_BYTES))
 
-    def led(self, port, pin):
+    def lit(self, led):
         """Low is on."""
-        return self.gpio.out(port, pin) == 0
+        return self.gpio.out(*LEDS[led]) == 0
+
+    @staticmethod
+    def endpoint_kinds(number):
+        """UM10360, chapter 11: the number fixes the kind."""
+        return ({0: ISOCHRONOUS, 1: INTERRUPT, 2: BULK}[number % 3],)

@@ -27,6 +27,7 @@ class Mpu9250:
         self.register[WHO_AM_I] = self.who_am_i
         self.register[PWR_MGMT_1] = 1
         self.fifo = bytearray()
+        self.fifo_count = bytes(2)
         self.address = None
 
     def period_s(self):
@@ -94,8 +95,10 @@ class Mpu9250:
     def read(self, address):
         if address == FIFO_R_W:
             return self.fifo.pop(0) if self.fifo else 0xFF
+        if address == FIFO_COUNT_H:  # register map, register 114: reading it latches both bytes
+            self.fifo_count = len(self.fifo).to_bytes(2, "big")
         if address in (FIFO_COUNT_H, FIFO_COUNT_H + 1):
-            return len(self.fifo).to_bytes(2, "big")[address - FIFO_COUNT_H]
+            return self.fifo_count[address - FIFO_COUNT_H]
         value = self.register[address]
         if address == INT_STATUS:
             self.register[INT_STATUS] = 0

@@ -1,15 +1,14 @@
 """The LPC17xx's USB device controller: serial interface engine with its commands, endpoint buffers, DMA by descriptors
-(UM10360, chapter 11), and the bus side that a host's transactions come to. Toggles and timing inside a packet are the
-hardware's affair and left out."""
+(UM10360, chapter 11), and the bus side that a host's transactions come to. Timing inside a packet is left out."""
 
 import struct
 
 from machine import Registers, Violation
+from usb_bus import ACK, DATA0, DATA1, NAK, STALL, Packet
 
 DEV_FRAME, DEV_FAST, DEV_SLOW, DEV_STATUS, DEV_CCEMPTY, DEV_CDFULL, DEV_REALIZED = (1 << n for n in (0, 1, 2, 3, 4, 5, 8))
 COMMAND_TICKS = 150  # 1.5 us
 DMA_TICKS = 200      # a packet between memory and buffer
-ACK, NAK, STALL = "ack", "nak", "stall"
 DD_NORMAL, DD_UNDERRUN, DD_OVERRUN = 2, 3, 4
 
 NAMES = {0x200: "DevIntSt", 0x204: "DevIntEn", 0x208: "DevIntClr", 0x20C: "DevIntSet", 0x210: "CmdCode", 0x214: "CmdData",
@@ -35,6 +34,7 @@ class Endpoint:
 
     def clear(self):
         self.buffers = []  # OUT: packets from the host; IN: packets for it
+        self.toggle = DATA0
         self.stalled = False
         self.setup = False
         self.overwritten = False
@@ -231,6 +231,7 @@ class UsbDevice(Registers):
             endpoint = self.endpoints[self.command - 0x40]
             if endpoint.index > 1 and not data & 1:
                 endpoint.buffers = []
+                endpoint.toggle = DATA0
             endpoint.stalled = bool(data & 0x01)
             if data & 0x80:  # both control endpoints, until the next SETUP
                 self.endpoints[0].stalled = self.endpoints[1].stalled = True
@@ -340,6 +341,13 @@ class UsbDevice(Registers):
         self.device_status = self.device_status & ~0x04 | on << 2 | 0x08
         self.status["dev"] |= DEV_STATUS
 
+    def unplug(self):
+        """The board does not wire the supply's pin: it sees a bus without activity."""
+        self.suspend(True)
+
+    def plug(self):
+        """Nothing before the host's reset."""
+
     def start_of_frame(self):
         self.frame = self.frame + 1 & 0x7FF
         self.status["dev"] |= DEV_FRAME
@@ -358,6 +366,7 @@ class UsbDevice(Registers):
         endpoint.buffers, endpoint.setup = [request], True
         endpoint.stalled = self.endpoints[1].stalled = False
         self.endpoints[1].buffers = []
+        endpoint.toggle = self.endpoints[1].toggle = DATA1
         self.event(0)
         return ACK
 
@@ -371,6 +380,9 @@ class UsbDevice(Registers):
             raise Violation(f"endpoint {number} was realized for {endpoint.max_bytes} bytes")
         if len(endpoint.buffers) >= endpoint.depth:
             return NAK
+        if packet.toggle != endpoint.toggle:
+            return ACK  # seen already
+        endpoint.toggle ^= 1
         endpoint.buffers.append(packet)
         self.event(endpoint.index)
         return ACK
@@ -390,4 +402,5 @@ class UsbDevice(Registers):
         self.event(endpoint.index)
         if endpoint.index == 1 and getattr(self, "next_address", 0) != self.address and not packet:
             self.address = self.next_address
-        return packet
+        endpoint.toggle ^= 1
+        return Packet(endpoint.toggle ^ 1, packet)
