@@ -16,11 +16,12 @@ sys.path.insert(0, str(ROOT / "tools/protocol_vectors"))
 
 import codec  # noqa: E402
 from lpc17xx import Lpc1769  # noqa: E402
+from lpc55xx import Lpc55s69  # noqa: E402
 from machine import Violation  # noqa: E402
 from mpu9250 import Mpu9250  # noqa: E402
 from usb_host import UsbHost  # noqa: E402
 
-PARTS = {"lpc1769": Lpc1769}
+PARTS = {"lpc1769": Lpc1769, "lpcxpresso55s69": Lpc55s69}
 HELLO, CONFIG, SAMPLES, STATUS, EVENT, REPLY = range(1, 7)
 GET_HELLO, CONFIGURE, GET_STATUS = 0x81, 0x82, 0x85
 STARTED, STOPPED, FIFO_OVERFLOW, BUS_ERROR, RING_OVERFLOW, SENSOR_FAULT, TEXT = range(1, 8)
@@ -223,6 +224,18 @@ class Everyday(Case):
         host.refused(lambda: host.text(9))
         bench.stream_for(200)
         self.check_stream(bench, 10)
+
+    def test_a_request_that_the_host_gives_up_does_not_disturb_the_next(self):
+        bench = Bench()
+        host = bench.host
+        setup = struct.pack("<BBHHH", 0x80, 6, 0x0200, 0, 255)  # more than one packet
+        for packets in (0, 1, 2):
+            host.until(lambda: host.device.setup(host.address, setup))
+            for _ in range(packets):
+                host.until(lambda: host.device.take_in(host.address, 0))
+            self.assertEqual(host.descriptor(1, size=18), host.device_descriptor)
+        host.device.setup(host.address, setup)  # the next one at once
+        self.assertEqual(host.descriptor(1, size=18), host.device_descriptor)
 
     def test_a_clear_halt_begins_with_data0_and_loses_nothing(self):
         bench = Bench()
