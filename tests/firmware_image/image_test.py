@@ -258,16 +258,20 @@ class Trouble(Case):
         bench.stream_for(200)
         self.check_stream(bench, 1200)
 
-    def test_a_bus_reset_ends_the_stream_and_the_next_host_begins_anew(self):
+    def test_a_bus_reset_within_a_frame_ends_the_stream_and_the_next_host_begins_anew(self):
         bench = Bench()
-        bench.stream_for(100)
+        self.assertEqual(bench.configure(1000), 0)
+        bench.frames()
+        bench.stream_for(50)
+        while bench.host.received[-1] == 0:  # the delimiter (SPEC 1.2)
+            bench.read_for(0.1)
         bench.host.reset()
         bench.run(20)
         self.assertFalse(bench.part.lit("blue"))
         bench.host.enumerate()
         bench.begin_anew()
-        bench.stream_for(200)
-        self.check_stream(bench, 10)
+        bench.stream_for(100)
+        self.check_stream(bench, 40)
 
     def test_a_suspended_bus_ends_the_stream_and_a_resumed_one_begins_it_anew(self):
         bench = Bench()
