@@ -26,7 +26,7 @@ HELLO, CONFIG, SAMPLES, STATUS, EVENT, REPLY = range(1, 7)
 GET_HELLO, CONFIGURE, GET_STATUS = 0x81, 0x82, 0x85
 STARTED, STOPPED, FIFO_OVERFLOW, BUS_ERROR, RING_OVERFLOW, SENSOR_FAULT, TEXT = range(1, 8)
 FIFO_OVERFLOW_FLAG, BUS_ERROR_FLAG, RING_OVERFLOW_FLAG, _, TIME_FLAG = (1 << n for n in range(5))
-RESET_POWER_ON, RESET_WATCHDOG = 1, 3
+RESET_POWER_ON, RESET_PIN, RESET_WATCHDOG, RESET_BROWN_OUT = range(1, 5)
 BOOT_MS = 400
 WATCHDOG_MS = 2000
 
@@ -365,11 +365,13 @@ class Trouble(Case):
         stuck.part.system.crystal_never_starts = True
         self.check_watchdog(stuck)
 
-    def test_each_boot_has_another_number(self):
+    def test_each_boot_has_another_number_and_its_own_cause(self):
         first = Bench()
         again = Bench(cause="pin", kept=first.part.kept())
-        fresh = Bench(seed=2)
-        self.assertEqual(len({bench.hello()[8:12] for bench in (first, again, fresh)}), 3)
+        fresh = Bench(cause="brown-out", seed=2)
+        hellos = [bench.hello() for bench in (first, again, fresh)]
+        self.assertEqual(len({hello[8:12] for hello in hellos}), 3)
+        self.assertEqual([hello[12] for hello in hellos], [RESET_POWER_ON, RESET_PIN, RESET_BROWN_OUT])
 
     def test_an_image_that_the_boot_rom_would_refuse_does_not_run(self):
         with self.assertRaises(Violation):
