@@ -100,8 +100,11 @@ class Interrupts(Registers):
                 self.held.discard(number)
             elif number not in self.held:
                 self.pending |= 1 << number
-        candidates = [(self.priority[n], n) for n in range(64) if (self.pending & self.enabled) >> n & 1]
-        return min(candidates)[1] if candidates and min(candidates)[0] < above else None
+        ready = self.pending & self.enabled
+        if not ready:
+            return None
+        priority, number = min((self.priority[n], n) for n in range(64) if ready >> n & 1)
+        return number if priority < above else None
 
     def take(self, number):
         self.pending &= ~(1 << number)

@@ -181,8 +181,8 @@ class UsbHost:
 
     def read_eagerly_for(self, ticks):
         """The host's token comes at the moment at which a packet is ready."""
-        self.device.taken = self.take
+        before, self.device.taken = self.device.taken, self.take
         try:
             self.run(ticks)
         finally:
-            self.device.taken = lambda: None
+            self.device.taken = before
