@@ -281,6 +281,7 @@ class Trouble(Case):
         self.assertFalse(bench.part.lit("blue"))
         bench.host.resume()
         bench.begin_anew()
+        self.assertTrue(bench.part.lit("blue"))  # DTR has not fallen for the host
         bench.host.set_line(dtr=False)
         bench.begin_anew()
         bench.stream_for(200)
