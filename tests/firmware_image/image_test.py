@@ -91,7 +91,10 @@ class Bench:
         known = len(self.of_type(REPLY))
         self.ask(kind, payload)
         self.read_for(30)
-        return self.of_type(REPLY)[known][5]
+        replies = self.of_type(REPLY)[known:]
+        if not replies:
+            raise IOError(f"command {kind:02x} was not answered")
+        return replies[0][5]
 
     def configure(self, rate_hz, dlpf_hz=0):
         """Gyro and accelerometer."""
