@@ -19,6 +19,7 @@ from lpc17xx import Lpc1769  # noqa: E402
 from lpc55xx import Lpc55s69  # noqa: E402
 from machine import Violation  # noqa: E402
 from mpu9250 import Mpu9250  # noqa: E402
+from usb_bus import NAK  # noqa: E402
 from usb_host import UsbHost  # noqa: E402
 
 PARTS = {"lpc1769": Lpc1769, "lpcxpresso55s69": Lpc55s69}
@@ -239,6 +240,10 @@ class Everyday(Case):
             self.assertEqual(host.descriptor(1, size=18), host.device_descriptor)
         host.device.setup(host.address, setup)  # the next one at once
         self.assertEqual(host.descriptor(1, size=18), host.device_descriptor)
+        host.until(lambda: host.device.setup(host.address, setup))
+        while host.device.take_in(host.address, 0) == NAK:
+            host.run(host.transaction_ticks)
+        self.assertEqual(host.descriptor(1, size=18), host.device_descriptor)  # before a packet's end is served
 
     def test_a_clear_halt_begins_with_data0_and_loses_nothing(self):
         bench = Bench()
