@@ -52,7 +52,7 @@ Result<DescribedEffect> parse_described_effect(std::string_view text, const std:
 }
 
 Result<DescribedEffect> read_described_effect(const std::string& path) {
-    GYROLOG_TRY(const std::string text, read_model_text(path));
+    GYROLOG_TRY(const std::string text, read_model_text(path, "effect"));
     return parse_described_effect(text, path);
 }
 

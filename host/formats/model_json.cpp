@@ -509,20 +509,21 @@ Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed) {
     return parse_model_file(text, path, seed);
 }
 
-Result<std::string> read_model_text(const std::string& path) {
+Result<std::string> read_model_text(const std::string& path, const std::string& called) {
     auto reader = TextReader::open(path);
     std::string text;
     while (reader.ok()) {
         const auto piece = reader->read();
-        if (!piece.ok()) { return in_context("read model '" + path + "'", piece.error()); }
+        if (!piece.ok()) { return in_context("read " + called + " '" + path + "'", piece.error()); }
         if (piece->empty()) { return text; }
         text.append(*piece);
         if (text.size() > input_limits.json_bytes_most) {
-            return Error{ErrorCode::malformed, fmt::format("read model '{}': longer than {} bytes: no model",
-                                                           path, input_limits.json_bytes_most)};
+            return Error{ErrorCode::malformed,
+                         fmt::format("read {} '{}': longer than {} bytes: no {}", called, path,
+                                     input_limits.json_bytes_most, called)};
         }
     }
-    return in_context("read model '" + path + "'", reader.error());
+    return in_context("read " + called + " '" + path + "'", reader.error());
 }
 
 Status write_model(const SensorModel& model, const std::string& path) {

@@ -57,8 +57,8 @@ Result<SensorModel> parse_model(std::string_view text, const std::string& name, 
 // Always as gyrolog-model/1.
 std::string format_model(const SensorModel& model);
 
-// The whole of a file that may be a model. Error `malformed`: longer than any model.
-Result<std::string> read_model_text(const std::string& path);
+// The whole of a file that may be a model, or what errors call it. Error `malformed`: longer than any model.
+Result<std::string> read_model_text(const std::string& path, const std::string& called = "model");
 
 // Also `not_found`, `permission_denied`, `failed` as the file system has it; writing replaces the file.
 Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed);
