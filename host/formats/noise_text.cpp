@@ -93,7 +93,7 @@ void add_optional_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> 
 }  // namespace
 
 std::string coefficient_text(const FittedCoefficient& fitted, double scale) {
-    if (fitted.state == State::not_identifiable) { return fmt::format("< {:.2g}", fitted.upper * scale); }
+    if (fitted.state == State::not_identifiable) { return "< " + in_digits(fitted.upper * scale, 2); }
     return with_uncertainty(fitted.value * scale, fitted.sd * scale);
 }
 

@@ -32,6 +32,14 @@ std::string with_uncertainty(double value, double uncertainty) {
     return exponent == 0 ? text : fmt::format("({})e{:+03d}", text, exponent);
 }
 
+std::string in_digits(double value, int digits) {
+    constexpr double longest = 1e6;
+    const double size = std::abs(value);
+    if (size < 1.0 || size >= longest) { return fmt::format("{:.{}g}", value, digits); }
+    const int decimals = digits - 1 - decade_of(size);
+    return decimals >= 0 ? fmt::format("{:.{}g}", value, digits) : rounded(value, decimals);
+}
+
 std::string duration_text(double seconds) {
     if (seconds < 1.0) { return fmt::format("{:.3g} ms", seconds * 1e3); }
     if (seconds < 120.0) { return fmt::format("{:.3g} s", seconds); }

@@ -9,6 +9,10 @@ namespace gyrolog {
 // digits, the value to the same place. An uncertainty of 0 is not written.
 std::string with_uncertainty(double value, double uncertainty);
 
+// So many significant digits: "0.0025", "210", and "2.1e+06" only where six digits before the point do not
+// do.
+std::string in_digits(double value, int digits);
+
 // "12.6 ms", "79.4 s", "3.8 min", "2.78 h": three digits.
 std::string duration_text(double seconds);
 

@@ -26,16 +26,21 @@ Html biases_of(const AnalysisReport& analysis) {
 }
 
 Html samples_of(const AnalysisReport& analysis) {
-    const double scale = analysis.unit.per_column_unit;
-    HtmlTable list{
-        cells_of({"axis", "standard deviation of a sample", "excess kurtosis", "independent samples worth"}),
-        {},
-        "numbers"};
+    HtmlTable list{cells_of({"axis"}), {}, "numbers"};
+    const std::vector<ScaledUnit> units = printed_rate_units(analysis.unit);
+    for (const ScaledUnit& unit : units) {
+        list.heads.push_back(Html::text("standard deviation of a sample, " + unit.name));
+    }
+    list.heads.push_back(Html::text("excess kurtosis"));
+    list.heads.push_back(Html::text("independent samples worth"));
     for (const AxisReport& axis : analysis.axes) {
-        list.rows.push_back(
-            cells_of({axis.axis, fmt::format("{:.4g} {}", axis.bias.sample_sd * scale, analysis.unit.name),
-                      fmt::format("{:.3g}", axis.bias.excess_kurtosis),
-                      fmt::format("{:.3g}", axis.bias.effective_samples)}));
+        HtmlRow row = cells_of({axis.axis});
+        for (const ScaledUnit& unit : units) {
+            row.push_back(Html::text(in_digits(axis.bias.sample_sd * unit.per_column_unit, 4)));
+        }
+        row.push_back(Html::text(in_digits(axis.bias.excess_kurtosis, 3)));
+        row.push_back(Html::text(in_digits(axis.bias.effective_samples, 3)));
+        list.rows.push_back(std::move(row));
     }
     return table(list);
 }

@@ -31,6 +31,7 @@ table.facts th { width: 9rem; }
 ul { margin: 0.4rem 0; padding-left: 1.3rem; }
 figure { margin: 1rem 0; }
 img { display: block; width: 100%; height: auto; }
+@media screen and (max-width: 50rem) { table { display: block; overflow-x: auto; } }
 footer { margin-top: 2.5rem; border-top: 1px solid var(--line); padding-top: 0.5rem; }
 @page { size: A4; margin: 16mm 15mm; }
 @media print {

@@ -23,6 +23,18 @@ TEST(UncertainNumber, LargerThanItsValueIsRoundedAsWell) {
     EXPECT_EQ(with_uncertainty(-1e-9, 0.5), "0.00 ± 0.50");
 }
 
+TEST(UncertainNumber, DigitsNeedNoExponentWhereTheyFit) {
+    EXPECT_EQ(in_digits(211.3, 2), "210");
+    EXPECT_EQ(in_digits(5134.0, 3), "5130");
+    EXPECT_EQ(in_digits(999.9, 2), "1000");
+    EXPECT_EQ(in_digits(-211.3, 2), "-210");
+    EXPECT_EQ(in_digits(8.23, 2), "8.2");
+    EXPECT_EQ(in_digits(0.00254, 2), "0.0025");
+    EXPECT_EQ(in_digits(4.31e-5, 2), "4.3e-05");
+    EXPECT_EQ(in_digits(2.13e6, 2), "2.1e+06");
+    EXPECT_EQ(in_digits(0.0, 2), "0");
+}
+
 TEST(UncertainNumber, DurationsHaveTheUnitThatSuitsThem) {
     EXPECT_EQ(duration_text(0.012589), "12.6 ms");
     EXPECT_EQ(duration_text(79.43), "79.4 s");
