@@ -67,7 +67,7 @@ std::string npy(const std::string& type) {
 class WrongInput : public testing::Test {
 protected:
     static void SetUpTestSuite() {
-        folder_ = new TemporaryFolder;
+        folder_ = new TemporaryFolder(TemporaryFolder::Documents::are_wrong_on_purpose);
         before_ = fs::current_path();
         fs::current_path(folder_->path(""));
         fs::create_directory("dir");

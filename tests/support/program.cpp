@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "host/base/clock.hpp"
+#include "tests/support/schema_check.hpp"
 
 namespace gyrolog {
 namespace {
@@ -101,6 +102,7 @@ ProgramResult run(const std::vector<std::string>& arguments, std::optional<Signa
     int status = 0;
     waitpid(child, &status, 0);
     result.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    expect_schemas_kept(result.out, "standard output");
     return result;
 }
 
@@ -150,13 +152,14 @@ std::string read_whole_file(const std::filesystem::path& path) {
     return text.str();
 }
 
-TemporaryFolder::TemporaryFolder() {
+TemporaryFolder::TemporaryFolder(Documents documents) : documents_(documents) {
     std::string name = (std::filesystem::temp_directory_path() / "gyrolog_test_XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) { throw std::runtime_error("no temporary folder"); }
     folder_ = name;
 }
 
 TemporaryFolder::~TemporaryFolder() {
+    if (documents_ == Documents::keep_schemas) { expect_schemas_kept_in(folder_); }
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
 }

@@ -37,10 +37,12 @@ ProgramResult run_gyrolog_and_hold(const std::vector<std::string>& arguments, st
 
 std::string read_whole_file(const std::filesystem::path& path);
 
-// A folder of its own for a test, gone with it.
+// A folder of its own for a test, gone with it. The documents in it must keep their schemas
+// (schema_check.hpp), unless the test says that it writes some that do not.
 class TemporaryFolder {
 public:
-    TemporaryFolder();
+    enum class Documents { keep_schemas, are_wrong_on_purpose };
+    explicit TemporaryFolder(Documents documents = Documents::keep_schemas);
     ~TemporaryFolder();
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -49,6 +51,7 @@ public:
 
 private:
     std::filesystem::path folder_;
+    Documents documents_;
 };
 
 }  // namespace gyrolog

@@ -82,7 +82,7 @@ TEST(FleetLine, WhatIsWrongIsNamed) {
 }
 
 TEST(FleetLine, ReadingNamesTheFileAndTheLine) {
-    const TemporaryFolder folder;
+    const TemporaryFolder folder(TemporaryFolder::Documents::are_wrong_on_purpose);  // short, too
     const std::string path = folder.path("lines.jsonl");
     std::ofstream(path) << analysis_of({}).dump() << "\r\n\n" << diagnosis_of("a.csv").dump();
     auto lines = read_fleet_lines(path);

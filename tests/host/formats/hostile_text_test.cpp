@@ -52,7 +52,7 @@ protected:
         return message;
     }
 
-    TemporaryFolder folder_;
+    TemporaryFolder folder_{TemporaryFolder::Documents::are_wrong_on_purpose};
 };
 
 TEST_F(HostileText, CompressedInLayersIsRefused) {
