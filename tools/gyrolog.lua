@@ -2,9 +2,13 @@
 --
 --   tshark -X lua_script:gyrolog.lua -r capture.pcapng -Y gyrolog
 --
--- or copy it into the folder that Help > About > Folders calls "Personal Lua Plugins". Binds itself to 1209:6779 and
--- to 1fc9:0083, the id of older firmware, when the capture holds the device descriptor; otherwise use "Decode As" on the
--- USB device or product.
+-- The package installs it where Wireshark finds it by itself. Without the package, copy it into the folder that
+-- Help > About > Folders calls "Personal Lua Plugins". Binds itself to 1209:6779 and to 1fc9:0083, the id of older
+-- firmware, when the capture holds the device descriptor; otherwise use "Decode As" on the USB device or product.
+
+-- Installed and named on the command line as well: the first one holds.
+if gyrolog_dissector_is_loaded then return end
+gyrolog_dissector_is_loaded = true
 
 local gyrolog = Proto("gyrolog", "gyrolog sensor stream")
 

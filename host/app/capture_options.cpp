@@ -27,6 +27,14 @@ Result<std::uint16_t> parse_dlpf(const std::string& text) {
 
 }  // namespace
 
+void CaptureOptions::declare_settings(CLI::App& app) {
+    app.add_option("--rate", rate_hz, "Output rate of the sensor")->type_name("HZ")->check(positive_number());
+    app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")
+        ->type_name("DPS")
+        ->check(whole_number(1, std::numeric_limits<std::uint16_t>::max()));
+    app.add_option("--dlpf", dlpf, "The sensor's low-pass filter: bandwidth, or off")->type_name("HZ|off");
+}
+
 void CaptureOptions::declare(CLI::App& app) {
     app.add_option("--device", devices,
                    "usb: (the only board), usb:SERIAL, tty:PATH[,speed=BAUD], sim:KEY=VALUE,... or "
@@ -42,11 +50,7 @@ void CaptureOptions::declare(CLI::App& app) {
     app.add_option("--samples", samples, "Stop after this many samples")
         ->type_name("N")
         ->check(whole_number(1));
-    app.add_option("--rate", rate_hz, "Output rate of the sensor")->type_name("HZ")->check(positive_number());
-    app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")
-        ->type_name("DPS")
-        ->check(whole_number(1, std::numeric_limits<std::uint16_t>::max()));
-    app.add_option("--dlpf", dlpf, "The sensor's low-pass filter: bandwidth, or off")->type_name("HZ|off");
+    declare_settings(app);
     app.add_option("--on-unplug", on_unplug,
                    "When the board is lost: wait for it and go on in FILE.2, or exit")
         ->type_name("wait|exit")

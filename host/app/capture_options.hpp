@@ -27,6 +27,8 @@ struct CaptureOptions {
     LiveDenoiseOptions denoise;  // of one board; not declared by declare()
 
     void declare(CLI::App& app);
+    // Of these, what the board is told: rate, full scale, filter. declare() declares them, too.
+    void declare_settings(CLI::App& app);
     // Without the path. Error invalid_argument names the option.
     Result<CaptureRequest> request() const;
 };

@@ -36,6 +36,7 @@ Action setup_denoise(CLI::App& app);
 Action setup_diagnose(CLI::App& app);
 Action setup_doctor(CLI::App& app);
 Action setup_export(CLI::App& app);
+Action setup_extcap(CLI::App& app);
 Action setup_info(CLI::App& app);
 Action setup_list(CLI::App& app);
 Action setup_recover(CLI::App& app);

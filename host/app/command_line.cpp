@@ -48,6 +48,10 @@ constexpr std::array commands{
             "  gyrolog table lines.jsonl -o fleet.csv --population boards.json\n"},
     Command{"doctor", "Tell what stands in the way on this machine, and the command that mends it",
             setup_doctor, "  gyrolog doctor\n"},
+    Command{"extcap", "Answer Wireshark, which lists boards and captures from them through this",
+            setup_extcap,
+            "  gyrolog extcap --extcap-interfaces\n"
+            "  tshark -i gyrolog-sim -c 20    # Wireshark's own way to call it\n"},
     Command{"completion", "Print what lets a shell complete commands and options", setup_completion,
             "  gyrolog completion bash > ~/.local/share/bash-completion/completions/gyrolog\n"},
 };

@@ -24,7 +24,12 @@ FILES = {
     "usr/lib/python3/dist-packages/gyrolog_sensor.py": "-rw-r--r--",
     "usr/lib/udev/rules.d/60-gyrolog.rules": "-rw-r--r--",
     "usr/share/lintian/overrides/gyrolog": "-rw-r--r--",
-    "usr/share/gyrolog/gyrolog.lua": "-rw-r--r--",
+    "usr/lib/MULTIARCH/wireshark/extcap/gyrolog": "-rwxr-xr-x",
+    "usr/lib/MULTIARCH/wireshark/plugins/gyrolog.lua": "-rw-r--r--",
+    **{f"usr/share/gyrolog/schemas/gyrolog-{name}.schema.json": "-rw-r--r--" for name in (
+        "analysis-1", "calibration-1", "capture-1", "check-1", "checkpoint-1", "compare-1", "conform-1", "datasheet-1",
+        "denoise-1", "diagnosis-2", "doctor-1", "effects-1", "filter-tuning-1", "gyroparams-1", "info-1", "list-1",
+        "mark-1", "model-1", "population-1", "recover-1", "simulate-1", "unanswered-line")},
     "usr/share/bash-completion/completions/gyrolog": "-rw-r--r--",
     "usr/share/zsh/vendor-completions/_gyrolog": "-rw-r--r--",
     "usr/share/fish/vendor_completions.d/gyrolog.fish": "-rw-r--r--",
@@ -75,7 +80,9 @@ def main():
 
         listed = (line.split() for line in output_of("dpkg-deb", "--contents", str(package)).splitlines())
         found = {entry[5].removeprefix("./"): (entry[0], entry[1]) for entry in listed if not entry[0].startswith("d")}
-        expected = {path.replace("VERSION", version): (mode, "root/root") for path, mode in FILES.items()}
+        multiarch = output_of("dpkg-architecture", "-qDEB_HOST_MULTIARCH").strip()
+        expected = {path.replace("VERSION", version).replace("MULTIARCH", multiarch): (mode, "root/root")
+                    for path, mode in FILES.items()}
         assert found == expected, found
 
         tree = pathlib.Path(folder, "tree")
@@ -90,6 +97,12 @@ def main():
         manual = gzip.decompress((tree / "usr/share/man/man1/gyrolog.1.gz").read_bytes()).decode()
         described = re.findall(r"^\.TP\n\.B ([a-z]+)$", manual, re.MULTILINE)
         assert described == names, f"the manual page has {described}, the program {names}"
+
+        # That they do there what they are for: wireshark_test.py.
+        folders = output_of("tshark", "-G", "folders")
+        for name, inside in (("Global Lua Plugins", "plugins"), ("Extcap path", "extcap")):
+            looked_in = re.search(rf"^{name}:\s+(\S+)", folders, re.MULTILINE).group(1)
+            assert looked_in == f"/usr/lib/{multiarch}/wireshark/{inside}", f"{name}: {looked_in}"
 
 
 if __name__ == "__main__":
