@@ -2,7 +2,7 @@
 
 packages_build="g++ cmake ninja-build pkg-config libusb-1.0-0-dev libeigen3-dev libopencv-core-dev
   libopencv-imgproc-dev libopencv-imgcodecs-dev libcli11-dev libfmt-dev nlohmann-json3-dev libboost-dev
-  libfreetype-dev libpng-dev libarchive-dev libmatio-dev libsqlite3-dev libpugixml-dev libyaml-cpp-dev
+  libfreetype-dev libpng-dev libcairo2-dev libarchive-dev libmatio-dev libsqlite3-dev libpugixml-dev libyaml-cpp-dev
   fonts-dejavu-core python3"
 packages_test="ccache libgtest-dev libgmock-dev libvalijson-dev zlib1g-dev libumockdev-dev umockdev tshark
   xz-utils python3-numpy git"

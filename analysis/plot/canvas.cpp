@@ -51,6 +51,10 @@ void blend(cv::Vec3b& pixel, Colour colour, double opacity) {
     pixel[2] = blended(pixel[2], colour.red, opacity);
 }
 
+Polyline corners_of(const Box& box) {
+    return {{box.left, box.top}, {box.right, box.top}, {box.right, box.bottom}, {box.left, box.bottom}};
+}
+
 Polyline outline_of(Marker marker, Point at, double r) {
     const auto polygon = [&](int corners, double first_rad, double radius) {
         Polyline outline;
@@ -95,11 +99,16 @@ void lay_over(cv::Mat& picture, const TextMask& mask, Colour colour) {
 }  // namespace
 
 Canvas::Canvas(int width_px, int height_px)
-    : fine_(height_px * fineness, width_px * fineness, CV_8UC3, scalar(colours::paper)) {}
+    : fine_(height_px * fineness, width_px * fineness, CV_8UC3, scalar(colours::paper)),
+      drawing_{width_px, height_px, {}} {
+    drawing_.marks.emplace_back(
+        DrawnArea{corners_of({0.0, 0.0, double(width_px), double(height_px)}), colours::paper});
+}
 
 void Canvas::fill(const Box& box, Colour colour, double opacity) {
     const cv::Rect rect = fine_rect(box, fine_);
     if (rect.empty()) { return; }
+    drawing_.marks.emplace_back(DrawnArea{corners_of(box), colour, opacity});
     cv::Mat part = fine_(rect);
     if (opacity >= 1.0) {
         part.setTo(scalar(colour));
@@ -110,6 +119,7 @@ void Canvas::fill(const Box& box, Colour colour, double opacity) {
 
 void Canvas::fill(const Polyline& polygon, Colour colour, double opacity) {
     if (polygon.size() < 3) { return; }
+    drawing_.marks.emplace_back(DrawnArea{polygon, colour, opacity});
     const std::vector<std::vector<cv::Point>> outline{fixed_points(polygon)};
     if (opacity >= 1.0) {
         cv::fillPoly(fine_, outline, scalar(colour), cv::LINE_AA, fraction_bits);
@@ -134,7 +144,8 @@ void Canvas::fill(const Polyline& polygon, Colour colour, double opacity) {
 }
 
 void Canvas::line(const Polyline& line, const Stroke& stroke) {
-    if (stroke.width_px <= 0.0) { return; }
+    if (stroke.width_px <= 0.0 || line.size() < 2) { return; }
+    drawing_.marks.emplace_back(DrawnLine{line, stroke});
     for (const Polyline& piece : dashed(line, stroke.dash_px)) {
         if (piece.size() < 2) { continue; }
         cv::polylines(fine_, std::vector<std::vector<cv::Point>>{fixed_points(piece)}, false,
@@ -173,6 +184,9 @@ Box Canvas::text(const Typeface& typeface, std::string_view text, Point at, cons
     const double pen_px = style.upwards ? -(at.y + back_px) : at.x - back_px;
     const double base_px = style.upwards ? at.x + down_px : at.y + down_px;
     const double whole_pen_px = std::floor(pen_px);
+    const Point pen = style.upwards ? Point{base_px, -pen_px} : Point{pen_px, base_px};
+    drawing_.marks.emplace_back(
+        DrawnText{typeface, std::string(text), style.size_px, style.colour, pen, style.upwards});
 
     TextMask mask = typeface.render(text, style.size_px, pen_px - whole_pen_px);
     mask.left_px += static_cast<int>(whole_pen_px);

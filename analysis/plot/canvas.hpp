@@ -11,6 +11,7 @@
 #include <opencv2/core.hpp>
 
 #include "analysis/plot/colour.hpp"
+#include "analysis/plot/drawing.hpp"
 #include "analysis/plot/geometry.hpp"
 #include "analysis/plot/stroke.hpp"
 #include "analysis/plot/typeface.hpp"
@@ -41,6 +42,7 @@ public:
              const TextStyle& style);  // returns the ink's
 
     cv::Mat picture() const;  // 8 bits, blue green red
+    const Drawing& drawing() const { return drawing_; }
 
 private:
     struct Lettering {
@@ -50,6 +52,7 @@ private:
 
     cv::Mat fine_;
     std::vector<Lettering> letterings_;
+    Drawing drawing_;
 };
 
 std::vector<std::uint8_t> encode_png(const cv::Mat& picture);

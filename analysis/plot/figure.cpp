@@ -178,6 +178,7 @@ Rendering render(const Figure& figure) {
         rendering.panels.push_back(drawings[i].draw(canvas, areas[i], margins));
     }
     rendering.png = encode_png(canvas.picture());
+    rendering.drawing = canvas.drawing();
     return rendering;
 }
 

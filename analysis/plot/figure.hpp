@@ -1,5 +1,5 @@
-// A figure of one or more panels of curves, drawn without a display. Plain numbers in, a PNG out; nobody who
-// includes this sees OpenCV or FreeType.
+// A figure of one or more panels of curves, drawn without a display. Plain numbers in, a PNG out, and
+// what encode_vector() makes an SVG or a PDF of; nobody who includes this sees OpenCV, FreeType or cairo.
 //
 // Panels of a row are equally wide, those of a column have the same left and right edges, and a row is as
 // high as the largest share in it. A panel that spans its row has edges of its own.
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "analysis/plot/colour.hpp"
+#include "analysis/plot/drawing.hpp"
 #include "analysis/plot/geometry.hpp"
 #include "analysis/plot/scale.hpp"
 #include "analysis/plot/stroke.hpp"
@@ -120,6 +121,7 @@ struct PanelPlace {
 
 struct Rendering {
     std::vector<std::uint8_t> png;
+    Drawing drawing;  // the same, for encode_vector()
     std::vector<PanelPlace> panels;
     std::string problem;  // what went wrong and the mend; then there is no PNG
 

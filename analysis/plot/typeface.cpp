@@ -60,7 +60,8 @@ struct Typeface::Face {
         FT_Set_Char_Size(face, 0, static_cast<FT_F26Dot6>(std::lround(size_px / px_of_26_6)), 72, 72);
     }
 
-    // Calls visit(pen_x_px) with each glyph loaded into the face's slot in turn; returns the pen's end.
+    // Calls visit(pen_x_px, character) with each glyph loaded into the face's slot in turn; returns the pen's
+    // end.
     template <typename Visit>
     double walk(std::string_view text, double size_px, double start_px, Visit visit) const {
         set_size(size_px);
@@ -75,7 +76,7 @@ struct Typeface::Face {
             }
             previous = glyph;
             if (FT_Load_Glyph(face, glyph, FT_LOAD_TARGET_LIGHT | FT_LOAD_NO_BITMAP) != 0) { continue; }
-            visit(pen_px);
+            visit(pen_px, character);
             pen_px += static_cast<double>(face->glyph->linearHoriAdvance) * px_of_16_16;
         }
         return pen_px;
@@ -126,7 +127,7 @@ std::optional<Typeface> Typeface::open(const std::string& path, std::string& pro
 TextExtent Typeface::measure(std::string_view text, double size_px) const {
     TextExtent extent;
     FT_GlyphSlot slot = face_->face->glyph;
-    extent.width_px = face_->walk(text, size_px, 0.0, [&](double) {
+    extent.width_px = face_->walk(text, size_px, 0.0, [&](double, char32_t) {
         FT_BBox ink{};
         FT_Outline_Get_CBox(&slot->outline, &ink);
         extent.ascent_px = std::max(extent.ascent_px, static_cast<double>(ink.yMax) * px_of_26_6);
@@ -138,7 +139,7 @@ TextExtent Typeface::measure(std::string_view text, double size_px) const {
 TextMask Typeface::render(std::string_view text, double size_px, double start_fraction_px) const {
     std::vector<PlacedGlyph> glyphs;
     FT_GlyphSlot slot = face_->face->glyph;
-    face_->walk(text, size_px, start_fraction_px, [&](double pen_px) {
+    face_->walk(text, size_px, start_fraction_px, [&](double pen_px, char32_t) {
         PlacedGlyph glyph = rasterised(slot, pen_px);
         if (!glyph.coverage.empty()) { glyphs.push_back(std::move(glyph)); }
     });
@@ -180,6 +181,18 @@ TextMask TextMask::turned_left() const {
     }
     return turned;
 }
+
+std::vector<PositionedGlyph> Typeface::glyphs(std::string_view text, double size_px) const {
+    std::vector<PositionedGlyph> glyphs;
+    face_->walk(text, size_px, 0.0, [&](double pen_px, char32_t character) {
+        glyphs.push_back({character, FT_Get_Char_Index(face_->face, character), pen_px});
+    });
+    return glyphs;
+}
+
+FT_FaceRec_* Typeface::freetype_face() const { return face_->face; }
+
+std::shared_ptr<const void> Typeface::owner() const { return face_; }
 
 double Typeface::cap_height_px(double size_px) const { return measure("H", size_px).ascent_px; }
 

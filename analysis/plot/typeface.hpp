@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+struct FT_FaceRec_;
+
 namespace gyrolog {
 
 struct TextExtent {
@@ -27,6 +29,12 @@ struct TextMask {
     TextMask turned_left() const;  // a quarter turn against the clock, reading upwards
 };
 
+struct PositionedGlyph {
+    char32_t character = 0;
+    unsigned index = 0;  // in the font
+    double x_px = 0.0;   // of the pen, from where the text begins
+};
+
 enum class Ellipsis { middle, end };
 
 class Typeface {
@@ -40,6 +48,11 @@ public:
 
     // start_fraction_px in [0, 1): the pen starts that far right of the mask's origin.
     TextMask render(std::string_view text, double size_px, double start_fraction_px = 0.0) const;
+
+    // For those who draw the letters themselves. The face is the owner's.
+    std::vector<PositionedGlyph> glyphs(std::string_view text, double size_px) const;
+    FT_FaceRec_* freetype_face() const;
+    std::shared_ptr<const void> owner() const;
 
     // Height of a capital letter or a digit: what to centre a line of text by.
     double cap_height_px(double size_px) const;

@@ -6,9 +6,9 @@
 
 #include "analysis/plot/allan_figure.hpp"
 #include "analysis/plot/histogram_figure.hpp"
+#include "host/app/figure_file.hpp"
 #include "host/app/quantity.hpp"
 #include "host/base/counted.hpp"
-#include "host/base/file_output.hpp"
 #include "host/formats/stops_text.hpp"
 
 namespace gyrolog {
@@ -95,11 +95,6 @@ DeviationUnit deviation_unit(const DrawnSensor& drawn) {
                                             : DeviationUnit::m_per_s2_as_micro_g();
 }
 
-Status write_png(const Rendering& rendering, const std::string& path) {
-    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
-    return write_file(path, rendering.png);
-}
-
 }  // namespace
 
 AllanFigure analysis_figure(const AnalysisReport& report, SensorKind sensor) {
@@ -146,12 +141,12 @@ std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, Noise
 }
 
 Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const std::string& path) {
-    return write_png(render(analysis_figure(report, sensor)), path);
+    return write_figure(render(analysis_figure(report, sensor)), path);
 }
 
 Status write_histogram_plot(const AnalysisReport& report, const Recording& recording, SensorKind sensor,
                             const std::string& path) {
-    return write_png(render(samples_figure(report, recording, sensor)), path);
+    return write_figure(render(samples_figure(report, recording, sensor)), path);
 }
 
 }  // namespace gyrolog

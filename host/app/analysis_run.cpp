@@ -11,6 +11,7 @@
 #include "host/app/analysis_plot.hpp"
 #include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
+#include "host/app/figure_file.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
@@ -90,10 +91,9 @@ void write_figures(ResultOutput& results, const AnalysisReport& report, const st
         results.file(path, [&] { return write(SensorKind::gyro, path); });
     }
     if (!report.accelerometer) { return; }
-    constexpr std::string_view ending = ".png";
     std::string own = path;
     if (!report.axes.empty()) {
-        if (!path.ends_with(ending)) { return; }  // a pipe takes one figure
+        if (!is_figure_file(path)) { return; }  // a pipe takes one figure
         own = path_of_accelerometer(path);
     }
     results.file(own, [&] { return write(SensorKind::accelerometer, own); });

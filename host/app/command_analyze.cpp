@@ -7,6 +7,7 @@
 #include "host/app/analysis_run.hpp"
 #include "host/app/command.hpp"
 #include "host/app/curve_run.hpp"
+#include "host/app/figure_file.hpp"
 #include "host/app/many_recordings.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
@@ -79,11 +80,11 @@ Action setup_analyze(CLI::App& app) {
     add_recordings(app, options->many, "RECORDING",
                    "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy");
     app.add_option("--plot", request->plot_path, "Draw the Allan curves and the spectra")
-        ->type_name("FILE.png")
-        ->check(png_file());
+        ->type_name(figure_file_type)
+        ->check(figure_file());
     app.add_option("--histogram", request->histogram_path, "Draw how the samples lie about the bias")
-        ->type_name("FILE.png")
-        ->check(png_file());
+        ->type_name(figure_file_type)
+        ->check(figure_file());
     app.add_option("--model", request->model_path, "Write the noise model for simulations")
         ->type_name("FILE");
     std::vector<std::string> deviations;

@@ -14,6 +14,7 @@
 #include "analysis/simulate/known_motion.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "host/app/command.hpp"
+#include "host/app/figure_file.hpp"
 #include "host/app/many_recordings.hpp"
 #include "host/app/model_help.hpp"
 #include "host/app/option_check.hpp"
@@ -24,7 +25,6 @@
 #include "host/app/result_output.hpp"
 #include "host/app/sensor_choice.hpp"
 #include "host/base/counted.hpp"
-#include "host/base/file_output.hpp"
 #include "host/formats/comparison_json.hpp"
 #include "host/formats/comparison_text.hpp"
 #include "host/formats/model_source.hpp"
@@ -138,8 +138,7 @@ Status write_plot(const Comparison& comparison, const std::string& path) {
         ComparisonFigure{comparison,
                          {fmt::format("{:.6g} Hz", comparison.rate_hz),
                           format_duration(comparison.duration_s), counted(comparison.samples, "sample")}});
-    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
-    return write_file(path, rendering.png);
+    return write_figure(rendering, path);
 }
 
 Status write_results(Console& console, const CompareRequest& request, const Comparison& comparison) {
@@ -198,8 +197,8 @@ Action setup_compare(CLI::App& app) {
     auto request = std::make_shared<CompareRequest>();
     auto many = std::make_shared<ManyRecordings>();
     app.add_option("--plot", request->plot_path, "Draw both side by side")
-        ->type_name("FILE.png")
-        ->check(png_file());
+        ->type_name(figure_file_type)
+        ->check(figure_file());
     app.add_option("--json", request->json_path, "Write the comparison as JSON (- for standard output)")
         ->type_name("FILE");
     add_recordings(

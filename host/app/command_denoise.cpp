@@ -11,6 +11,7 @@
 #include "host/app/command.hpp"
 #include "host/app/denoise_choice.hpp"
 #include "host/app/denoise_knowledge.hpp"
+#include "host/app/figure_file.hpp"
 #include "host/app/model_help.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
@@ -19,7 +20,6 @@
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/sensor_choice.hpp"
-#include "host/base/file_output.hpp"
 #include "host/formats/denoise_json.hpp"
 #include "host/formats/denoise_text.hpp"
 #include "host/formats/json.hpp"
@@ -115,11 +115,7 @@ public:
         figure.facts = {fmt::format("{:.6g} Hz", recording_.rate_hz), format_duration(report_.duration_s),
                         fmt::format("{} units", array_axes(recording_).front().units.size()),
                         design_text(report_.axes.front().signals.front().design)};
-        const Rendering rendering = render(figure);
-        if (!rendering.ok()) {
-            return Error{ErrorCode::failed, "draw '" + request_.plot_path + "': " + rendering.problem};
-        }
-        return write_file(request_.plot_path, rendering.png);
+        return write_figure(render(figure), request_.plot_path);
     }
 
 private:
@@ -460,8 +456,8 @@ Action setup_denoise(CLI::App& app) {
     app.add_option("--json", request->json_path, "Write the report as JSON (- for standard output)")
         ->type_name("FILE");
     app.add_option("--plot", request->plot_path, "Draw before and after")
-        ->type_name("FILE.png")
-        ->check(png_file());
+        ->type_name(figure_file_type)
+        ->check(figure_file());
     return [request](Console& console) { return denoise_command(console, *request); };
 }
 

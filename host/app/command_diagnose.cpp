@@ -3,6 +3,7 @@
 
 #include "host/app/command.hpp"
 #include "host/app/curve_diagnosis_run.hpp"
+#include "host/app/figure_file.hpp"
 #include "host/app/many_recordings.hpp"
 #include "host/app/model_help.hpp"
 #include "host/app/option_check.hpp"
@@ -97,8 +98,8 @@ Action setup_diagnose(CLI::App& app) {
                    "A capture (.pcapng), text (.csv, .csv.xz, ...), .mat or .npy");
     app.add_option("--plot", request.plot_path,
                    "Draw the shares of the causes, and where recording and model part before and after them")
-        ->type_name("FILE.png")
-        ->check(png_file());
+        ->type_name(figure_file_type)
+        ->check(figure_file());
     app.add_option(
            "--model-out", request.model_out_path,
            "Write the model with the causes added: a simulator's file as the same kind of file, changed, "

@@ -6,7 +6,7 @@
 
 #include "analysis/plot/allan_figure.hpp"
 #include "host/app/analysis_plot.hpp"
-#include "host/base/file_output.hpp"
+#include "host/app/figure_file.hpp"
 
 namespace gyrolog {
 namespace {
@@ -40,9 +40,7 @@ Status write_curve_plot(const CurveReport& report, const std::string& path) {
         figure.facts.push_back(
             fmt::format("{}: model within {:.2f} dB RMS", curve.name, curve.fit.residual.rms_db));
     }
-    const Rendering rendering = render(figure);
-    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
-    return write_file(path, rendering.png);
+    return write_figure(render(figure), path);
 }
 
 }  // namespace gyrolog

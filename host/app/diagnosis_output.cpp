@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/simulate/sensor_simulator.hpp"
-#include "host/base/file_output.hpp"
+#include "host/app/figure_file.hpp"
 #include "host/formats/diagnosis_text.hpp"
 
 namespace gyrolog {
@@ -95,9 +95,7 @@ DiagnosisFigure titled_figure(const Diagnosis& diagnosis, std::string_view of,
 
 Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string_view of, std::vector<std::string> facts,
                             const std::string& path) {
-    const Rendering rendering = render(titled_figure(diagnosis, of, std::move(facts)));
-    if (!rendering.ok()) { return Error{ErrorCode::failed, "draw '" + path + "': " + rendering.problem}; }
-    return write_file(path, rendering.png);
+    return write_figure(render(titled_figure(diagnosis, of, std::move(facts))), path);
 }
 
 void tell_notices(Console& console, const std::vector<std::string>& notices) {

@@ -85,12 +85,4 @@ CLI::Validator duration_or_none() { return understood_or_none(parse_duration_s);
 
 CLI::Validator size_or_none() { return understood_or_none(parse_bytes); }
 
-CLI::Validator png_file() {
-    return {[](const std::string& path) -> std::string {
-                if (path.ends_with(".png") || path.ends_with(".PNG")) { return ""; }
-                return fmt::format("'{}' does not end in .png, and figures are PNG only", path);
-            },
-            ""};
-}
-
 }  // namespace gyrolog

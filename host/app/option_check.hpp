@@ -34,7 +34,4 @@ CLI::Validator size();
 // The same, or 0.
 CLI::Validator size_or_none();
 
-// A name that ends in .png: figures have no other form.
-CLI::Validator png_file();
-
 }  // namespace gyrolog

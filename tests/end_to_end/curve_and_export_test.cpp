@@ -124,12 +124,22 @@ TEST(Export, OfAModelTakesItsRateFromTheOptionAndTellsTheModelsNotes) {
     EXPECT_THAT(read_whole_file(filter), HasSubstr("\ngyroscope_noise_density: 0.0005\n"));
 }
 
-TEST(Analyze, RefusesAFigureThatIsNoPng) {
+TEST(Analyze, WritesAFigureInTheFormOfItsEnding) {
+    const TemporaryFolder folder;
+    const std::string recording = write_recording(folder);
+    for (const auto& [name, head] : {std::pair{"a.svg", "<?xml"}, {"a.pdf", "%PDF-"}, {"a.PNG", "\x89PNG"}}) {
+        const ProgramResult result = run_gyrolog({"analyze", recording, "--plot", folder.path(name)});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_TRUE(read_whole_file(folder.path(name)).starts_with(head)) << name;
+    }
+}
+
+TEST(Analyze, RefusesAFigureOfAnotherForm) {
     const TemporaryFolder folder;
     const std::string plot = folder.path("a.jpg");
     const ProgramResult result = run_gyrolog({"analyze", write_recording(folder), "--plot", plot});
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("figures are PNG only"));
+    EXPECT_THAT(result.err, HasSubstr("a figure has no other form"));
     EXPECT_FALSE(std::filesystem::exists(plot));
 }
 

@@ -167,7 +167,7 @@ TEST_F(CompareCommand, WritesOverNothingItReadsAndNothingTwice) {
 
 TEST_F(CompareCommand, RefusesTooFewSimulationsAndOtherPictures) {
     EXPECT_EQ(compare({recording, model, "--simulations", "8"}), ExitCode::usage);
-    EXPECT_EQ(compare({recording, model, "--plot", "c.svg"}), ExitCode::usage);
+    EXPECT_EQ(compare({recording, model, "--plot", "c.jpg"}), ExitCode::usage);
     EXPECT_EQ(compare({recording}), ExitCode::usage);
 }
 

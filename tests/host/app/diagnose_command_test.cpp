@@ -311,7 +311,7 @@ TEST_F(DiagnoseCommand, SaysWhatIsMissingAndWhatDoesNotGoTogether) {
     EXPECT_EQ(diagnose({"--curve", curve, "--model", model, "--seed", "3"}), ExitCode::usage);
     EXPECT_EQ(diagnose({recording, "--model", model, "--simulations", "3"}), ExitCode::usage);
     EXPECT_EQ(diagnose({recording, "--model", model, "--plot", "d.jpg"}), ExitCode::usage);
-    EXPECT_THAT(err.str(), HasSubstr("PNG only"));
+    EXPECT_THAT(err.str(), HasSubstr("a figure has no other form"));
     EXPECT_EQ(out.str(), "");
 }
 
