@@ -27,9 +27,9 @@ FILES = {
     "usr/lib/MULTIARCH/wireshark/extcap/gyrolog": "-rwxr-xr-x",
     "usr/lib/MULTIARCH/wireshark/plugins/gyrolog.lua": "-rw-r--r--",
     **{f"usr/share/gyrolog/schemas/gyrolog-{name}.schema.json": "-rw-r--r--" for name in (
-        "analysis-1", "calibration-1", "capture-1", "check-1", "checkpoint-1", "compare-1", "conform-1", "datasheet-1",
-        "denoise-1", "diagnosis-2", "doctor-1", "effects-1", "filter-tuning-1", "gyroparams-1", "info-1", "list-1",
-        "mark-1", "model-1", "population-1", "recover-1", "simulate-1", "unanswered-line")},
+        "analysis-1", "calibration-1", "capture-1", "check-1", "checkpoint-1", "compare-1", "conform-1",
+        "datasheet-1", "denoise-1", "diagnosis-2", "doctor-1", "effect-1", "effects-1", "filter-tuning-1",
+        "gyroparams-1", "info-1", "list-1", "mark-1", "model-1", "population-1", "recover-1", "simulate-1", "unanswered-line")},
     "usr/share/bash-completion/completions/gyrolog": "-rw-r--r--",
     "usr/share/zsh/vendor-completions/_gyrolog": "-rw-r--r--",
     "usr/share/fish/vendor_completions.d/gyrolog.fish": "-rw-r--r--",
