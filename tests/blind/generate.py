@@ -41,11 +41,6 @@ def class_of(value):
     return "moderate" if value < 447.0 else "clear"
 
 
-def in_class(value, name):
-    low, high = CLASSES[name]
-    return low <= value <= high
-
-
 def description(effects):
     out = Description()
     for e in effects:
@@ -121,19 +116,25 @@ def at_strength(context, cls, shape, axes, target):
 
 def draw_effect(context, name, strength_class, salt="", beside_others=False):
     """(effect, its evidence). beside_others: only such as leave a meaning to other effects of the recording."""
+    return draw_between(context, name, TARGETS[strength_class], CLASSES[strength_class], strength_class, salt,
+                        beside_others=beside_others)
+
+
+def draw_between(context, name, targets, accepted, *path, beside_others=False):
+    """Likewise, of evidence between two bounds in nats that are asked for, and two that are accepted."""
     cls = known_class(name)
     for attempt in range(64):
-        rng = stream(context.seed, "effect", name, strength_class, salt, attempt)
+        rng = stream(context.seed, "effect", name, *path, attempt)
         axes = draw_axes(rng, cls)
         shape = cls.shape(rng, context, axes)
-        low, high = TARGETS[strength_class]
+        low, high = targets
         target = float(np.exp(rng.uniform(np.log(low), np.log(high))))
         effect = at_strength(context, cls, shape, axes, target)
         if beside_others and effect.drowns_others():
             continue
         value = evidence_of(context, [effect])
         # After eight tries it is as strong as it can be.
-        if in_class(value, strength_class) or attempt >= 7:
+        if accepted[0] <= value <= accepted[1] or attempt >= 7:
             return effect, value
     raise ValueError(f"no {name} that leaves a meaning to others, seed {context.seed}")
 
@@ -157,6 +158,17 @@ def world_for(spec):
         if cls.fast:
             spec["fast"] = max(cls.fast, float(spec.get("fast") or 0.0))
     return spec
+
+
+def truth_of(context, effects, e, value, refit=False):
+    """Of one of the effects of a recording, whose evidence alone is the value."""
+    return {
+        "effect": e.name, "axes": e.axes, "where": {**e.where(), "axes": e.axes}, "params": e.params,
+        "nats": round(float(value), 2),
+        "nats_given_others": round(float(evidence_given_others(context, effects, e, refit)), 2),
+        "class": class_of(value),
+        "nats_of_axis": {} if e.whole else {a: round(own_evidence(context, e, a, refit), 2) for a in e.axes},
+    }
 
 
 def make_case(spec):
@@ -200,14 +212,7 @@ def make_case(spec):
     for (name, asked), e, value in zip(spec["effects"], effects, values):
         truth["verdict"] = "known" if name in CATALOGUE else "unexplained"
         truth["foreign"] = name not in CATALOGUE
-        truth["effects"].append({
-            "effect": name, "axes": e.axes, "where": {**e.where(), "axes": e.axes}, "params": e.params,
-            "nats": round(float(value), 2),
-            "nats_given_others": round(float(evidence_given_others(context, effects, e, truth["refitted"])), 2),
-            "class": class_of(value), "asked": asked,
-            "nats_of_axis": {} if e.whole else {
-                a: round(own_evidence(context, e, a, truth["refitted"]), 2) for a in e.axes},
-        })
+        truth["effects"].append({**truth_of(context, effects, e, value, truth["refitted"]), "asked": asked})
     return columns, context.model, truth
 
 

@@ -166,23 +166,16 @@ def simulated(program, model, like, directory, count, log):
     return found
 
 
-def of_recording(program, data, out, name, begin_s, end_s, count):
-    directory = os.path.join(out, name.replace("/", "_"))
-    os.makedirs(directory, exist_ok=True)
+def held_against(program, directory, count, scale=(), diagnose=()):
+    """(the diagnosis, {model: gap's squares by family}) of DIR/first.csv, diagnosed from DIR/white.json, and of the
+    models' simulations held against DIR/second.csv. scale, diagnose: options of the program."""
     log = os.path.join(directory, "log.txt")
     first, second, white, fitted, corrected, modelled, answer = (
         os.path.join(directory, n) for n in ("first.csv", "second.csv", "white.json", "fitted.json", "corrected.json",
                                              "modelled.json", "diagnosis.json"))
-    header, a, b = halves_of(os.path.join(data, name + ".csv.xz"), begin_s, end_s)
-    write_lines(first, header, a)
-    write_lines(second, header, b)
-    rates_dps, rate_hz = read_rates(first)
-    with open(white, "w") as file:
-        json.dump(white_model(rates_dps, rate_hz), file)
-    scale = ["--lsb-dps", repr(LSB_DPS)] if "_lsb" in header else []
     program_says([program, "analyze", first, "--model", fitted, *scale], log)
     program_says([program, "diagnose", first, "--model", white, "--json", answer, "--model-out", modelled, "--unnamed",
-                  *scale], log)
+                  *scale, *diagnose], log)
     with open(modelled) as file:
         model = json.load(file)
     model.pop("unnamed", None)
@@ -194,7 +187,20 @@ def of_recording(program, data, out, name, begin_s, end_s, count):
     for model, path in models.items():
         gaps[model] = gap_squares(real, simulated(program, path, second, directory, count, log))
     with open(answer) as file:
-        said = json.load(file)
+        return json.load(file), gaps
+
+
+def of_recording(program, data, out, name, begin_s, end_s, count):
+    directory = os.path.join(out, name.replace("/", "_"))
+    os.makedirs(directory, exist_ok=True)
+    header, a, b = halves_of(os.path.join(data, name + ".csv.xz"), begin_s, end_s)
+    first = os.path.join(directory, "first.csv")
+    write_lines(first, header, a)
+    write_lines(os.path.join(directory, "second.csv"), header, b)
+    with open(os.path.join(directory, "white.json"), "w") as file:
+        json.dump(white_model(*read_rates(first)), file)
+    scale = ["--lsb-dps", repr(LSB_DPS)] if "_lsb" in header else []
+    said, gaps = held_against(program, directory, count, scale)
     result = {"name": name, "gap_squares": gaps, "verdict": said["verdict"],
               "causes": [(c["effect"], c.get("axes") or c.get("where", {}).get("axes"), c.get("share")) for c in
                          said["causes"]] + [(f"no name: {u['form']}", u["axes"], u["share"]) for u in said["unnamed"]]}

@@ -37,29 +37,36 @@ def share_figures(causes):
 
 
 def figures(rows):
-    """rows: of recordings with many effects, as score.py judged them. An answer that is not valid names nothing."""
+    """rows: of recordings with many effects, as score.py judged them."""
+    return {
+        **named_figures(rows, NATS_LEAST),
+        "shrink": shrink_figures([r for r in rows if "claimed" in r]),
+        "shares": share_figures([c for r in rows for c in r.get("causes", [])]),
+        "modelled": [r["modelled"] for r in rows if "modelled" in r],
+    }
+
+
+def named_figures(rows, least):
+    """Of effects of `least` nats alone and more, and of all causes. An answer that is not valid names nothing."""
     effects = [{**e, "named": i in r.get("named_effects", [])} for r in rows
                for i, e in enumerate(r["truth"]["effects"])]
     causes = [c for r in rows for c in r.get("causes", [])]
-    strong = [e for e in effects if e["nats"] >= NATS_LEAST]
+    strong = [e for e in effects if e["nats"] >= least]
     out = {
         "cases": len(rows),
         "verdicts": dict(collections.Counter(r.get("verdict", "not valid") for r in rows)),
         "named": rate(strong, "named"),
-        "named_beside_others": rate([e for e in effects if e["nats_given_others"] >= NATS_LEAST], "named"),
-        "named_weaker": rate([e for e in effects if e["nats"] < NATS_LEAST], "named"),
+        "named_beside_others": rate([e for e in effects if e["nats_given_others"] >= least], "named"),
+        "named_weaker": rate([e for e in effects if e["nats"] < least], "named"),
         "true": rate(causes, "right"),
         "true_of_likely": rate([c for c in causes if c["score"] >= LIKELY], "right"),
-        "shrink": shrink_figures([r for r in rows if "claimed" in r]),
-        "shares": share_figures(causes),
-        "modelled": [r["modelled"] for r in rows if "modelled" in r],
         "by_effect": [],
     }
     for name in sorted({e["effect"] for e in effects} | {c["effect"] for c in causes}):
         mine = [e for e in effects if e["effect"] == name]
         out["by_effect"].append({
-            "effect": name, "named": rate([e for e in mine if e["nats"] >= NATS_LEAST], "named"),
-            "named_weaker": rate([e for e in mine if e["nats"] < NATS_LEAST], "named"),
+            "effect": name, "named": rate([e for e in mine if e["nats"] >= least], "named"),
+            "named_weaker": rate([e for e in mine if e["nats"] < least], "named"),
             "false": sum(c["effect"] == name and not c["right"] for c in causes)})
     return out
 

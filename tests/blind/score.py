@@ -38,22 +38,18 @@ def load(path):
         return None
 
 
-def judged(directory, case_id, truth, outcome):
-    """One row: everything that the tables count."""
-    answers = os.path.join(directory, "answers", case_id)
+def names_judged(case_id, truth, answer, code=None):
+    """(row, causes that are judged): what the answer names, and whether it is so. answer: None where there is none."""
     row = {"id": case_id, "truth": truth, "problems": []}
-    answer = load(answers + ".json")
-    code = (outcome or {}).get("code")
     if code not in (0, None):
         row["problems"].append(f"exit {code}")
     if answer is None:
         row["problems"].append("no JSON")
     else:
         row["problems"] += complaints(answer)
-    row["seconds"] = (outcome or {}).get("seconds")
     row["valid"] = not row["problems"]
     if not row["valid"]:
-        return row
+        return row, []
     row.update(verdict=answer["verdict"], p_none=answer["p_none"], detected=answer["verdict"] != "none")
     # Where the recording could have come from the model, nothing is named.
     causes = answer["causes"] if row["detected"] else []
@@ -73,6 +69,17 @@ def judged(directory, case_id, truth, outcome):
     row["off"] = [{"effect": e["effect"], "param": name, "sds": sds} for e in effects
                   if explains and not truth["refitted"] for c in causes
                   if c["effect"] == e["effect"] and judge.is_right(c, e) for name, sds in judge.deviations(e, c)]
+    return row, causes
+
+
+def judged(directory, case_id, truth, outcome):
+    """One row: everything that the tables count."""
+    answers = os.path.join(directory, "answers", case_id)
+    answer = load(answers + ".json")
+    row, causes = names_judged(case_id, truth, answer, (outcome or {}).get("code"))
+    row["seconds"] = (outcome or {}).get("seconds")
+    if not row["valid"]:
+        return row
     if truth["verdict"] != "none" and row["detected"]:
         corrected = load(answers + ".model.json")
         case = judge.Case(truth, load(os.path.join(directory, "cases", case_id, "model.json")))
