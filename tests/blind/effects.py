@@ -853,7 +853,14 @@ class Quantization(Acting):
 
 
 class Stale(Acting):
+    """Samples that repeat: in a beat, or at random, in runs of a mean number."""
+
     name, family, whole, classes = "stale", "structure", True, ("clear",)
+    RUN_MOST = 3.0
+
+    @classmethod
+    def shape(cls, rng, context, axes):
+        return {"run_length": float(rng.uniform(1.0, cls.RUN_MOST)) if rng.random() < 0.5 else 0.0}
 
     @classmethod
     def range(cls, context, shape):
@@ -861,14 +868,26 @@ class Stale(Acting):
 
     @classmethod
     def to_params(cls, shape, strength):
-        return {"eps": strength}
+        return {"eps": strength, "run_length": shape["run_length"]}
+
+    def _new(self, rng, n):
+        """Which rows repeat none."""
+        eps, run = float(self.params["eps"]), float(self.params.get("run_length", 0.0))
+        if run == 0.0:
+            source = np.floor(np.arange(n) * (1.0 - eps) + rng.random()).astype(int)
+            # New where the count moves.
+            return np.concatenate([[True], np.diff(source) > 0])
+        # Runs of repeats and of new rows in turn, each of geometric length, the first one of new rows.
+        fresh = run * (1.0 - eps) / eps
+        pairs = int(1.5 * n / (run + fresh)) + 50
+        lengths = np.empty(2 * pairs, int)
+        lengths[0::2] = rng.geometric(1.0 / max(fresh, 1.0), pairs)
+        lengths[1::2] = rng.geometric(1.0 / max(run, 1.0), pairs)
+        return np.repeat(np.arange(2 * pairs) % 2 == 0, lengths)[:n]
 
     def rows(self, columns, rng):
-        eps = float(self.params["eps"])
         n = len(columns["t_s"])
-        source = np.floor(np.arange(n) * (1.0 - eps) + rng.random()).astype(int)
-        # The row that was new when the count last moved.
-        new = np.concatenate([[True], np.diff(source) > 0])
+        new = self._new(rng, n)
         row = np.maximum.accumulate(np.where(new, np.arange(n), 0))
         return {name: column if name == "t_s" or name.startswith("ref_") else column[row]
                 for name, column in columns.items()}

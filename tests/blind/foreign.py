@@ -386,6 +386,48 @@ class SpikeComb(Foreign):
         return {"freq_hz": [0.0, 50.0], "structure": "isolated_samples"}
 
 
+class Bumps(Foreign):
+    """Something moves the bench: all axes at the same instants, about an axis of any direction, and rings out."""
+
+    name, whole, shared = "bumps", True, True
+    described_as = "disturbance"
+
+    @classmethod
+    def shape(cls, rng, context, axes):
+        return {"count": int(rng.integers(2, 9)), "f_hz": float(rng.uniform(4.0, 20.0)),
+                "decay_s": float(rng.uniform(0.1, 0.5))}
+
+    @classmethod
+    def range(cls, context, shape):
+        return 0.01, 50.0
+
+    @classmethod
+    def to_params(cls, shape, strength):
+        return {"size_dps": strength, **shape}
+
+    def noise(self, axis, rng, around):
+        p, t = self.params, around.t
+        starts = np.sort(rng.uniform(0.02, 0.98, p["count"])) * self.context.duration_s
+        directions = rng.standard_normal((p["count"], 3))
+        directions /= np.sqrt((directions**2).sum(axis=1, keepdims=True))
+        sizes = p["size_dps"] * rng.uniform(0.5, 1.5, p["count"])
+        out = np.zeros(self.context.n)
+        for start, size, direction in zip(starts, sizes, directions):
+            since = np.maximum(t - start, 0.0)
+            out += size * direction[axis] * np.exp(-since / p["decay_s"]) * np.sin(2.0 * np.pi * p["f_hz"] * since)
+        return out
+
+    def describe(self, d):
+        """Half the energy over a sample's variance, a direction known: of sin^2 e^(-2t/tau) a fourth of tau."""
+        p = self.params
+        energy = p["count"] * p["size_dps"]**2 * (13.0 / 12.0) * 0.25 * p["decay_s"] * self.context.rate_hz
+        for axis in range(3):
+            d.other[f"bumps_{axis}"] = 0.5 * energy / 3.0 / self.context.sigma_dps(axis) ** 2
+
+    def where(self):
+        return {"time_s": [0.0, self.context.duration_s]}
+
+
 class DelayedStretch(Foreign):
     """One axis is late for a while."""
 
@@ -498,4 +540,4 @@ class Backlash(Foreign):
 
 FOREIGN = {cls.name: cls for cls in (
     WanderingLine, Resonance, SteepNoise, NoiseBursts, BreathingNoise, Sawtooth, SlowSwing, SkewedNoise, OtherUnit,
-    StickyCode, SpikeComb, DelayedStretch, RateNoise, OverloadRecovery, Backlash)}
+    StickyCode, SpikeComb, Bumps, DelayedStretch, RateNoise, OverloadRecovery, Backlash)}

@@ -23,10 +23,11 @@ import reliability
 import run
 import score
 import textfile
+import units
 from effects import (
-    CATALOGUE, ArwScale, BiasStep, CommonMode, GaussMarkov, HeavyTail, Lowpass, RateRamp, Rtn, ScaleFactor, TempLinear,
-    Tone, VarianceChange)
-from foreign import FOREIGN, SkewedNoise
+    CATALOGUE, ArwScale, BiasStep, CommonMode, GaussMarkov, HeavyTail, Lowpass, RateRamp, Rtn, ScaleFactor, Stale,
+    TempLinear, Tone, VarianceChange)
+from foreign import FOREIGN, Bumps, SkewedNoise
 from sensor import LSB_DPS, Context, Sensor, draw_model, flicker, record, refitted, shaped, stream, walk
 
 LIMIT = 4.5  # standard errors
@@ -133,6 +134,41 @@ class Noise(unittest.TestCase):
         for f, gain in ((0.5, 1.0), (10.0, np.sqrt(0.5)), (40.0, 1.0 / np.sqrt(257.0))):
             x = low.drifted(0, np.cos(2.0 * np.pi * f * t))
             self.assertAlmostEqual(np.sqrt(2.0 * np.var(x)), gain, delta=0.003)
+
+    def test_samples_repeat_in_a_beat_or_at_random_in_runs_of_their_length(self):
+        context = Context(4, False, 20.0)
+        n, eps = context.n, 0.1
+        for run in (0.0, 1.0, 2.5):
+            stale = Stale(context, {"eps": eps, "run_length": run}, list("xyz"))
+            rows = stale.rows({"t_s": np.arange(n), "gx_dps": np.arange(n), "temp_C": np.arange(n)}, stream(4, "stale"))
+            self.assertTrue(np.array_equal(rows["t_s"], np.arange(n)))
+            self.assertTrue(np.array_equal(rows["gx_dps"], rows["temp_C"]))
+            repeats = np.concatenate([[False], np.diff(rows["gx_dps"]) == 0])
+            runs = np.count_nonzero(np.diff(repeats.astype(int)) == 1)
+            # Each run and the rows before it are geometric: of a number of them the relative deviation is below this.
+            error = LIMIT * 2.0 / np.sqrt(runs)
+            self.assertAlmostEqual(repeats.mean() / eps, 1.0, delta=error if run else 2.0 / (eps * n))
+            self.assertAlmostEqual(repeats.sum() / runs / max(run, 1.0), 1.0, delta=error if run else 1e-9)
+            since = np.diff(np.flatnonzero(np.diff(repeats.astype(int)) == 1))
+            self.assertEqual(np.std(since) < 1.0, run == 0.0)
+
+    def test_bumps_move_all_axes_at_the_same_instants_with_their_energy(self):
+        context = Context(5, False, 20.0)
+        bumps = Bumps(context, {"size_dps": 2.0, "count": 200, "f_hz": 11.0, "decay_s": 0.2}, list("xyz"))
+        around = type("Around", (), {"t": np.arange(context.n) / 100.0})
+        moved = np.array([bumps.noise(axis, stream(5, "bumps"), around) for axis in range(3)])
+        # None between two of them, and at each on every axis.
+        quiet = np.abs(moved).max(axis=0) < 1e-6
+        self.assertGreater(quiet.mean(), 0.3)
+        starts = np.flatnonzero(quiet[:-1] & ~quiet[1:])
+        self.assertGreater(starts.size, 100)
+        self.assertTrue(np.all(np.abs(moved[:, starts + 3]) > 0.0))
+        description = evidence.Description()
+        bumps.describe(description)
+        for axis in range(3):
+            nats = 0.5 * np.sum(moved[axis] ** 2) / context.sigma_dps(axis) ** 2
+            # A direction's square has a relative deviation of 0.9, a size's of 0.6.
+            self.assertAlmostEqual(nats / description.other[f"bumps_{axis}"], 1.0, delta=LIMIT * 1.1 / np.sqrt(200.0))
 
     def test_skewed_noise_is_askew_and_no_more(self):
         context = Context(4, False, 120.0)
@@ -839,6 +875,92 @@ class RealHalves(unittest.TestCase):
             squares = self.gap(self.measured((8, 1), change=change))
             none = self.gap(self.measured((8, 1)))
             self.assertGreater(squares[family], max(4.0, 10.0 * abs(none[family])), family)
+
+
+class Units(unittest.TestCase):
+    """Units of several effects, recorded twice."""
+
+    NAMES = ["tone", "narrowband", "stale", "arw_scale", "rrw_missing", "temp_linear", "bumps", "quantization"]
+
+    @classmethod
+    def setUpClass(cls):
+        cls.unit = generate.spec(77, [(name, "of a unit") for name in cls.NAMES], False, 6.0)
+        cls.first, cls.second, cls.model, cls.truth = units.make_unit(cls.unit)
+
+    def test_have_six_to_nine_effects_at_most_one_of_a_group(self):
+        cases = units.panel(300, 3, (15.0, 30.0))
+        counts = [len(c["effects"]) for c in cases.values()]
+        self.assertEqual({*counts}, {6, 7, 8, 9})
+        drawn = set()
+        for case in cases.values():
+            names = {name for name, _ in case["effects"]}
+            self.assertEqual(len(names), len(case["effects"]))
+            self.assertTrue(all(len(names & {*of}) <= 1 for _, of in units.GROUPS))
+            self.assertTrue(15.0 <= case["minutes"] <= 30.0 and not case["motion"])
+            drawn |= names
+        self.assertEqual(drawn, {name for _, of in units.GROUPS for name in of})
+
+    def test_model_has_white_noise_and_a_bias_only_and_tells_nothing_of_the_truth(self):
+        self.assertTrue(all({*axis} == {"N", "bias"} for axis in self.model["axes"].values()))
+        self.assertNotIn("effects", self.model)
+        self.assertEqual(self.model["lsb_dps"], 0.0)  # the unit's own step is one of its effects
+        with tempfile.TemporaryDirectory() as directory:
+            units.write_unit("u01", {**self.unit, "minutes": 2.0}, directory)
+            self.assertEqual({*os.listdir(os.path.join(directory, "u01"))}, {"first.csv", "second.csv", "white.json"})
+            self.assertEqual(os.listdir(os.path.join(directory, "sealed")), ["u01.json"])
+
+    def test_second_recording_has_the_same_constants_and_nothing_else_of_the_first(self):
+        effects = {e["effect"]: e for e in self.truth["effects"]}
+        steps = [np.diff(columns["gx_dps"]) for columns in (self.first, self.second)]
+        self.assertAlmostEqual(np.mean(steps[0] == 0.0), np.mean(steps[1] == 0.0), delta=0.01)
+        self.assertLess(abs(np.corrcoef(*steps)[0, 1]), 0.03)
+        self.assertGreater(np.abs(self.first["temp_C"] - self.second["temp_C"]).max(), 0.3)
+        self.assertLess(abs(self.first["temp_C"][0] - self.second["temp_C"][0]), 1.5)
+        for axis in effects["temp_linear"]["axes"]:
+            c1 = effects["temp_linear"]["params"]["c1_dps_per_C"][effects["temp_linear"]["axes"].index(axis)]
+            slopes = [np.polyfit(c["temp_C"], c[f"g{axis}_dps"], 1)[0] for c in (self.first, self.second)]
+            self.assertLess(abs(slopes[0] - slopes[1]), 0.3 * abs(c1) + 0.003)
+
+    def test_lines_wander_and_nobody_touches_the_bench_again(self):
+        context = generate.context_of(self.unit)
+        rng = stream(1, "wandered")
+        tone = Tone(context, {"f_hz": 20.0, "amplitude_dps": 0.1, "phase_rad": [0.0]}, ["x"])
+        off = np.array([units.wandered(tone, context, rng).params["f_hz"] / 20.0 - 1.0 for _ in range(400)])
+        self.assertAlmostEqual(np.std(off) / units.WANDERED_REL, 1.0, delta=LIMIT / np.sqrt(800.0))
+        self.assertEqual(tone.params["f_hz"], 20.0)
+        bumps = Bumps(context, {"size_dps": 2.0, "count": 2, "f_hz": 11.0, "decay_s": 0.2}, list("xyz"))
+        self.assertIsNone(units.wandered(bumps, context, rng))
+        slope = TempLinear(context, {"c1_dps_per_C": [0.1], "reference_C": 25.0}, ["x"])
+        self.assertEqual(units.wandered(slope, context, rng).params, slope.params)
+
+    def test_figures_are_those_that_an_answer_earned(self):
+        strong = [dict(e, nats=max(e["nats"], 100.0)) for e in self.truth["effects"]]
+        strong[0]["nats"] = 99.0
+        truth = {**self.truth, "effects": strong}
+        causes = [cause_of({**e, "effect": "disturbance" if e["effect"] == "bumps" else e["effect"]}, 0.125)
+                  for e in strong]
+        causes[1] = {**causes[1], "effect": "rtn", "tie_group": ["rtn"], "params": {}}
+        causes[1].pop("params_by_axis", None)
+        squares = {"white": {"density": 100.0, "allan": 300.0}, "analyze": {"density": 100.0, "allan": 100.0},
+                   "named": {"density": 10.0, "allan": 6.0}, "unnamed": {"density": 1.0, "allan": 1.0}}
+        answer = {**answer_to(truth), "causes": causes}
+        row = units.judged("u01", truth, {"answer": answer, "gap_squares": squares})
+        self.assertEqual(row["problems"], [])
+        f = units.figures([row])
+        count = len(strong)
+        self.assertEqual((f["named"]["hits"], f["named"]["of"]), (count - 2, count - 1))
+        self.assertEqual((f["named_weaker"]["hits"], f["named_weaker"]["of"]), (1, 1))
+        self.assertEqual((f["true"]["hits"], f["true"]["of"]), (count - 1, count))
+        self.assertAlmostEqual(row["closed"]["analyze"], 0.5)
+        self.assertAlmostEqual(row["closed"]["named"], 0.96)
+        self.assertEqual((f["closed"]["named"]["reached"], f["closed"]["analyze"]["reached"]), (1, 0))
+        text = "\n".join(score.as_text(*table) for table in units.tables([row]))
+        self.assertIn(f"**{strong[1]['effect']}", text)
+        self.assertIn("rtn", text)
+        # An answer that is none names nothing, and still has its gap.
+        f = units.figures([units.judged("u01", truth, {"answer": {"schema": "other", "causes": []},
+                                                       "gap_squares": squares})])
+        self.assertEqual(f["named"]["hits"], 0)
 
 
 if __name__ == "__main__":
