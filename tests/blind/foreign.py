@@ -418,11 +418,22 @@ class Bumps(Foreign):
         return out
 
     def describe(self, d):
-        """Half the energy over a sample's variance, a direction known: of sin^2 e^(-2t/tau) a fourth of tau."""
+        """Of a variance of its own for as long as it rings, its course unknown; a bump of the mean size and energy."""
         p = self.params
-        energy = p["count"] * p["size_dps"]**2 * (13.0 / 12.0) * 0.25 * p["decay_s"] * self.context.rate_hz
+        samples = p["decay_s"] * self.context.rate_hz  # power e^(-2t/tau): its sum squared over its squares
         for axis in range(3):
-            d.other[f"bumps_{axis}"] = 0.5 * energy / 3.0 / self.context.sigma_dps(axis) ** 2
+            d.other[f"bumps_{axis}"] = p["count"] * self.nats_of(samples, self.mean_energy(axis))
+
+    def mean_energy(self, axis):
+        """In a sample's variances: a third of the size's square each axis, and of sin^2 e^(-2t/tau) a fourth of tau."""
+        p = self.params
+        square = p["size_dps"] ** 2 * (13.0 / 12.0) / 3.0
+        return square * 0.25 * p["decay_s"] * self.context.rate_hz / self.context.sigma_dps(axis) ** 2
+
+    @staticmethod
+    def nats_of(samples, energy):
+        ratio = 1.0 + energy / samples
+        return 0.5 * samples * (ratio - 1.0 - np.log(ratio))
 
     def where(self):
         return {"time_s": [0.0, self.context.duration_s]}

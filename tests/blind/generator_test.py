@@ -140,7 +140,8 @@ class Noise(unittest.TestCase):
         n, eps = context.n, 0.1
         for run in (0.0, 1.0, 2.5):
             stale = Stale(context, {"eps": eps, "run_length": run}, list("xyz"))
-            rows = stale.rows({"t_s": np.arange(n), "gx_dps": np.arange(n), "temp_C": np.arange(n)}, stream(4, "stale"))
+            count = np.arange(n)
+            rows = stale.rows({"t_s": count, "gx_dps": count, "temp_C": count}, stream(4, "stale"))
             self.assertTrue(np.array_equal(rows["t_s"], np.arange(n)))
             self.assertTrue(np.array_equal(rows["gx_dps"], rows["temp_C"]))
             repeats = np.concatenate([[False], np.diff(rows["gx_dps"]) == 0])
@@ -163,12 +164,19 @@ class Noise(unittest.TestCase):
         starts = np.flatnonzero(quiet[:-1] & ~quiet[1:])
         self.assertGreater(starts.size, 100)
         self.assertTrue(np.all(np.abs(moved[:, starts + 3]) > 0.0))
-        description = evidence.Description()
-        bumps.describe(description)
         for axis in range(3):
-            nats = 0.5 * np.sum(moved[axis] ** 2) / context.sigma_dps(axis) ** 2
+            energy = np.sum(moved[axis] ** 2) / context.sigma_dps(axis) ** 2
             # A direction's square has a relative deviation of 0.9, a size's of 0.6.
-            self.assertAlmostEqual(nats / description.other[f"bumps_{axis}"], 1.0, delta=LIMIT * 1.1 / np.sqrt(200.0))
+            self.assertAlmostEqual(energy / 200.0 / bumps.mean_energy(axis), 1.0, delta=LIMIT * 1.1 / np.sqrt(200.0))
+
+    def test_evidence_of_a_bump_is_that_of_samples_with_its_variance(self):
+        rng = stream(6, "bump")
+        samples, energy = 20, 60.0
+        ratio = 1.0 + energy / samples
+        x = rng.normal(0.0, np.sqrt(ratio), (4000, samples))
+        log_ratio = np.sum(0.5 * x**2 * (1.0 - 1.0 / ratio) - 0.5 * np.log(ratio), axis=1)
+        self.assertAlmostEqual(Bumps.nats_of(samples, energy), log_ratio.mean(),
+                               delta=LIMIT * log_ratio.std() / np.sqrt(4000.0))
 
     def test_skewed_noise_is_askew_and_no_more(self):
         context = Context(4, False, 120.0)
@@ -885,7 +893,9 @@ class Units(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.unit = generate.spec(77, [(name, "of a unit") for name in cls.NAMES], False, 6.0)
-        cls.first, cls.second, cls.model, cls.truth = units.make_unit(cls.unit)
+        cls.made = units.Unit(cls.unit)
+        cls.first, cls.second = cls.made.first(), cls.made.second()
+        cls.model, cls.truth = cls.made.model(), cls.made.truth()
 
     def test_have_six_to_nine_effects_at_most_one_of_a_group(self):
         cases = units.panel(300, 3, (15.0, 30.0))
@@ -903,6 +913,7 @@ class Units(unittest.TestCase):
     def test_model_has_white_noise_and_a_bias_only_and_tells_nothing_of_the_truth(self):
         self.assertTrue(all({*axis} == {"N", "bias"} for axis in self.model["axes"].values()))
         self.assertNotIn("effects", self.model)
+        self.assertFalse({"B", "K"} & {*self.model["sd_rel"]})
         self.assertEqual(self.model["lsb_dps"], 0.0)  # the unit's own step is one of its effects
         with tempfile.TemporaryDirectory() as directory:
             units.write_unit("u01", {**self.unit, "minutes": 2.0}, directory)
@@ -911,6 +922,7 @@ class Units(unittest.TestCase):
 
     def test_second_recording_has_the_same_constants_and_nothing_else_of_the_first(self):
         effects = {e["effect"]: e for e in self.truth["effects"]}
+        self.assertEqual([e.name for e in self.made.again], [name for name in self.NAMES if name != "bumps"])
         steps = [np.diff(columns["gx_dps"]) for columns in (self.first, self.second)]
         self.assertAlmostEqual(np.mean(steps[0] == 0.0), np.mean(steps[1] == 0.0), delta=0.01)
         self.assertLess(abs(np.corrcoef(*steps)[0, 1]), 0.03)
@@ -933,6 +945,13 @@ class Units(unittest.TestCase):
         slope = TempLinear(context, {"c1_dps_per_C": [0.1], "reference_C": 25.0}, ["x"])
         self.assertEqual(units.wandered(slope, context, rng).params, slope.params)
 
+    def test_unit_itself_closes_the_gap_and_its_first_model_does_not(self):
+        plain = generate.context_of(self.made.made)
+        white = [units.measured(record(units.white_only(plain), [], f"white {k}")) for k in range(8)]
+        gap = halves.total(halves.gap_squares(units.measured(self.second), white))
+        self.assertGreater(gap, 10.0)
+        self.assertLess(abs(halves.total(units.gap_of_unit(self.made, 8))), 0.2 * gap)
+
     def test_figures_are_those_that_an_answer_earned(self):
         strong = [dict(e, nats=max(e["nats"], 100.0)) for e in self.truth["effects"]]
         strong[0]["nats"] = 99.0
@@ -942,7 +961,8 @@ class Units(unittest.TestCase):
         causes[1] = {**causes[1], "effect": "rtn", "tie_group": ["rtn"], "params": {}}
         causes[1].pop("params_by_axis", None)
         squares = {"white": {"density": 100.0, "allan": 300.0}, "analyze": {"density": 100.0, "allan": 100.0},
-                   "named": {"density": 10.0, "allan": 6.0}, "unnamed": {"density": 1.0, "allan": 1.0}}
+                   "named": {"density": 10.0, "allan": 6.0}, "unnamed": {"density": 1.0, "allan": 1.0},
+                   "unit": {"density": 0.0, "allan": 0.0}}
         answer = {**answer_to(truth), "causes": causes}
         row = units.judged("u01", truth, {"answer": answer, "gap_squares": squares})
         self.assertEqual(row["problems"], [])
