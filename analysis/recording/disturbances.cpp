@@ -82,28 +82,56 @@ double median_of(std::vector<double> values) {
     return *middle;
 }
 
-struct Signal {
-    std::vector<Power> powers;  // by block
-    double median_log = 0.0;
-    std::vector<bool> loud;
+// The level of the blocks around each. The noise may change slowly, with the temperature, say; a window of
+// twice the longest disturbance has more of it than of a disturbance. Between the middles of two windows the
+// larger level holds, so that the blocks beside a step of the noise are none.
+std::vector<double> levels_of(const std::vector<Power>& powers, const DisturbanceOptions& options) {
+    const std::size_t blocks = powers.size();
+    const auto longest = static_cast<std::size_t>(options.longest_share * static_cast<double>(blocks));
+    const std::size_t half = std::max(longest, options.blocks_least / 2);
+    std::vector<double> of_windows;
+    for (std::size_t middle = 0; middle < blocks + half; middle += half) {
+        std::vector<double> logs;
+        for (std::size_t i = middle - std::min(middle, half); i < std::min(blocks, middle + half); ++i) {
+            logs.push_back(powers[i].log);
+        }
+        of_windows.push_back(median_of(std::move(logs)));
+    }
+    std::vector<double> levels(blocks);
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const std::size_t window = block / half;
+        levels[block] = std::max(of_windows[window], of_windows[window + 1]);
+    }
+    return levels;
+}
 
-    double ratio(std::size_t block) const { return std::exp(powers[block].log - median_log); }
+struct Signal {
+    std::vector<Power> powers;   // by block
+    std::vector<double> excess;  // of the logarithm of the power over its level, in standard deviations
+    std::vector<double> levels;
+    double loud_from = 0.0;
+
+    bool is_loud(std::size_t block) const { return excess[block] > loud_from; }
+    double ratio(std::size_t block) const { return std::exp(powers[block].log - levels[block]); }
 };
 
-Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double quantile) {
+Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double quantile,
+                 const DisturbanceOptions& options) {
     Signal signal;
-    std::vector<double> logs;
+    signal.loud_from = quantile;
     for (const Block& block : blocks) {
         signal.powers.push_back(power_of(values.subspan(block.first, block.count)));
-        logs.push_back(signal.powers.back().log);
     }
-    signal.median_log = median_of(logs);
-    for (double& log : logs) { log = std::abs(log - signal.median_log); }
+    signal.levels = levels_of(signal.powers, options);
+    std::vector<double> off;
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+        off.push_back(std::abs(signal.powers[block].log - signal.levels[block]));
+    }
     // A logarithm of a chi-squared variable has this spread at least; coarse codes may have none.
     const double degrees = static_cast<double>(blocks.front().count) - fitted_per_block;
-    const double sd = std::max(sd_per_mad * median_of(std::move(logs)), std::sqrt(2.0 / degrees));
-    for (const Power& power : signal.powers) {
-        signal.loud.push_back(power.log > signal.median_log + quantile * sd);
+    const double sd = std::max(sd_per_mad * median_of(std::move(off)), std::sqrt(2.0 / degrees));
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+        signal.excess.push_back((signal.powers[block].log - signal.levels[block]) / sd);
     }
     return signal;
 }
@@ -116,19 +144,28 @@ double poisson_tail(std::size_t count, double mean) {
 
 std::size_t loud_at_once(const std::vector<Signal>& signals, std::size_t block) {
     return static_cast<std::size_t>(
-        std::ranges::count_if(signals, [&](const Signal& signal) { return signal.loud[block]; }));
+        std::ranges::count_if(signals, [&](const Signal& signal) { return signal.is_loud(block); }));
+}
+
+// Whether all signals together are as loud as one has to be: a disturbance that rings out is still there.
+bool is_loud_in_sum(const std::vector<Signal>& signals, std::size_t block) {
+    double sum = 0.0;
+    for (const Signal& signal : signals) { sum += signal.excess[block]; }
+    return sum > signals.front().loud_from * std::sqrt(static_cast<double>(signals.size()));
 }
 
 // Whether blocks that are loud on two signals at once are more than chance has.
 bool is_no_chance(const std::vector<Signal>& signals, double chance_each, double false_alarms_most) {
-    const std::size_t blocks = signals.front().loud.size();
+    const std::size_t blocks = signals.front().powers.size();
     std::size_t together = 0;
     std::vector<double> alone(signals.size(), 0.0);
     for (std::size_t block = 0; block < blocks; ++block) {
         const std::size_t count = loud_at_once(signals, block);
         if (count > 1) { ++together; }
         if (count != 1) { continue; }
-        for (std::size_t s = 0; s < signals.size(); ++s) { alone[s] += signals[s].loud[block] ? 1.0 : 0.0; }
+        for (std::size_t s = 0; s < signals.size(); ++s) {
+            alone[s] += signals[s].is_loud(block) ? 1.0 : 0.0;
+        }
     }
     const auto n = static_cast<double>(blocks);
     double expected = 0.0;
@@ -152,22 +189,34 @@ void add_block(Disturbance& disturbance, const std::vector<Signal>& signals, std
     for (std::size_t s = 0; s < signals.size(); ++s) {
         disturbance.gain_nats[s] += gain_nats(signals[s], block, count);
         disturbance.largest = std::max(disturbance.largest, signals[s].powers[block].largest);
-        if (signals[s].loud[block] && std::ranges::count(disturbance.loud, s) == 0) {
+        if (signals[s].is_loud(block) && std::ranges::count(disturbance.loud, s) == 0) {
             disturbance.loud.push_back(s);
         }
     }
 }
 
-// Disturbed blocks with their neighbours, as long as those follow without a hole.
-std::vector<Disturbance> stretches(const Recording& recording, const std::vector<Block>& blocks,
-                                   const std::vector<Signal>& signals) {
-    std::vector<bool> disturbed(blocks.size(), false);
-    for (std::size_t block = 0; block < blocks.size(); ++block) {
+// By block: loud on two signals at once, or beside such as long as all together are loud; and the neighbours.
+std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals) {
+    const std::size_t blocks = signals.front().powers.size();
+    std::vector<bool> disturbed(blocks, false);
+    for (std::size_t block = 0; block < blocks; ++block) {
         if (loud_at_once(signals, block) < 2) { continue; }
-        for (std::size_t i = block == 0 ? 0 : block - 1; i < std::min(block + 2, blocks.size()); ++i) {
+        std::size_t from = block;
+        std::size_t to = block + 1;
+        while (from > 0 && is_loud_in_sum(signals, from - 1)) { --from; }
+        while (to < blocks && is_loud_in_sum(signals, to)) { ++to; }
+        for (std::size_t i = from == 0 ? 0 : from - 1; i < std::min(to + 1, blocks); ++i) {
             disturbed[i] = true;
         }
+        block = to - 1;
     }
+    return disturbed;
+}
+
+// Disturbed blocks as long as they follow without a hole.
+std::vector<Disturbance> stretches(const Recording& recording, const std::vector<Block>& blocks,
+                                   const std::vector<Signal>& signals) {
+    const std::vector<bool> disturbed = disturbed_blocks(signals);
     std::vector<Disturbance> found;
     const std::int64_t origin = recording.segments.front().first_index;
     const auto seconds = [&](std::int64_t index) {
@@ -202,7 +251,7 @@ std::vector<Disturbance> disturbances(const Recording& recording,
         std::sqrt(options.false_alarms_most / (pairs * static_cast<double>(blocks.size())));
     std::vector<Signal> seen;
     for (const std::vector<double>& signal : signals) {
-        seen.push_back(signal_of(signal, blocks, normal_upper_quantile(chance_each)));
+        seen.push_back(signal_of(signal, blocks, normal_upper_quantile(chance_each), options));
     }
     if (!is_no_chance(seen, chance_each, options.false_alarms_most)) { return {}; }
     std::vector<Disturbance> found = stretches(recording, blocks, seen);

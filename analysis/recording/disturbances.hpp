@@ -2,11 +2,12 @@
 // a hand on the cable.
 //
 // A sensor's own noise is loud on one axis at a time. A block of the recording is loud on an axis where the
-// logarithm of its power lies above the axis' median by more than chance has it; the block's power is what is
-// left about two means with one step between them, less its two largest squares, so that neither a step of
-// the bias nor single samples that are off count. A block that is loud on two axes at once is disturbed,
-// where the recording has more of them than the axes' loud blocks would meet by chance (Poisson), and so are
-// the blocks beside it.
+// logarithm of its power lies above the axis' median around it by more than chance has it; the block's power
+// is what is left about two means with one step between them, less its two largest squares, so that neither a
+// step of the bias nor single samples that are off count. A block that is loud on two axes at once is
+// disturbed, where the recording has more of them than the axes' loud blocks would meet by chance (Poisson).
+// So are the blocks that follow or lead to it as long as the axes together are as loud as one has to be, for
+// what was bumped rings out, and one more on either side.
 #pragma once
 
 #include <array>

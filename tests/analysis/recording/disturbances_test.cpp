@@ -71,6 +71,40 @@ TEST(Disturbances, AreFoundWhereTheRecordingBegins) {
     EXPECT_EQ(found[0].first, 0U);
 }
 
+// Noise that swells to twice its size and back on all axes, as it does with the temperature, hides none.
+TEST(Disturbances, AreFoundInNoiseWhoseLevelChanges) {
+    Signals signals = white(8);
+    for (std::vector<double>& signal : signals) {
+        for (std::size_t i = 0; i < rows; ++i) {
+            signal[i] *=
+                1.5 - 0.5 * std::cos(2.0 * M_PI * static_cast<double>(i) / static_cast<double>(rows));
+        }
+    }
+    EXPECT_TRUE(disturbances(grid_of(rows), signals).empty());
+    add_bump(signals, 300, 4.0);
+    const std::vector<Disturbance> found = disturbances(grid_of(rows), signals);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NEAR(found[0].from_s, 3.0, 0.5);
+}
+
+// A bump that rings for long is one until it drowns in the noise: of what is left no axis is loud by itself.
+TEST(Disturbances, LastUntilTheyHaveRungOut) {
+    Signals signals = white(9);
+    constexpr double decay_s = 0.6;
+    constexpr double size = 14.0;
+    for (std::vector<double>& signal : signals) {
+        for (std::size_t i = 7000; i < 7600; ++i) {
+            const double since_s = static_cast<double>(i - 7000) / rate_hz;
+            signal[i] += size * std::exp(-since_s / decay_s) * std::sin(2.0 * M_PI * 9.0 * since_s);
+        }
+    }
+    const std::vector<Disturbance> found = disturbances(grid_of(rows), signals);
+    ASSERT_EQ(found.size(), 1U);
+    // There a swing is as large as the noise, to a block.
+    EXPECT_GE(found[0].to_s, 70.0 + decay_s * std::log(size) - 0.25);
+    EXPECT_LE(found[0].to_s, 73.0);
+}
+
 // A step that two axes share, single samples that are off on all, more noise on one axis for a while, and on
 // all of them for a fifth of the time, are the sensor's own.
 TEST(Disturbances, AreNotWhatASensorDoes) {
