@@ -9,6 +9,8 @@ namespace gyrolog::resolution {
 
 // Blocks on either side whose mean variance is the level around one.
 constexpr std::size_t blocks_around = 8;
+// Sums of neighbouring blocks, by powers of two, of which so many tell how they scatter.
+constexpr std::size_t sums_least = 16;
 
 }  // namespace gyrolog::resolution
 
@@ -82,17 +84,32 @@ double unit_level(const WhitenedBlocks& blocks, std::span<const double> level) {
 
 double overdispersion(const WhitenedBlocks& blocks, std::span<const double> level) {
     const double unit = unit_level(blocks, level);
-    double sum = 0.0;
-    double count = 0.0;
+    std::vector<double> weights;
+    std::vector<double> off;  // weighted
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         if (blocks.weight[i] == 0.0) { continue; }
-        const double ratio = blocks.variance[i] / (level[i] * unit * unit) - 1.0;
-        sum += 0.5 * blocks.weight[i] * ratio * ratio;
-        count += 1.0;
+        weights.push_back(blocks.weight[i]);
+        off.push_back(blocks.weight[i] * (blocks.variance[i] / (level[i] * unit * unit) - 1.0));
     }
-    if (count < 2.0) { return 1.0; }
-    const double dispersion = sum / (count - 1.0);
-    return dispersion > 1.0 + decisions.certain_sigma * std::sqrt(2.0 / count) ? dispersion : 1.0;
+    double largest = 1.0;
+    // What wanders slowly scatters no more from block to block than chance, but in sums of many.
+    for (std::size_t each = 1; each == 1 || weights.size() / each >= resolution::sums_least; each *= 2) {
+        const std::size_t sums = weights.size() / each;
+        if (sums < 2) { break; }
+        double scatter = 0.0;
+        for (std::size_t k = 0; k < sums; ++k) {
+            double weight = 0.0;
+            double sum = 0.0;
+            for (std::size_t i = k * each; i < (k + 1) * each; ++i) { weight += weights[i], sum += off[i]; }
+            scatter += 0.5 * sum * sum / weight;
+        }
+        const auto count = static_cast<double>(sums);
+        const double dispersion = scatter / (count - 1.0);
+        if (dispersion > 1.0 + decisions.certain_sigma * std::sqrt(2.0 / count)) {
+            largest = std::max(largest, dispersion);
+        }
+    }
+    return largest;
 }
 
 double tails_beside(const WhitenedBlocks& blocks, const Observation& observation, std::size_t axis,

@@ -23,8 +23,9 @@ double course_gain_nats(const WhitenedBlocks& blocks, std::span<const double> le
 // The standard deviation of the whole that a course with these levels has at level 1.
 double unit_level(const WhitenedBlocks& blocks, std::span<const double> level);
 
-// How many times more the blocks scatter about the course than chance would have it, where that is certain;
-// else 1. A gain is worth so many times less.
+// How many times more the blocks, or sums of neighbouring ones, scatter about the course than chance would
+// have it, where that is certain; else 1. A gain is worth so many times less. A level that wanders slowly, as
+// that of a line whose frequency wanders, follows any slow course by chance.
 double overdispersion(const WhitenedBlocks& blocks, std::span<const double> level);
 
 // The degrees of freedom of Student's t that the samples have when each is divided by the level of the blocks

@@ -1,11 +1,13 @@
 #include "analysis/diagnose/estimators/variance_with_temperature.hpp"
 
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/estimators/tails.hpp"
 #include "analysis/diagnose/estimators/variance_change_point.hpp"
+#include "analysis/diagnose/likelihood/variance_fit.hpp"
 #include "tests/analysis/diagnose/estimators/white_noise_case.hpp"
 
 namespace gyrolog {
@@ -77,6 +79,39 @@ TEST(VarianceWithTemperature, IsGoneOnceTheModelHasIt) {
     EXPECT_LT(seen.evidence_nats("temp_noise", make_variance_with_temperature_estimator), 3.0);
     const auto without = seen_with(known_sensor(), seen.recording);
     EXPECT_GT(without.evidence_nats("temp_noise", make_variance_with_temperature_estimator), 20.0);
+}
+
+// Blocks of 200 normal samples; their level swings by `swing`, `swings` times.
+WhitenedBlocks blocks_with_swing(std::uint64_t seed, double swing, double swings) {
+    constexpr std::size_t count = 1024;
+    constexpr double samples = 200.0;
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    WhitenedBlocks blocks;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double turns = swings * static_cast<double>(i) / static_cast<double>(count);
+        blocks.variance.push_back((1.0 + std::sqrt(2.0 / samples) * normal(random)) *
+                                  (1.0 + swing * std::sin(2.0 * M_PI * turns)));
+        blocks.weight.push_back(samples);
+        blocks.mean.push_back(0.0);
+    }
+    return blocks;
+}
+
+// A level that swings by half of what chance has from block to block hardly shows there: it does in sums.
+TEST(Overdispersion, IsSeenInSumsOfBlocks) {
+    const std::vector<double> level(1024, 1.0);
+    int false_alarms = 0;
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+        if (overdispersion(blocks_with_swing(seed, 0.0, 1.0), level) > 1.0) { ++false_alarms; }
+    }
+    EXPECT_LE(false_alarms, 3);
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        // Of single blocks 1.1, of sums of 64 blocks 1 + 64 swing^2 / 2 over the 2 / 200 of one.
+        const double dispersion = overdispersion(blocks_with_swing(seed, 0.05, 2.0), level);
+        EXPECT_GT(dispersion, 5.0) << seed;
+        EXPECT_LT(dispersion, 13.0) << seed;
+    }
 }
 
 }  // namespace
