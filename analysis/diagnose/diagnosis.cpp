@@ -363,7 +363,8 @@ private:
         }
         std::ranges::stable_sort(answer_.causes, std::greater{},
                                  [](const Cause& cause) { return cause.share.value; });
-        answer_.verdict = verdict();
+        answer_.verdict = verdict_of(answer_.causes, answer_.p_left >= left_from_p(), answer_.shrink.value,
+                                     options_.verdict);
         if (answer_.verdict == Verdict::known) { answer_.where = answer_.causes.front().finding.where; }
         propose_recordings();
     }
@@ -378,20 +379,6 @@ private:
         answer_.excess_nats = measured_->excess_nats;
         if (!found_.causes.empty()) { answer_.shrink = measured_->shrink; }
         answer_.shrink_modelled = unnamed_.empty() ? answer_.shrink.value : measured_->shrink_modelled.value;
-    }
-
-    Verdict verdict() const {
-        const auto is_named = [&](const Cause& cause) {
-            return probability_of_tie(cause) >= options_.named_from_probability;
-        };
-        const auto explains = [&](const Cause& cause) {
-            return is_named(cause) && cause.share.value >= options_.small_share;
-        };
-        if (answer_.causes.empty()) { return Verdict::unexplained; }
-        const bool closed =
-            answer_.p_left >= left_from_p() || answer_.shrink.value > 1.0 - options_.small_share;
-        if (closed && std::ranges::all_of(answer_.causes, is_named)) { return Verdict::known; }
-        return std::ranges::any_of(answer_.causes, explains) ? Verdict::partly : Verdict::unexplained;
     }
 
     // A line at the place of one that the model has, and the recording has not, takes it off.

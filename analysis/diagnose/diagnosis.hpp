@@ -13,6 +13,7 @@
 #include "analysis/diagnose/calibration/resolutions.hpp"
 #include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/report.hpp"
+#include "analysis/diagnose/selection/verdict.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
@@ -25,11 +26,7 @@ struct DiagnosisOptions {
     double false_alarms_most = decisions.false_alarms_most;
     // Of the corrected model, to judge what it leaves.
     std::size_t simulations_after_most = resolution::simulations_after_most;
-    // Less is left of the gap's square where it is called known, and a cause closes more where it is called
-    // known in part (diagnosis.md's tenth).
-    double small_share = 0.1;
-    // A cause that is less likely right, with its ties, is named as a guess only.
-    double named_from_probability = decisions.majority;
+    VerdictOptions verdict{};
     // 0: all processors, fewer where their simulations would take more than `simulations_bytes_most` at a
     // time. The result is the same for any number.
     unsigned threads = 0;
