@@ -10,6 +10,7 @@
 
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/noise_refit.hpp"
+#include "analysis/diagnose/selection/finding_axes.hpp"
 #include "analysis/diagnose/selection/joint_refit.hpp"
 #include "analysis/simulate/chain.hpp"
 
@@ -25,6 +26,8 @@ constexpr int main_causes_most = 3;
 constexpr double worth_refitting_nats = 100.0;
 // Of responses, to fit them better than one by one.
 constexpr double worth_settling_nats = 1000.0;
+// A rival that explains less than this share of what a cause does is not tried in its place.
+constexpr double exchanged_share_least = 0.9;
 
 }  // namespace gyrolog::resolution
 
@@ -64,7 +67,8 @@ public:
             // What is next is not known before the noise is.
             const bool freed = free_noise_of_model(*latest->observation);
             if (!told() || (freed && !refit_all())) { return std::nullopt; }
-            const std::optional<bool> grown = freed ? true : take_further(*latest);
+            std::optional<bool> grown = freed ? true : take_further(*latest);
+            if (grown && !*grown) { grown = exchange(); }
             if (!grown) { return std::nullopt; }
             if (!*grown) { break; }
             forget_null_bias();
@@ -442,6 +446,85 @@ private:
         return false;
     }
 
+    // A cause was chosen before what was found after it, and that was fitted to what it left. Once each gives
+    // its axes to the rival that explains as much on them, or nearly; all are fitted again, with what they
+    // then call for. Where all measures together are far better explained, it stays so. Whether it does for
+    // any; no value when ended early.
+    std::optional<bool> exchange() {
+        bool any = false;
+        for (std::size_t i = 0; !was_exchanged_ && i < causes_.size(); ++i) {
+            const std::vector<FoundCause> before = causes_;
+            if (!give_to_rival(i)) { continue; }
+            const double before_nats = worth_nats_of(before);
+            // What was fitted beside the cause is fitted beside the rival before that is judged.
+            if (!refit(Rivals::stay_out) || !refit(Rivals::stay_out)) { return std::nullopt; }
+            const double least_nats = before_nats + decisions.strong_nats;
+            const bool were_weighed = std::exchange(are_weighed_, true);
+            if (!add_next_if_worth(least_nats)) { return std::nullopt; }
+            const bool is_better = is_comparable(before) && worth_nats(observed()) > least_nats;
+            if (!is_better) { causes_ = before, are_weighed_ = were_weighed; }
+            any = any || is_better;
+        }
+        was_exchanged_ = true;
+        return any;
+    }
+
+    // Whether what is worth more now is better than `before`: nothing that is not normal has gone, and what
+    // has come is, by its spectrum alone, worth no more than it is.
+    bool is_comparable(const std::vector<FoundCause>& before) const {
+        const std::set<std::string> then = not_normal_among(before);
+        const std::set<std::string> now = not_normal_among(causes_);
+        return std::ranges::includes(now, then) && std::ranges::all_of(now, [&](const std::string& effect) {
+                   return then.contains(effect) || !traits_of(effect).is_beside_spectra;
+               });
+    }
+
+    // With what is called for next, where that may lift the worth above this. False when ended early.
+    bool add_next_if_worth(double least_nats) {
+        Hypotheses latest = with_causes();
+        const Finding* next = further(latest.findings);
+        if (next == nullptr || causes_.size() == resolution::causes_most) { return true; }
+        if (worth_nats(*latest.observation) + next->evidence_nats <= least_nats) { return true; }
+        const Finding chosen = *next;
+        return add(given_up(std::move(latest)), chosen);
+    }
+
+    double worth_nats_of(const std::vector<FoundCause>& causes) {
+        const std::vector<FoundCause> now = std::exchange(causes_, causes);
+        const double nats = worth_nats(observed());
+        causes_ = now;
+        return nats;
+    }
+
+    // Whether there is a rival for any of the axes of the cause at this place.
+    bool give_to_rival(std::size_t place) {
+        const Finding cause = causes_[place].finding;
+        if (is_of_codes(cause) || traits_of(cause.effect).recurs) { return false; }
+        for (const Finding& rival : causes_[place].rivals) {
+            const EstimatorTraits& traits = traits_of(rival.effect);
+            if (rival.effect == cause.effect || !is_new(rival) || traits.is_beside_spectra || traits.recurs) {
+                continue;
+            }
+            const std::vector<std::size_t> given =
+                axes_explained_by(rival, cause, resolution::exchanged_share_least);
+            if (given.empty()) { continue; }
+            std::vector<std::size_t> kept;
+            std::ranges::set_difference(cause.where.axes, given, std::back_inserter(kept));
+            if (kept.empty() && traits_of(cause.effect).is_not_normal) { continue; }
+            if (kept.empty()) {
+                causes_[place].finding = rival;
+                return true;
+            }
+            const std::optional<Finding> rest = on_axes(cause, kept);
+            const std::optional<Finding> other = on_axes(rival, given);
+            if (!rest || !other) { continue; }
+            causes_[place].finding = *rest;
+            causes_.push_back({*other, {}});
+            return true;
+        }
+        return false;
+    }
+
     // Of a long recording an observation is large: the fits that follow make their own.
     static Beside given_up(Hypotheses hypotheses) {
         return {log_likelihood_nats(*hypotheses.observation), std::move(hypotheses.findings)};
@@ -608,6 +691,7 @@ private:
     NullBias null_bias_;
     int main_causes_ = 0;
     bool are_weighed_ = true;  // as they were when each was found, otherwise
+    bool was_exchanged_ = false;
 };
 
 }  // namespace

@@ -64,5 +64,22 @@ TEST(ForwardSelection, OfALineBeyondALowPassFindsBoth) {
     EXPECT_NEAR(entry_of(result, "tone")->params.at("amplitude_dps"), 0.0143, 5e-4);
 }
 
+// Telegraph noise on two axes comes first and takes up what flicker noise is on the third, with dwell times
+// that none of its own has there; flicker noise then has nothing left to explain.
+TEST(ForwardSelection, GivesAnAxisToTheRivalThatIsThere) {
+    SensorModel model = calibrated_sensor();
+    for (AxisModel& axis : model.axes) { axis.noise.B_rad_per_s = axis.noise.K_rad_per_s_sqrt_s = 0.0; }
+    SensorModel sensor = with_effect(
+        model, "rtn", {{"amplitude_dps", 0.022}, {"dwell_high_s", 1.8}, {"dwell_low_s", 1.7}}, {"x", "y"});
+    sensor = with_effect(sensor, "flicker_missing", {{"B_dps", 0.0038}}, {"y", "z"});
+    const CauseSelection result = searched(sensor, model, 14);
+    EXPECT_EQ(effects_of(result), (std::set<std::string>{"rtn", "flicker_missing"}));
+    for (const FoundCause& cause : result.causes) {
+        const bool is_rtn = cause.finding.effect == "rtn";
+        EXPECT_EQ(cause.finding.where.axes,
+                  is_rtn ? (std::vector<std::size_t>{0, 1}) : (std::vector<std::size_t>{1, 2}));
+    }
+}
+
 }  // namespace
 }  // namespace gyrolog

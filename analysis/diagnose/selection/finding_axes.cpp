@@ -1,0 +1,48 @@
+#include "analysis/diagnose/selection/finding_axes.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace gyrolog {
+
+std::vector<std::size_t> axes_explained_by(const Finding& rival, const Finding& cause, double share_least) {
+    std::vector<std::size_t> axes;
+    for (const std::size_t axis : cause.where.axes) {
+        const double own_nats = cause.axis_gain_nats.at(axis);
+        if (own_nats > 0.0 && rival.axis_gain_nats.at(axis) >= share_least * own_nats) {
+            axes.push_back(axis);
+        }
+    }
+    return axes;
+}
+
+std::optional<Finding> on_axes(const Finding& finding, const std::vector<std::size_t>& axes) {
+    Finding rest = finding;
+    rest.entries.clear();
+    rest.sd.clear();
+    for (std::size_t i = 0; i < finding.entries.size(); ++i) {
+        EffectModel entry = finding.entries[i];
+        if (entry.axes.empty()) { return std::nullopt; }
+        std::erase_if(entry.axes, [&](const std::string& name) {
+            return std::ranges::none_of(axes, [&](std::size_t axis) { return axis_names.at(axis) == name; });
+        });
+        if (entry.axes.empty()) { continue; }
+        rest.entries.push_back(std::move(entry));
+        if (i < finding.sd.size()) { rest.sd.push_back(finding.sd[i]); }
+    }
+    if (rest.entries.empty()) { return std::nullopt; }
+    rest.where.axes.clear();
+    for (const std::size_t axis : finding.where.axes) {
+        if (std::ranges::count(axes, axis) != 0) {
+            rest.where.axes.push_back(axis);
+            continue;
+        }
+        rest.gain_nats -= finding.axis_gain_nats.at(axis);
+        rest.evidence_nats -= finding.axis_gain_nats.at(axis);
+        rest.axis_gain_nats.at(axis) = 0.0;
+    }
+    return rest;
+}
+
+}  // namespace gyrolog
