@@ -82,19 +82,20 @@ double median_of(std::vector<double> values) {
     return *middle;
 }
 
-// The level of the blocks around each. The noise may change slowly, with the temperature, say; a window of
-// twice the longest disturbance has more of it than of a disturbance. Between the middles of two windows the
-// larger level holds, so that the blocks beside a step of the noise are none.
+// The level of the blocks around each. The noise may change slowly, with the temperature, say; of a window of
+// four times the longest disturbance one is a quarter, which a median hardly feels. Between the middles of
+// two windows the larger level holds, so that the blocks beside a step of the noise are none. At the ends of
+// the recording the window is as wide, for a recording often begins with a touch.
 std::vector<double> levels_of(const std::vector<Power>& powers, const DisturbanceOptions& options) {
     const std::size_t blocks = powers.size();
     const auto longest = static_cast<std::size_t>(options.longest_share * static_cast<double>(blocks));
-    const std::size_t half = std::max(longest, options.blocks_least / 2);
+    const std::size_t half = std::max(2 * longest, options.blocks_least / 2);
     std::vector<double> of_windows;
     for (std::size_t middle = 0; middle < blocks + half; middle += half) {
         std::vector<double> logs;
-        for (std::size_t i = middle - std::min(middle, half); i < std::min(blocks, middle + half); ++i) {
-            logs.push_back(powers[i].log);
-        }
+        const std::size_t width = std::min(2 * half, blocks);
+        const std::size_t first = std::min(middle - std::min(middle, half), blocks - width);
+        for (std::size_t i = first; i < first + width; ++i) { logs.push_back(powers[i].log); }
         of_windows.push_back(median_of(std::move(logs)));
     }
     std::vector<double> levels(blocks);

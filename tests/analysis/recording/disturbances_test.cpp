@@ -71,6 +71,20 @@ TEST(Disturbances, AreFoundWhereTheRecordingBegins) {
     EXPECT_EQ(found[0].first, 0U);
 }
 
+// A short recording that begins with a touch as long as one may be.
+TEST(Disturbances, AreFoundWhereAShortRecordingBegins) {
+    constexpr std::size_t few = 3500;
+    Signals signals = white(3, few);
+    for (std::vector<double>& signal : signals) {
+        for (std::size_t i = 0; i < 150; ++i) { signal[i] *= i < 50 ? 2.0 : 8.0; }
+    }
+    const std::vector<Disturbance> found = disturbances(grid_of(few), signals);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].first, 0U);
+    EXPECT_GE(found[0].to_s, 1.5);
+    EXPECT_LE(found[0].to_s, 2.0);
+}
+
 // Noise that swells to twice its size and back on all axes, as it does with the temperature, hides none.
 TEST(Disturbances, AreFoundInNoiseWhoseLevelChanges) {
     Signals signals = white(8);
@@ -81,7 +95,7 @@ TEST(Disturbances, AreFoundInNoiseWhoseLevelChanges) {
         }
     }
     EXPECT_TRUE(disturbances(grid_of(rows), signals).empty());
-    add_bump(signals, 300, 4.0);
+    add_bump(signals, 300, 5.0);
     const std::vector<Disturbance> found = disturbances(grid_of(rows), signals);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_NEAR(found[0].from_s, 3.0, 0.5);
