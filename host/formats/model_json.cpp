@@ -510,20 +510,20 @@ Result<ModelFile> read_model_file(const std::string& path, std::uint64_t seed) {
 }
 
 Result<std::string> read_model_text(const std::string& path, const std::string& called) {
+    const std::string reading = fmt::format("read {} '{}'", called, path);
     auto reader = TextReader::open(path);
     std::string text;
     while (reader.ok()) {
         const auto piece = reader->read();
-        if (!piece.ok()) { return in_context("read " + called + " '" + path + "'", piece.error()); }
+        if (!piece.ok()) { return in_context(reading, piece.error()); }
         if (piece->empty()) { return text; }
         text.append(*piece);
         if (text.size() > input_limits.json_bytes_most) {
-            return Error{ErrorCode::malformed,
-                         fmt::format("read {} '{}': longer than {} bytes: no {}", called, path,
-                                     input_limits.json_bytes_most, called)};
+            return Error{ErrorCode::malformed, fmt::format("{}: longer than {} bytes: no {}", reading,
+                                                           input_limits.json_bytes_most, called)};
         }
     }
-    return in_context("read " + called + " '" + path + "'", reader.error());
+    return in_context(reading, reader.error());
 }
 
 Status write_model(const SensorModel& model, const std::string& path) {
