@@ -7,14 +7,14 @@
 // Signal Processing, 3rd ed., 6.3). The signal starts in the steady state of its first value, the white noise
 // after as many draws as the slower pole needs to forget.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
+#include "analysis/simulate/effects/axis_filters.hpp"
 #include "analysis/simulate/effects/effects.hpp"
-#include "analysis/simulate/portable_math.hpp"
 
 namespace gyrolog {
 
@@ -22,6 +22,7 @@ namespace {
 
 // A filter that remembers longer starts with noise that has not settled.
 constexpr std::uint64_t settling_draws_most = 100'000;
+// Of the noise's amplitude: what is left of its start.
 constexpr double settled_rel = 1e-6;
 
 struct Coefficients {
@@ -64,53 +65,32 @@ private:
     double y_2_ = 0.0;
 };
 
-class Biquad final : public Stage {
-public:
-    explicit Biquad(const EffectUse& use) {
-        const Coefficients coefficients = Coefficients::of(use);
-        const double pole = coefficients.largest_pole();
-        const double needed = pole > 0.0 ? std::log(settled_rel) / std::log(pole) : 0.0;
-        settling_draws_ = needed < static_cast<double>(settling_draws_most)
-                              ? static_cast<std::uint64_t>(needed) + 2
-                              : settling_draws_most;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (!use.acts_on(axis)) { continue; }
-            axes_[axis].emplace(Axis{Section(coefficients), Section(coefficients), use.stream(axis)});
-        }
+struct BiquadAxis {
+    Section signal;
+    Section noise;
+    RandomStream draws;
+    std::uint64_t settling_draws = 0;
+
+    void start(double first_rad_s, double white_sd_rad_s) {
+        signal.start(first_rad_s);
+        for (std::uint64_t i = 0; i < settling_draws; ++i) { noise(white_sd_rad_s * draws.normal(i)); }
     }
-
-    void apply(SampleBlock& block) override {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (!axes_[axis]) { continue; }
-            BlockValues& rate = block.rate_rad_s[axis];
-            BlockValues& white = block.white_rad_s[axis];
-            if (block.first() == 0) { start(*axes_[axis], rate[0], block.white_sd_rad_s[axis]); }
-            for (std::size_t i = block.begin; i < block.end; ++i) {
-                rate[i] = axes_[axis]->signal(rate[i]) + axes_[axis]->noise(white[i]);
-                white[i] = 0.0;
-            }
-        }
-    }
-
-private:
-    struct Axis {
-        Section signal;
-        Section noise;
-        RandomStream draws;
-    };
-
-    void start(Axis& axis, double first_rad_s, double white_sd_rad_s) const {
-        axis.signal.start(first_rad_s);
-        for (std::uint64_t i = 0; i < settling_draws_; ++i) {
-            axis.noise(white_sd_rad_s * axis.draws.normal(i));
-        }
-    }
-
-    std::array<std::optional<Axis>, 3> axes_;
-    std::uint64_t settling_draws_ = 0;
 };
 
-std::unique_ptr<Stage> make_biquad(const EffectUse& use) { return std::make_unique<Biquad>(use); }
+std::uint64_t settling_draws_of(const Coefficients& coefficients) {
+    const double pole = coefficients.largest_pole();
+    const double needed = pole > 0.0 ? std::log(settled_rel) / std::log(pole) : 0.0;
+    return needed < static_cast<double>(settling_draws_most) ? static_cast<std::uint64_t>(needed) + 2
+                                                             : settling_draws_most;
+}
+
+std::unique_ptr<Stage> make_biquad(const EffectUse& use) {
+    const Coefficients coefficients = Coefficients::of(use);
+    const std::uint64_t settling_draws = settling_draws_of(coefficients);
+    return std::make_unique<AxisFilters<BiquadAxis>>(use, [&](std::size_t axis) {
+        return BiquadAxis{Section(coefficients), Section(coefficients), use.stream(axis), settling_draws};
+    });
+}
 
 std::optional<std::string> biquad_refusal(const EffectModel& effect) {
     const Coefficients c = Coefficients::of(EffectValues(effect));

@@ -27,6 +27,7 @@
 #include <cmath>
 #include <complex>
 
+#include "analysis/simulate/effects/axis_filters.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/portable_math.hpp"
 
@@ -194,48 +195,25 @@ private:
     double slope_ = 0.0;
 };
 
-class Lowpass final : public Stage {
-public:
-    explicit Lowpass(const EffectUse& use) {
-        const int order = use["order"] == 1.0 ? 1 : 2;
-        const double w_T = 2.0 * pi * use["fc_hz"] / use.context().rate_hz;
-        const NoiseFilter noise =
-            order == 1 ? first_order_noise(w_T) : second_order_noise(w_T / std::sqrt(2.0));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (!use.acts_on(axis)) { continue; }
-            axes_[axis] = {FilteredNoise(noise), FilteredSignal(order, w_T), use.stream(axis)};
-        }
+struct LowpassAxis {
+    FilteredNoise noise;
+    FilteredSignal signal;
+    RandomStream draws;
+
+    void start(double first_rad_s, double white_sd_rad_s) {
+        signal.start(first_rad_s);
+        noise.start({draws.normal(0), draws.normal(1), draws.normal(2)}, white_sd_rad_s);
     }
-
-    void apply(SampleBlock& block) override {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (!axes_[axis]) { continue; }
-            BlockValues& rate = block.rate_rad_s[axis];
-            BlockValues& white = block.white_rad_s[axis];
-            if (block.first() == 0) { start(*axes_[axis], rate[0], block.white_sd_rad_s[axis]); }
-            for (std::size_t i = block.begin; i < block.end; ++i) {
-                rate[i] = axes_[axis]->signal(rate[i]) + axes_[axis]->noise(white[i]);
-                white[i] = 0.0;
-            }
-        }
-    }
-
-private:
-    struct Axis {
-        FilteredNoise noise;
-        FilteredSignal signal;
-        RandomStream draws;
-    };
-
-    static void start(Axis& axis, double first_rad_s, double white_sd_rad_s) {
-        axis.signal.start(first_rad_s);
-        axis.noise.start({axis.draws.normal(0), axis.draws.normal(1), axis.draws.normal(2)}, white_sd_rad_s);
-    }
-
-    std::array<std::optional<Axis>, 3> axes_;
 };
 
-std::unique_ptr<Stage> make_lowpass(const EffectUse& use) { return std::make_unique<Lowpass>(use); }
+std::unique_ptr<Stage> make_lowpass(const EffectUse& use) {
+    const int order = use["order"] == 1.0 ? 1 : 2;
+    const double w_T = 2.0 * pi * use["fc_hz"] / use.context().rate_hz;
+    const NoiseFilter noise = order == 1 ? first_order_noise(w_T) : second_order_noise(w_T / std::sqrt(2.0));
+    return std::make_unique<AxisFilters<LowpassAxis>>(use, [&](std::size_t axis) {
+        return LowpassAxis{FilteredNoise(noise), FilteredSignal(order, w_T), use.stream(axis)};
+    });
+}
 
 constexpr EffectParam lowpass_params[] = {
     {.name = "fc_hz",
