@@ -2,23 +2,16 @@
 
 #include <cerrno>
 #include <limits>
-#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "host/capture/errno_error.hpp"
+
 namespace gyrolog {
 namespace {
-
-Error errno_error(const std::string& what) {
-    const int error_number = errno;
-    const ErrorCode code = error_number == ENOENT || error_number == ENOTDIR ? ErrorCode::not_found
-                           : error_number == EACCES                          ? ErrorCode::permission_denied
-                                                                             : ErrorCode::storage_failed;
-    return {code, what + ": " + std::generic_category().message(error_number)};
-}
 
 class PipeFile final : public AppendFile {
 public:
