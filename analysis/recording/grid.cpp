@@ -9,11 +9,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr double clock_set_back_s = 1.0;
-constexpr double dropout_periods = 1.5;
 constexpr std::size_t level_rows = 7;
-// A burst empties a buffer: the kernel's 64 kB of a serial port last 5.7 s at 115 200 baud.
-constexpr double burst_longest_s = 10.0;
 constexpr double samples_max = 1e11;  // three years at 1 kHz
 
 double median(std::vector<double> values) {
@@ -46,7 +42,7 @@ double typical_step_s(std::span<const double> t_s) {
     return count == 0 ? middle_s : sum_s / static_cast<double>(count);
 }
 
-bool steps_are_whole_periods(std::span<const double> t_s, double period_s) {
+bool steps_are_whole_periods(std::span<const double> t_s, double period_s, const GridOptions& options) {
     if (period_s <= 0.0) { return false; }
     std::size_t near = 0;
     double counted_s = 0.0;
@@ -55,10 +51,10 @@ bool steps_are_whole_periods(std::span<const double> t_s, double period_s) {
         const double step_s = t_s[i] - t_s[i - 1];
         const double periods = step_s / period_s;
         const double off = std::abs(periods - std::max(1.0, std::round(periods)));
-        const bool is_long = periods >= dropout_periods;
+        const bool is_long = periods >= options.dropout_periods;
         if (is_long ? off < 0.2 : off < 0.5) { ++near; }
         // After a stretch that no buffer holds, a long step is a hole, however long.
-        const bool is_hole = is_long && t_s[i - 1] - stretch_begin_s > burst_longest_s;
+        const bool is_hole = is_long && t_s[i - 1] - stretch_begin_s > options.burst_longest_s;
         counted_s += is_hole ? period_s : step_s;
         if (is_long) { stretch_begin_s = t_s[i]; }
     }
@@ -77,10 +73,10 @@ struct Jump {
     std::int64_t missing = 0;
 };
 
-std::vector<Jump> find_jumps(std::span<const double> t_s, double period_s) {
+std::vector<Jump> find_jumps(std::span<const double> t_s, double period_s, const GridOptions& options) {
     std::vector<std::size_t> candidates;
     for (std::size_t i = 1; i < t_s.size(); ++i) {
-        if (t_s[i] - t_s[i - 1] > dropout_periods * period_s) { candidates.push_back(i); }
+        if (t_s[i] - t_s[i - 1] > options.dropout_periods * period_s) { candidates.push_back(i); }
     }
     // Median over rows [begin, end) of how far the stamps run ahead of one period a row.
     const auto level_s = [&](std::size_t begin, std::size_t end, std::size_t origin) {
@@ -193,9 +189,9 @@ void set_line(Grid& grid, std::span<const double> t_s, std::span<const double> i
     grid.stamp_jitter_s = 1.4826 * median(std::move(residual_s));
 }
 
-void use_as_sampling(Grid& grid, std::span<const double> t_s, double period_s) {
+void use_as_sampling(Grid& grid, std::span<const double> t_s, double period_s, const GridOptions& options) {
     grid.stamps = StampKind::sampling;
-    const std::vector<Jump> jumps = find_jumps(t_s, period_s);
+    const std::vector<Jump> jumps = find_jumps(t_s, period_s, options);
     std::vector<double> index(t_s.size());
     std::int64_t missing = 0;
     std::size_t next = 0;
@@ -240,7 +236,7 @@ void require_a_rate(Grid& grid) {
 
 }  // namespace
 
-Grid grid_from_stamps(std::span<const double> t_s) {
+Grid grid_from_stamps(std::span<const double> t_s, const GridOptions& options) {
     Grid grid;
     if (t_s.size() < 2) {
         grid.failure = "fewer than two time stamps: the rate is unknown";
@@ -249,7 +245,7 @@ Grid grid_from_stamps(std::span<const double> t_s) {
     std::size_t not_after = 0;
     for (std::size_t i = 1; i < t_s.size(); ++i) {
         const double step_s = t_s[i] - t_s[i - 1];
-        if (step_s <= -clock_set_back_s) {
+        if (step_s <= -options.clock_set_back_s) {
             grid.failure = "the time stamps step back by " + text_of(-step_s) + " s at row " +
                            std::to_string(i + 1) + ": cut the recording there, or give the rate";
             return grid;
@@ -261,12 +257,12 @@ Grid grid_from_stamps(std::span<const double> t_s) {
         return grid;
     }
     const double period_s = typical_step_s(t_s);
-    if (not_after == 0 && steps_are_whole_periods(t_s, period_s)) {
+    if (not_after == 0 && steps_are_whole_periods(t_s, period_s, options)) {
         if (!((t_s.back() - t_s.front()) / period_s < samples_max)) {
             grid.failure = "the time stamps jump by years: cut the recording there, or give the rate";
             return grid;
         }
-        use_as_sampling(grid, t_s, period_s);
+        use_as_sampling(grid, t_s, period_s, options);
         require_a_rate(grid);
         return grid;
     }

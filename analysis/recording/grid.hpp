@@ -27,13 +27,25 @@ struct Grid {
     std::string failure;  // why the stamps give no grid; empty when they do
 };
 
-// Stamps are taken as sampling instants when nine in ten of their steps are near whole periods. Then a step
+struct GridOptions {
+    // s: a clock that was set back by as much was set; what is less is a stamp that came late.
+    double clock_set_back_s = 1.0;
+    // Periods: a longer step is a dropout, unless later stamps make up for it: halfway between one and two.
+    double dropout_periods = 1.5;
+    // s: a burst empties a buffer, and the kernel's 64 kB of a serial port last 5.7 s at 115 200 baud. After
+    // a longer stretch of regular steps a long one is a hole, however long.
+    double burst_longest_s = 10.0;
+};
+
+// Stamps are taken as sampling instants when nine in ten of their steps are near whole periods, and less than
+// half of the record is missing: else they may be bursts. Holes after a longer stretch than a burst's do not
+// count there. Then a step
 // of more than 1.5 periods that later stamps do not make up for is a dropout of round(step / period) - 1
 // samples. Otherwise they are arrival times: the mean rate is read from them, dropouts cannot be, and a
 // warning says so. A stamp that repeats or steps back by less than a second makes the stamps arrival times
 // too (with a warning). Fails when there are fewer than two stamps, or the clock was set back by a second or
 // more.
-Grid grid_from_stamps(std::span<const double> t_s);
+Grid grid_from_stamps(std::span<const double> t_s, const GridOptions& options = {});
 
 // The grid of `rows` samples without stamps, taken at a rate that somebody gave.
 Grid grid_from_rate(std::size_t rows, double rate_hz);
