@@ -44,7 +44,8 @@ struct AveragedPeriodogram {
 // Correlation of the power in neighbouring bins of one piece, by their distance; 0 from 3 on.
 inline constexpr double bin_correlation[] = {1.0, 4.0 / 9.0, 1.0 / 36.0};
 
-// 2^2 3^3 5^4. A power of two takes a third longer: its transform's parts fall on each other in the cache.
+// 2^2 3^3 5^4. A power of two takes longer (benchmark_spectrum): its transform's parts fall on each other in
+// the cache.
 inline constexpr std::size_t longest_piece = 67500;
 inline constexpr std::size_t shortest_piece = 16;
 

@@ -6,13 +6,13 @@
 
 #include <array>
 #include <cstddef>
-#include <ctime>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "analysis/denoise/array_denoiser.hpp"
 #include "analysis/simulate/counter_random.hpp"
+#include "tests/benchmark/cpu_time.hpp"
 
 namespace gyrolog {
 namespace {
@@ -23,12 +23,6 @@ constexpr std::size_t axes = 3;
 constexpr std::size_t samples = 16'000;  // two seconds
 constexpr double white_sd = 0.002;       // rad/s
 constexpr double walk_sd = 1e-7;
-
-double cpu_seconds() {
-    std::timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 using Sample = std::array<double, units>;
 

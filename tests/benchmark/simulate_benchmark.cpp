@@ -7,7 +7,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <random>
@@ -21,25 +20,13 @@
 #include "analysis/simulate/flicker_noise.hpp"
 #include "analysis/simulate/sensor_simulator.hpp"
 #include "analysis/simulate/stepped_sensor.hpp"
+#include "tests/benchmark/cpu_time.hpp"
 
 namespace gyrolog {
 namespace {
 
 constexpr double rate_hz = 1000.0;
 constexpr std::size_t ten_minutes = 600'000;  // samples an axis
-
-double cpu_seconds() {
-    std::timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-template <typename Work>
-double cpu_seconds_of(const Work& work) {
-    const double begin = cpu_seconds();
-    work();
-    return cpu_seconds() - begin;
-}
 
 double hours(double samples_an_axis) { return samples_an_axis / rate_hz / 3600.0; }
 

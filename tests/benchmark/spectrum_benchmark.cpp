@@ -1,15 +1,20 @@
 // The spectrum and the lines of twelve hours of counts at 1 kHz, one axis, one thread; and the memory that
 // the periodograms take beside the samples is that of their pieces, whatever the length.
 
+#include <bit>
 #include <cmath>
+#include <complex>
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <unsupported/Eigen/FFT>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "analysis/spectrum/power_spectrum.hpp"
 #include "analysis/spectrum/spectral_lines.hpp"
+#include "tests/benchmark/cpu_time.hpp"
 
 namespace gyrolog {
 namespace {
@@ -47,6 +52,26 @@ void lines_in_the_spectrum(benchmark::State& state) {
     for (auto _ : state) { benchmark::DoNotOptimize(find_lines(periodograms, column, whole, rate_hz)); }
 }
 
+// CPU time of a transform as the pieces have it, by its length: the periodograms' longest, and the power of
+// two below it. They take turns; `of_power_of_two` is the ratio of their times a sample.
+void transform_of_a_piece(benchmark::State& state) {
+    Eigen::FFT<double> transform;
+    transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+    std::vector<std::complex<double>> spectrum;
+    const auto seconds_per_sample = [&](std::size_t length) {
+        const std::vector<double> piece(length, 1.0);
+        return cpu_seconds_of([&] { transform.fwd(spectrum, piece); }) / static_cast<double>(length);
+    };
+    double ours_s = 0.0;
+    double power_of_two_s = 0.0;
+    for (auto _ : state) {
+        ours_s += seconds_per_sample(longest_piece);
+        power_of_two_s += seconds_per_sample(std::bit_floor(longest_piece));
+    }
+    state.counters["of_power_of_two"] = ours_s / power_of_two_s;
+}
+
+BENCHMARK(transform_of_a_piece)->Iterations(100);
 BENCHMARK(spectrum)->Unit(benchmark::kMillisecond)->Iterations(3);
 BENCHMARK(lines_in_the_spectrum)->Unit(benchmark::kMillisecond)->Iterations(3);
 
