@@ -64,21 +64,25 @@ def output_of(command):
         return ""
 
 
+def keep_to(program, directory, about):
+    """What is there already is taken up only if it is of the same, by this very program."""
+    with open(program, "rb") as file:
+        same = json.dumps({**about, "program": hashlib.sha256(file.read()).hexdigest()}, sort_keys=True)
+    os.makedirs(directory, exist_ok=True)
+    mark = os.path.join(directory, "of.txt")
+    if os.path.exists(mark):
+        with open(mark) as file:
+            if file.read() != same:
+                sys.exit(f"{directory} holds what is of another panel or of another program: remove it first")
+    with open(mark, "w") as file:
+        file.write(same)
+
+
 def run(program, directory, cases, jobs, keep, about, simulations=None):
     """cases: ID to specification, or to None for one that is there."""
     about = {**about, "simulations": simulations}
     answers = os.path.join(directory, "answers")
-    os.makedirs(answers, exist_ok=True)
-    # What was answered is taken up only if it answers the same: this panel, by this very program.
-    with open(program, "rb") as file:
-        same = json.dumps({**about, "program": hashlib.sha256(file.read()).hexdigest()}, sort_keys=True)
-    mark = os.path.join(answers, "of.txt")
-    if os.path.exists(mark):
-        with open(mark) as file:
-            if file.read() != same:
-                sys.exit(f"{answers} holds answers to another panel or of another program: remove it first")
-    with open(mark, "w") as file:
-        file.write(same)
+    keep_to(program, answers, about)
     options = ["--simulations", str(simulations)] if simulations else []
     options += ["--threads", "1"] if "--threads" in output_of([program, "diagnose", "--help"]) else []
     work = [(program, options, directory, case_id, case_spec, keep) for case_id, case_spec in cases.items()]

@@ -20,7 +20,6 @@ Usage: units.py PROGRAM DIR [--count 10] [--seed N] [--minutes 15 30] [--simulat
 """
 
 import argparse
-import hashlib
 import json
 import multiprocessing
 import os
@@ -31,6 +30,7 @@ import numpy as np
 
 import halves
 import many
+import run
 import score
 import textfile
 from effects import Narrowband, Tone
@@ -273,20 +273,6 @@ def scored(directory, cases):
     return rows
 
 
-def keep_to(program, directory, about):
-    """Results are taken up only if they are of these very units and this very program."""
-    with open(program, "rb") as file:
-        same = json.dumps({**about, "program": hashlib.sha256(file.read()).hexdigest()}, sort_keys=True)
-    os.makedirs(directory, exist_ok=True)
-    mark = os.path.join(directory, "of.txt")
-    if os.path.exists(mark):
-        with open(mark) as file:
-            if file.read() != same:
-                sys.exit(f"{directory} holds results of other units or of another program: remove it first")
-    with open(mark, "w") as file:
-        file.write(same)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program")
@@ -302,7 +288,7 @@ def main():
     arguments = parser.parse_args()
     program = os.path.abspath(arguments.program)
     about = {k: getattr(arguments, k) for k in ("count", "seed", "minutes", "simulations", "measured")}
-    keep_to(program, arguments.directory, about)
+    run.keep_to(program, arguments.directory, about)
     cases = panel(arguments.count, arguments.seed, arguments.minutes)
     work = [(program, arguments.directory, unit_id, unit, arguments.simulations, arguments.measured, arguments.keep)
             for unit_id, unit in cases.items() if not arguments.only or unit_id in arguments.only]
