@@ -26,8 +26,6 @@ constexpr int main_causes_most = 3;
 constexpr double worth_refitting_nats = 100.0;
 // Of responses, to fit them better than one by one.
 constexpr double worth_settling_nats = 1000.0;
-// A rival that explains less than this share of what a cause does is not tried in its place.
-constexpr double exchanged_share_least = 0.9;
 
 }  // namespace gyrolog::resolution
 
@@ -446,10 +444,10 @@ private:
         return false;
     }
 
-    // A cause was chosen before what was found after it, and that was fitted to what it left. Once each gives
-    // its axes to the rival that explains as much on them, or nearly; all are fitted again, with what they
-    // then call for. Where all measures together are far better explained, it stays so. Whether it does for
-    // any; no value when ended early.
+    // Each cause was chosen before those that were found after it, and these were fitted to what it left. So
+    // each cause once gives its axes to the rival that explains them nearly as well. All causes are refitted,
+    // and the best further cause is added. The exchange stays if it raises the worth of all measures. The
+    // function returns whether any exchange stays; no value when it was ended early.
     std::optional<bool> exchange() {
         bool any = false;
         for (std::size_t i = 0; !was_exchanged_ && i < causes_.size(); ++i) {
@@ -469,8 +467,8 @@ private:
         return any;
     }
 
-    // Whether what is worth more now is better than `before`: nothing that is not normal has gone, and what
-    // has come is, by its spectrum alone, worth no more than it is.
+    // The worth now compares with that of `before` only if no cause that is not Gaussian has gone, and if
+    // those that have come are counted by their spectrum alone, which is less than they are worth.
     bool is_comparable(const std::vector<FoundCause>& before) const {
         const std::set<std::string> then = not_normal_among(before);
         const std::set<std::string> now = not_normal_among(causes_);
@@ -505,8 +503,7 @@ private:
             if (rival.effect == cause.effect || !is_new(rival) || traits.is_beside_spectra || traits.recurs) {
                 continue;
             }
-            const std::vector<std::size_t> given =
-                axes_explained_by(rival, cause, resolution::exchanged_share_least);
+            const std::vector<std::size_t> given = axes_explained_by(rival, cause, decisions.nearly_all);
             if (given.empty()) { continue; }
             std::vector<std::size_t> kept;
             std::ranges::set_difference(cause.where.axes, given, std::back_inserter(kept));
