@@ -1,12 +1,19 @@
 // The constants that decide what the diagnosis calls, names or admits, of all that lies below the judgement.
 // Those of the judgement itself stand with it: DiagnosisOptions, NullJudgementOptions, RemainderOptions,
-// SelectionOptions, ShapeOptions, ProbabilityOptions.
+// SelectionOptions, ShapeOptions.
 //
 // How finely or how far something is searched or computed is no decision: that is a `resolution`, which is
 // meant to change no answer when made finer, and stands in a namespace of that name where it is used.
 #pragma once
 
 namespace gyrolog {
+
+namespace definition {
+
+// A share: what has more of something is that, rather than not.
+inline constexpr double majority = 0.5;
+
+}  // namespace definition
 
 // Each: unit, meaning; source.
 struct DecisionOptions {
@@ -27,17 +34,11 @@ struct DecisionOptions {
     // Nats: what is certain by the log-likelihood, and wins by far.
     constexpr double certain_nats() const { return 0.5 * certain_sigma * certain_sigma; }
     // Nats: a Bayes factor below 20 is no strong evidence (Kass, Raftery 1995), whatever simulations have,
-    // and no reason to prefer what was not first.
+    // and no reason to prefer what was not first: a rival that is behind by less is a tie.
     double strong_nats = 3.0;
     // A relative standard deviation with which a positive number is just seen.
     constexpr double seen_sd_rel() const { return 1.0 / seen_sigma; }
 
-    // Surprisal in nats of a curve that is named as a place of the gap: one chance in 1000, of some ten kinds
-    // of curve one in a hundred.
-    double stands_out_nats = 7.0;
-
-    // A share: what has more of something is that, rather than not.
-    double majority = 0.5;
     // A share: all, but for what spikes or a thermometer's coarse steps spoil.
     double nearly_all = 0.9;
     // Times: a telegraph shows at least so many dwell times, and what is called periodic so many periods: the
@@ -49,12 +50,10 @@ struct DecisionOptions {
     // Relative: a stated uncertainty of N, B or K as large as the coefficient, or larger, says no more than
     // this, and it is what one that was stated as nothing has; 1 would allow a coefficient of the other sign.
     double unknown_sd_rel = 0.9;
-    // Relative: of a coefficient whose stated uncertainty is this or more, hardly more than its size is
-    // known.
-    double hardly_known_sd_rel = 0.5;
-    // Factor: such a coefficient grows to so many times its size; N, however well known, falls to that part
-    // of it, for without white noise Gauss-Markov noise would be a low-pass.
-    double noise_factor_most = 4.0;
+    // Factor: a coefficient that is not seen by its stated uncertainty grows to so many times its size; N,
+    // however well known, falls to that part of it, for without white noise Gauss-Markov noise would be a
+    // low-pass. White noise is plausible up to twice the model's (effect arw_scale).
+    constexpr double noise_factor_most() const { return 2.0 * beyond_plausible; }
 
     // Hz: a slower swing is drift.
     double slowest_line_hz = 0.05;
@@ -62,20 +61,15 @@ struct DecisionOptions {
     double band_quality_least = 2.0;
     // Ratio of the axes' gains to a noise that they share; below, it is one axis' own.
     double gain_ratio_least = 0.3;
-    // Of a step of the converter: printed decimals lie this near to its grid.
-    double on_grid_tolerance = 0.05;
-    // Relative: two steps that differ by less are one.
-    double same_step_rel = 0.02;
+    // Of a step of the converter: printed decimals lie this near to its grid, and two steps that differ by
+    // less are one.
+    double step_tolerance = 0.05;
     // Relative: a smooth distribution of the samples' changes departs by this from its parabola.
     double smoothness_rel = 0.03;
 
     // Priors of what a model does not state. A gap in the stamps is worth 20 nats in an hour where none is
-    // expected; the chance of a burst that is longer than the longest stated; the jitter of stamps, relative
-    // where stated (the model's default), in s where not; a clock's error in the course of a recording,
-    // relative.
+    // expected; the jitter of stamps, in s; a clock's error in the course of a recording, relative.
     double unexpected_gaps_per_h = 1e-9;
-    double too_long_probability = 1e-3;
-    double jitter_sd_rel = 0.05;
     double unstated_jitter_s = 1e-5;
     double clock_strays_rel = 2e-4;
     // Relative: beyond, a sensor was set to another rate, and its clock has no fault.

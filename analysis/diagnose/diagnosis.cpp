@@ -353,7 +353,7 @@ private:
                                             {.seed = options_.seed, .threads = options_.threads});
         for (std::size_t i = 0; i < found_.causes.size(); ++i) {
             Cause cause =
-                with_probability(found_.causes[i], measured_->returning_nats[i], answer_.better_shape, {});
+                with_probability(found_.causes[i], measured_->returning_nats[i], answer_.better_shape);
             cause.share = measured_->shares[i];
             cause.sense = sense_of(cause.finding);
             answer_.causes.push_back(std::move(cause));
@@ -363,8 +363,7 @@ private:
         }
         std::ranges::stable_sort(answer_.causes, std::greater{},
                                  [](const Cause& cause) { return cause.share.value; });
-        answer_.verdict = verdict_of(answer_.causes, answer_.p_left >= left_from_p(), answer_.shrink.value,
-                                     options_.verdict);
+        answer_.verdict = verdict_of(answer_.causes, answer_.p_left >= left_from_p(), answer_.shrink.value);
         if (answer_.verdict == Verdict::known) { answer_.where = answer_.causes.front().finding.where; }
         propose_recordings();
     }

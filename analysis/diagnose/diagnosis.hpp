@@ -26,7 +26,6 @@ struct DiagnosisOptions {
     double false_alarms_most = decisions.false_alarms_most;
     // Of the corrected model, to judge what it leaves.
     std::size_t simulations_after_most = resolution::simulations_after_most;
-    VerdictOptions verdict{};
     // 0: all processors, fewer where their simulations would take more than `simulations_bytes_most` at a
     // time. The result is the same for any number.
     unsigned threads = 0;

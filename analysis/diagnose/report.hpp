@@ -186,6 +186,7 @@ struct GapDomain {
     // some 7 by chance.
     double surprise_before_nats = 0.0;
     double surprise_after_nats = 0.0;
+    bool stands_out = false;  // before or after: rarer than chance has it in any domain
 
     std::string axis_text() const { return of_all_axes ? "all" : axis_names.at(axis); }
 };

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "host/formats/effect_words.hpp"
@@ -100,8 +99,7 @@ std::string outside_text(const std::vector<bool>& outside, std::size_t points) {
 constexpr std::size_t listed_whole_most = 6;
 
 bool is_listed(const Diagnosis& diagnosis, const GapDomain& domain) {
-    return diagnosis.domains.size() <= listed_whole_most ||
-           std::max(domain.surprise_before_nats, domain.surprise_after_nats) >= decisions.stands_out_nats;
+    return diagnosis.domains.size() <= listed_whole_most || domain.stands_out;
 }
 
 std::string domains_text(const Diagnosis& diagnosis) {

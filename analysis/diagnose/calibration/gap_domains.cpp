@@ -1,5 +1,6 @@
 #include "analysis/diagnose/calibration/gap_domains.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -44,6 +45,7 @@ std::vector<GapDomain> gap_domains(const JudgedCurves& before, const JudgedCurve
     const std::vector<double> surprises_before = surprises_nats(before.curves, before.reference);
     const std::vector<double> surprises_after =
         after != nullptr ? surprises_nats(after->curves, after->reference) : std::vector<double>();
+    const double standing_out_nats = stands_out_nats(before.curves);
     std::vector<GapDomain> domains;
     for (std::size_t c = 0; c < before.curves.size(); ++c) {
         const GapCurve& curve = before.curves[c];
@@ -81,6 +83,8 @@ std::vector<GapDomain> gap_domains(const JudgedCurves& before, const JudgedCurve
             domain.gap_after = gap_of(after->curves[c], after->reference, c).distance;
             domain.surprise_after_nats = surprises_after[c];
         }
+        domain.stands_out =
+            std::max(domain.surprise_before_nats, domain.surprise_after_nats) >= standing_out_nats;
         domains.push_back(std::move(domain));
     }
     return domains;

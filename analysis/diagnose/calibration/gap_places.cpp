@@ -5,8 +5,6 @@
 #include <functional>
 #include <utility>
 
-#include "analysis/diagnose/decision_options.hpp"
-
 namespace gyrolog {
 
 namespace {
@@ -15,13 +13,16 @@ struct JudgedCurve {
     const GapCurve* curve = nullptr;
     CurveDistance distance;
     double surprise_nats = 0.0;  // its own or that of all axes together
+    bool stands_out = false;
 };
 
 std::vector<JudgedCurve> judged(const std::vector<GapCurve>& curves, const GapReference& reference) {
     const std::vector<double> surprises = surprises_nats(curves, reference);
+    const double standing_out_nats = stands_out_nats(curves);
     std::vector<JudgedCurve> all;
     for (std::size_t c = 0; c < curves.size(); ++c) {
-        all.push_back({&curves[c], gap_of(curves[c], reference, c), surprises[c]});
+        all.push_back(
+            {&curves[c], gap_of(curves[c], reference, c), surprises[c], surprises[c] >= standing_out_nats});
     }
     return all;
 }
@@ -33,7 +34,7 @@ Place place_of(const JudgedCurve& worst, const std::vector<JudgedCurve>& all) {
     for (const JudgedCurve& one : all) {
         if (worst.curve->of_all_axes) { where.axes.push_back(one.curve->axis); }
         if (one.curve->measure != worst.curve->measure || one.curve->of_all_axes) { continue; }
-        if (one.surprise_nats >= decisions.stands_out_nats) { where.axes.push_back(one.curve->axis); }
+        if (one.stands_out) { where.axes.push_back(one.curve->axis); }
     }
     if (where.axes.empty()) { where.axes.push_back(worst.curve->axis); }
     std::ranges::sort(where.axes);
@@ -53,7 +54,7 @@ std::vector<Left> places_that_stand_out(const std::vector<GapCurve>& curves, con
     const std::vector<JudgedCurve> all = judged(curves, reference);
     std::vector<const JudgedCurve*> worst_of_measure;
     for (const JudgedCurve& one : all) {
-        if (one.surprise_nats < decisions.stands_out_nats) { continue; }
+        if (!one.stands_out) { continue; }
         const auto same = std::ranges::find(worst_of_measure, one.curve->measure,
                                             [](const JudgedCurve* other) { return other->curve->measure; });
         if (same == worst_of_measure.end()) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "analysis/diagnose/decision_options.hpp"
@@ -207,15 +208,22 @@ Surprises surprises_of(const std::vector<GapCurve>& curves, const GapReference& 
 
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {
     const Surprises all = surprises_of(curves, reference);
+    const double standing_out_nats = stands_out_nats(curves);
     std::vector<double> surprises = all.own_nats;
     for (const auto& [measure, together_nats] : all.together_nats) {
         const std::vector<std::size_t>& same = all.of_axes.at(measure);
-        const bool one_stands_out = std::ranges::any_of(
-            same, [&](std::size_t c) { return all.own_nats[c] >= decisions.stands_out_nats; });
+        const bool one_stands_out =
+            std::ranges::any_of(same, [&](std::size_t c) { return all.own_nats[c] >= standing_out_nats; });
         if (one_stands_out) { continue; }
         for (const std::size_t c : same) { surprises[c] = std::max(surprises[c], together_nats); }
     }
     return surprises;
+}
+
+double stands_out_nats(const std::vector<GapCurve>& curves) {
+    std::set<const Measure*> kinds;
+    for (const GapCurve& curve : curves) { kinds.insert(curve.measure); }
+    return std::log(static_cast<double>(kinds.size()) / decisions.false_alarms_most);
 }
 
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference) {

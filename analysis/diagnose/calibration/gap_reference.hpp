@@ -45,6 +45,9 @@ CurveDistance gap_of(const GapCurve& curve, const GapReference& reference, std::
 // By curve of one observation: its own surprise or, where no axis stands out by itself, that of all axes'
 // curves of the measure together if that is larger.
 std::vector<double> surprises_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
+// A curve with so much stands out: of all kinds of curve together one has it by chance no more often than
+// `decisions.false_alarms_most` (Bonferroni).
+double stands_out_nats(const std::vector<GapCurve>& curves);
 // The largest of all surprises, of single curves and of axes together.
 double worst_surprise_nats(const std::vector<GapCurve>& curves, const GapReference& reference);
 // By measure that one observation has: the largest surprise of its curves, less ln of their number for the

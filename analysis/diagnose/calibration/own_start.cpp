@@ -33,7 +33,7 @@ OwnStart with_own_start(const std::shared_ptr<const Prediction>& prediction,
         if (!traits_of(entry.effect).is_line) { continue; }
         const ObservedLine seen = observe_line(*prediction, recording, entry, seed);
         entry.params["phase_rad"] = seen.phase_rad;
-        if (seen.share < decisions.majority) {
+        if (seen.share < definition::majority) {
             start.faint_lines_hz.push_back(EffectValues(entry)["f_hz"]);
             start.warnings.push_back(faint_line_sentence(entry, seen.share));
         }

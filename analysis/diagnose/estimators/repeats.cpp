@@ -111,7 +111,7 @@ std::optional<Runs> random_runs(const std::vector<double>& distances, const Exce
     }
     const double by_chance =
         std::exp(-std::max(0.0, period - near) * excess.eps) - std::exp(-(period + near) * excess.eps);
-    if (in_beat > decisions.majority * (1.0 + by_chance)) { return std::nullopt; }
+    if (in_beat > definition::majority * (1.0 + by_chance)) { return std::nullopt; }
     const double length = (count + 1.0) / runs;
     return Runs{length, std::sqrt(std::max(length * (length - 1.0), 1.0 / runs) / runs)};
 }

@@ -98,7 +98,7 @@ private:
 
     bool is_white(const Observation& observation, std::size_t bin) const {
         return std::ranges::all_of(prediction_->axes(), [&](std::size_t axis) {
-            return white_at(observation, axis, bin) > decisions.majority;
+            return white_at(observation, axis, bin) > definition::majority;
         });
     }
 

@@ -53,11 +53,12 @@ Expected expected_of(const SensorModel& model, const EffectDefinition& effect) {
 
 double length_gain_nats(const Gaps& gaps, double expected_longest) {
     if (expected_longest == 0.0) { return 0.0; }
+    // A gap longer than any stated is unlikely, not impossible.
+    const double too_long_probability = decisions.false_alarms_most;
     double gain_nats = 0.0;
     for (const double length : gaps.lengths) {
-        const double expected = length <= expected_longest
-                                    ? (1.0 - decisions.too_long_probability) / expected_longest
-                                    : decisions.too_long_probability / gaps.longest;
+        const double expected = length <= expected_longest ? (1.0 - too_long_probability) / expected_longest
+                                                           : too_long_probability / gaps.longest;
         gain_nats += std::log(1.0 / (gaps.longest * expected));
     }
     return std::max(0.0, gain_nats);

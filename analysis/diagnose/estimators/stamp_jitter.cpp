@@ -34,6 +34,9 @@ double best_without_nats(const StampScatter& seen, const Expected& expected) {
     return nats(place_of_top(nats, 0.0, std::max(0.0, reach / expected.sd_s)));
 }
 
+// Where the model states a jitter without its uncertainty: a usual MPU-9250's.
+double default_jitter_sd_rel() { return typical_mpu9250().sd_rel.at("timestamp_jitter"); }
+
 std::optional<Finding> find_spread(const EffectDefinition& effect, const Prediction& prediction,
                                    const StampScatter& seen) {
     const SensorModel& model = prediction.model();
@@ -42,7 +45,7 @@ std::optional<Finding> find_spread(const EffectDefinition& effect, const Predict
     expected.sd_s =
         model.timestamp_jitter_s > 0.0
             ? model.timestamp_jitter_s * std::max(1e-6, stated_uncertainty(model.sd_rel, "timestamp_jitter",
-                                                                           decisions.jitter_sd_rel))
+                                                                           default_jitter_sd_rel()))
             : decisions.unstated_jitter_s;
     // Errors of rounding may alternate from stamp to stamp: their second differences then have up to 16/6 of
     // the variance of independent ones.

@@ -81,10 +81,10 @@ NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralPar
         for (std::size_t j = 0; j < 3; ++j) {
             if (!(sd_rel[j] > 0.0)) { continue; }
             double& each = at[static_cast<Eigen::Index>(j)];
-            const double least = j == 0 ? 1.0 / decisions.noise_factor_most : resolution::least_factor;
+            const double least = j == 0 ? 1.0 / decisions.noise_factor_most() : resolution::least_factor;
             each = std::max(each, (least - 1.0) / sd_rel[j]);
-            if (sd_rel[j] >= decisions.hardly_known_sd_rel) {
-                each = std::min(each, (decisions.noise_factor_most - 1.0) / sd_rel[j]);
+            if (sd_rel[j] >= decisions.seen_sd_rel()) {
+                each = std::min(each, (decisions.noise_factor_most() - 1.0) / sd_rel[j]);
             }
         }
         return at;

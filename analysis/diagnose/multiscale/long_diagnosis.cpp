@@ -170,12 +170,12 @@ private:
         if (!shows_in_means(*find_effect(effect)->signature) || is_far_off(effect)) { return true; }
         if (is_line(effect)) {
             const double f_hz = cause.finding.entries.front().params.at("f_hz");
-            return std::norm(line_in_means(f_hz, rate_hz_, samples_)) < decisions.majority;
+            return std::norm(line_in_means(f_hz, rate_hz_, samples_)) < definition::majority;
         }
         const double in_samples = spectral_gain_nats(recording_.beginning, cause, 1);
         if (in_samples < decisions.seen_nats()) { return false; }
         const auto means = std::make_shared<const Recording>(means_of(*recording_.beginning, samples_));
-        return spectral_gain_nats(means, cause, samples_) < decisions.majority * in_samples;
+        return spectral_gain_nats(means, cause, samples_) < definition::majority * in_samples;
     }
 
     // Of one of the beginning's causes beside the others.

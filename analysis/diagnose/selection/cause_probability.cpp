@@ -17,7 +17,7 @@ constexpr std::size_t ties_most = 4;
 namespace gyrolog {
 
 Cause with_probability(const FoundCause& found, double returning_nats,
-                       const std::optional<BetterShape>& better_shape, const ProbabilityOptions& options) {
+                       const std::optional<BetterShape>& better_shape) {
     const std::string& effect = found.finding.effect;
     Cause cause;
     cause.finding = found.finding;
@@ -27,7 +27,7 @@ Cause with_probability(const FoundCause& found, double returning_nats,
         if (rival.effect == effect) { continue; }
         const double behind = found.finding.evidence_nats - rival.evidence_nats;
         sum += std::exp(-behind);
-        if (behind < options.tie_nats && cause.tie_group.size() < resolution::ties_most) {
+        if (behind < decisions.strong_nats && cause.tie_group.size() < resolution::ties_most) {
             cause.tie_group.push_back({rival.effect, behind});
         }
     }

@@ -10,15 +10,10 @@
 
 namespace gyrolog {
 
-struct ProbabilityOptions {
-    // Behind the best by less, a rival is a tie. (At 4 nats one is 55 times as likely as the other.)
-    double tie_nats = 4.0;
-};
-
 // `returning_nats`: the surprisal that returns without the cause, on data that the fit did not use: its
 // evidence against nothing.
 Cause with_probability(const FoundCause& found, double returning_nats,
-                       const std::optional<BetterShape>& better_shape, const ProbabilityOptions& options);
+                       const std::optional<BetterShape>& better_shape);
 
 // The probability that the cause or one of its ties is right.
 double probability_of_tie(const Cause& cause);

@@ -4,22 +4,31 @@
 
 #include "analysis/diagnose/selection/cause_probability.hpp"
 
+namespace gyrolog::definition {
+
+// The contract of the answer, gyrolog-diagnosis/2. Less is left of the gap's square where it is called known,
+// and a cause closes more where it is called known in part.
+constexpr double small_share = 0.1;
+// The same contract: a cause that is less likely right, with its ties, is a guess only.
+constexpr double named_from_probability = 0.5;
+
+}  // namespace gyrolog::definition
+
 namespace gyrolog {
 
-Verdict verdict_of(std::span<const Cause> causes, bool leaves_nothing, double shrink,
-                   const VerdictOptions& options) {
+Verdict verdict_of(std::span<const Cause> causes, bool leaves_nothing, double shrink) {
     const auto is_named = [&](const Cause& cause) {
-        return probability_of_tie(cause) >= options.named_from_probability;
+        return probability_of_tie(cause) >= definition::named_from_probability;
     };
     const auto explains = [&](const Cause& cause) {
-        return is_named(cause) && cause.share.value >= options.small_share;
+        return is_named(cause) && cause.share.value >= definition::small_share;
     };
     double doubted_share = 0.0;
     for (const Cause& cause : causes) {
         if (!is_named(cause)) { doubted_share += std::max(cause.share.value, 0.0); }
     }
-    const bool is_closed = leaves_nothing || shrink > 1.0 - options.small_share;
-    if (is_closed && std::ranges::any_of(causes, is_named) && doubted_share < options.small_share) {
+    const bool is_closed = leaves_nothing || shrink > 1.0 - definition::small_share;
+    if (is_closed && std::ranges::any_of(causes, is_named) && doubted_share < definition::small_share) {
         return Verdict::known;
     }
     return std::ranges::any_of(causes, explains) ? Verdict::partly : Verdict::unexplained;
