@@ -76,6 +76,9 @@ struct Finding {
     double evidence_nats = 0.0;
     int parameters = 0;  // that were fitted
     std::array<double, 3> axis_gain_nats{};
+    // The part of it that the spectra's likelihood does not have, with the entries in the model: where an
+    // effect's likelihood is the spectra's times another.
+    std::array<double, 3> axis_beside_nats{};
     Place where;
 };
 

@@ -30,6 +30,9 @@ struct EstimatorTraits {
     // steps that such noise does not have; the power of heavy tails and of spikes varies by more than its
     // does.
     bool is_not_normal = false;
+    // With the effect in the model the spectra's likelihood is another one, which does not compare with that
+    // of a model without it.
+    bool changes_likelihood = false;
     // What tells the effect is beside the spectra: in the samples' distribution, their codes, their stamps,
     // the course of their variance, what axes share.
     bool is_beside_spectra = false;

@@ -307,6 +307,7 @@ private:
         const Telegraph telegraph = telegraph_at(maximum.at);
         for (std::size_t i = 0; i < axes.size(); ++i) {
             fit.gain_nats.push_back(gain(observation, axes[i], averages[i], telegraph));
+            fit.beside_nats.push_back(fit.gain_nats.back() - spectral_gain(observation, axes[i], telegraph));
         }
         fit.params = params_of(telegraph);
         add_uncertainty(objective, maximum, fit);

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -149,11 +150,11 @@ private:
         return found;
     }
 
-    // Beside others of those the spectra's likelihood is another.
-    static std::set<std::string> not_normal_among(const std::vector<FoundCause>& causes) {
+    // Those of the causes beside which the spectra's likelihood is another.
+    static std::set<std::string> change_likelihood_among(const std::vector<FoundCause>& causes) {
         std::set<std::string> effects;
         for (const FoundCause& cause : causes) {
-            if (traits_of(cause.finding.effect).is_not_normal) { effects.insert(cause.finding.effect); }
+            if (traits_of(cause.finding.effect).changes_likelihood) { effects.insert(cause.finding.effect); }
         }
         return effects;
     }
@@ -354,17 +355,18 @@ private:
     }
 
     static double worth_beside_spectra_nats(const Finding& finding) {
-        const bool is_beside = traits_of(finding.effect).is_beside_spectra;
-        return finding.evidence_nats - (is_beside ? 0.0 : finding.gain_nats);
+        if (traits_of(finding.effect).is_beside_spectra) { return finding.evidence_nats; }
+        const double cost_nats = finding.gain_nats - finding.evidence_nats;
+        return std::accumulate(finding.axis_beside_nats.begin(), finding.axis_beside_nats.end(), -cost_nats);
     }
 
     // What `first`, which is all of the causes, and `next` explain; no bound where the spectra's likelihood
     // is another.
     double realised_nats(const Finding& first, const Hypotheses& with_first, const Finding* next) const {
-        const auto is_not_normal = [](const Finding& finding) {
-            return traits_of(finding.effect).is_not_normal;
+        const auto changes_likelihood = [](const Finding& finding) {
+            return traits_of(finding.effect).changes_likelihood;
         };
-        if (is_not_normal(first) || (next != nullptr && is_not_normal(*next))) {
+        if (changes_likelihood(first) || (next != nullptr && changes_likelihood(*next))) {
             return std::numeric_limits<double>::infinity();
         }
         return worth_nats(with_first, next) - log_likelihood_nats(*first_.observation);
@@ -432,7 +434,9 @@ private:
         for (const Finding& next : candidates) {
             causes_ = before;
             if (!add(beside, next)) { return std::nullopt; }
-            if (is_of_codes(next) || not_normal_among(causes_) != not_normal_among(before)) { return true; }
+            if (is_of_codes(next) || change_likelihood_among(causes_) != change_likelihood_among(before)) {
+                return true;
+            }
             if (worth_nats(observed()) > before_nats) { return true; }
             if (causes_.size() == resolution::causes_most) { continue; }
             const std::optional<bool> mended = add_next();
@@ -459,22 +463,13 @@ private:
             const double least_nats = before_nats + decisions.strong_nats;
             const bool were_weighed = std::exchange(are_weighed_, true);
             if (!add_next_if_worth(least_nats)) { return std::nullopt; }
-            const bool is_better = is_comparable(before) && worth_nats(observed()) > least_nats;
+            const bool is_better = change_likelihood_among(causes_) == change_likelihood_among(before) &&
+                                   worth_nats(observed()) > least_nats;
             if (!is_better) { causes_ = before, are_weighed_ = were_weighed; }
             any = any || is_better;
         }
         was_exchanged_ = true;
         return any;
-    }
-
-    // The worth now compares with that of `before` only if no cause that is not Gaussian has gone, and if
-    // those that have come are counted by their spectrum alone, which is less than they are worth.
-    bool is_comparable(const std::vector<FoundCause>& before) const {
-        const std::set<std::string> then = not_normal_among(before);
-        const std::set<std::string> now = not_normal_among(causes_);
-        return std::ranges::includes(now, then) && std::ranges::all_of(now, [&](const std::string& effect) {
-                   return then.contains(effect) || !traits_of(effect).is_beside_spectra;
-               });
     }
 
     // With what is called for next, where that may lift the worth above this. False when ended early.
@@ -507,7 +502,7 @@ private:
             if (given.empty()) { continue; }
             std::vector<std::size_t> kept;
             std::ranges::set_difference(cause.where.axes, given, std::back_inserter(kept));
-            if (kept.empty() && traits_of(cause.effect).is_not_normal) { continue; }
+            if (kept.empty() && traits_of(cause.effect).changes_likelihood) { continue; }
             if (kept.empty()) {
                 causes_[place].finding = rival;
                 return true;
@@ -670,7 +665,7 @@ private:
                                    std::max(worth_beside_spectra_nats() - beside_before_nats, 0.0);
         const double dropped = static_cast<double>(before.size() - std::min(before.size(), causes_.size()));
         are_weighed_ = gained_nats >= -dropped * evidence_least_nats() - decisions.strong_nats ||
-                       not_normal_among(before) != not_normal_among(causes_);
+                       change_likelihood_among(before) != change_likelihood_among(causes_);
         if (!are_weighed_) { causes_ = before; }
         return true;
     }
