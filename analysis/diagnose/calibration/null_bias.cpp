@@ -36,13 +36,15 @@ std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hy
         double mean = 0.0;
         double square = 0.0;
         for (const std::vector<double>& of_effects : null->evidence_nats) {
-            mean += of_effects[entry] / static_cast<double>(resolution::null_bias_simulations);
-            square += of_effects[entry] * of_effects[entry] /
-                      static_cast<double>(resolution::null_bias_simulations);
+            // How far below zero an effect lies that is not called for, or of which there is no trace, tells
+            // nothing of how high chance takes it.
+            const double nats = std::max(of_effects[entry], 0.0);
+            mean += nats / static_cast<double>(resolution::null_bias_simulations);
+            square += nats * nats / static_cast<double>(resolution::null_bias_simulations);
         }
         const double sd = std::sqrt(std::max(square - mean * mean, 0.0));
         bias_nats[std::string(hypotheses.catalogue[entry].effect->name)] =
-            std::max(0.0, mean + decisions.certain_sigma * sd);
+            mean + decisions.certain_sigma * sd;
     }
     return bias_nats;
 }

@@ -25,7 +25,7 @@ struct NullBias {
 };
 
 // The function returns, in nats and by effect, the mean of 16 simulations of the hypotheses' model and four
-// standard deviations more; 0 where that is below 0. `told` is called along the way; no value where it
+// standard deviations more, of the evidence above zero. `told` is called along the way; no value where it
 // returned false.
 std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hypotheses, std::uint64_t seed,
                                                             unsigned threads,
