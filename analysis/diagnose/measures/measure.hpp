@@ -32,7 +32,8 @@ struct Measure {
     const char* shared_name =
         "";  // what precedes the name of a curve of all axes, where each axis has one, too
     // The simulations' standard deviation at a point counts as no less. Where no simulation differs from
-    // another, rounding is no scale.
+    // another, rounding is no scale. Of numbers in their own standard deviation, which are 0 where there is
+    // nothing to tell, it is 1.
     double least_sd = 1e-6;
     bool in_halves = true;  // false: of the whole recording only
     // False: a count that takes samples for independent. Far out it says less than a normal deviate: in a sum

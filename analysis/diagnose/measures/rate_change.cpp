@@ -25,7 +25,8 @@ const Measure measures::delay_course{.name = "delay over time",
                                      .y_name = "excess (its sd)",
                                      .shown_x = as_it_is,
                                      .shown_y = as_it_is,
-                                     .locate = locate_times};
+                                     .locate = locate_times,
+                                     .least_sd = 1.0};
 
 void add_rate_change_curves(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     if (!observation.prediction().moves()) { return; }

@@ -24,7 +24,8 @@ const Measure measures::gain_course{.name = "gain over time",
                                     .y_name = "excess (its sd)",
                                     .shown_x = as_it_is,
                                     .shown_y = as_it_is,
-                                    .locate = locate_times};
+                                    .locate = locate_times,
+                                    .least_sd = 1.0};
 
 void add_reference_rate_curves(const Observation& observation, std::size_t axis,
                                std::vector<GapCurve>& curves) {
