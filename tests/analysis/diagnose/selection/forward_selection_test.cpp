@@ -46,7 +46,7 @@ TEST(ForwardSelection, OfClearTelegraphNoiseFindsNoStepsBeside) {
 // Their power varies by more than normal noise's does, and a few lie farther out than the rest.
 TEST(ForwardSelection, OfHeavyTailsFindsNothingBeside) {
     const SensorModel model = calibrated_sensor();
-    for (const double nu : {3.5, 4.0, 5.0, 6.0}) {
+    for (const double nu : {3.5, 6.0}) {
         const CauseSelection result = searched(with_effect(model, "heavy_tail", {{"nu", nu}}, {}), model, 13);
         EXPECT_EQ(effects_of(result), (std::set<std::string>{"heavy_tail"})) << nu;
     }
