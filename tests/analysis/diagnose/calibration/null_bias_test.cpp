@@ -12,8 +12,8 @@ TEST(NullBias, IsNextToNothingWhereTheLikelihoodsAreRight) {
     SensorModel model = calibrated_sensor();
     model = with_effect(model, "gauss_markov", {{"sigma_dps", 0.05}, {"tau_s", 0.5}}, {});
     const auto recording = recorded(model, 60'000, 21);
-    const auto bias_nats = null_bias_nats(examine(prediction_of(recording, model), recording, 1, 2), 1, 2,
-                                          [] { return true; });
+    const auto bias_nats =
+        null_bias_nats(examine(prediction_of(recording, model), recording, 1, 2), 1, 2, [] { return true; });
     ASSERT_TRUE(bias_nats);
     for (const char* effect : {"flicker_missing", "rrw_missing", "bias_step", "heavy_tail", "tone", "rtn"}) {
         ASSERT_TRUE(bias_nats->contains(effect)) << effect;
