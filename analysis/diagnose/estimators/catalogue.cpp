@@ -49,6 +49,7 @@ constexpr EstimatorTraits rows[] = {
      .make = make_random_telegraph_estimator,
      .is_noise = true,
      .is_not_normal = true,
+     .twin = "gauss_markov",
      .can_be_halved = false},
     {.method = EvidenceMethod::tails,
      .make = make_tail_estimator,

@@ -33,6 +33,9 @@ struct EstimatorTraits {
     // With the effect in the model the spectra's likelihood is another one, which does not compare with that
     // of a model without it.
     bool changes_likelihood = false;
+    // Normal noise of the same spectrum. Where that is a cause already, the effect is another one only by
+    // what its likelihood has beside the spectra.
+    std::string_view twin = {};
     // What tells the effect is beside the spectra: in the samples' distribution, their codes, their stamps,
     // the course of their variance, what axes share.
     bool is_beside_spectra = false;

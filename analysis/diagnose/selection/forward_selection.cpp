@@ -1,12 +1,14 @@
 #include "analysis/diagnose/selection/forward_selection.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
@@ -539,10 +541,19 @@ private:
     }
 
     bool is_new(const Finding& finding) const {
-        return std::ranges::none_of(causes_, [&](const FoundCause& cause) {
+        return !is_told_by_twin(finding) && std::ranges::none_of(causes_, [&](const FoundCause& cause) {
             if (cause.finding.effect != finding.effect) { return false; }
             return !traits_of(finding.effect).recurs || is_same_line(cause.finding, finding);
         });
+    }
+
+    // A second part of the same spectrum is not yet what its name says.
+    bool is_told_by_twin(const Finding& finding) const {
+        const std::string_view twin = traits_of(finding.effect).twin;
+        const std::array<double, 3>& nats = finding.axis_beside_nats;
+        return !twin.empty() && std::accumulate(nats.begin(), nats.end(), 0.0) < decisions.strong_nats &&
+               std::ranges::any_of(causes_,
+                                   [&](const FoundCause& cause) { return cause.finding.effect == twin; });
     }
 
     // What a steady line leaves beside itself is no other line: it wanders, or swells.
@@ -598,7 +609,8 @@ private:
             const auto same = std::ranges::find(findings, causes_[i].finding.effect, &Finding::effect);
             const double least_nats =
                 &causes_[i].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
-            const double own_nats = same == findings.end() ? 0.0 : same->evidence_nats;
+            const double own_nats =
+                same == findings.end() || is_told_by_twin(*same) ? 0.0 : same->evidence_nats;
             const auto rival = std::ranges::find_if(findings, [&](const Finding& f) { return is_new(f); });
             const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
             if (same != findings.end() && is_of_another(*same, i)) {

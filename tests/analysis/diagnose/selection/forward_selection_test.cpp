@@ -79,5 +79,15 @@ TEST(ForwardSelection, GivesThePlaceOfWhatCameFirstToRivalsThatAreThere) {
     EXPECT_TRUE(effects.contains("flicker_missing"));
 }
 
+// Beside Gauss-Markov noise the rest has the spectrum of telegraph noise as well; it does not jump.
+TEST(ForwardSelection, TakesASecondGaussMarkovNoiseForNoTelegraph) {
+    const SensorModel model = calibrated_sensor(0.003);
+    SensorModel sensor = with_effect(model, "gauss_markov", {{"sigma_dps", 0.03}, {"tau_s", 0.3}}, {});
+    sensor = with_effect(sensor, "gauss_markov", {{"sigma_dps", 0.006}, {"tau_s", 6.0}}, {});
+    const std::set<std::string> effects = effects_of(searched(sensor, model, 15));
+    EXPECT_TRUE(effects.contains("gauss_markov"));
+    EXPECT_FALSE(effects.contains("rtn"));
+}
+
 }  // namespace
 }  // namespace gyrolog
