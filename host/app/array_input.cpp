@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/denoise/array_columns.hpp"
+#include "host/app/device_choice.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/sensor_choice.hpp"
 #include "host/decode/stream_decoder.hpp"
@@ -100,6 +101,14 @@ Status check_clocks(const std::vector<TimedRecording>& recordings) {
 }
 
 }  // namespace
+
+std::vector<std::string> files_of_array(const ArrayInput& input) {
+    std::vector<std::string> files;
+    for (const std::string& path : input.paths) {
+        files.push_back(is_simulated(path) ? file_of_device(path) : path);
+    }
+    return files;
+}
 
 Result<Recording> read_array(const ArrayInput& input) {
     ArrayInput aligned = input;

@@ -25,6 +25,9 @@ struct ArrayInput {
     bool align_starts = false;
 };
 
+// Those it is read from; of simulated boards their model, empty where they have none.
+std::vector<std::string> files_of_array(const ArrayInput& input);
+
 Result<Recording> read_array(const ArrayInput& input);
 
 }  // namespace gyrolog

@@ -356,8 +356,10 @@ ExitCode denoise_command(Console& console, const Request& request) {
     const auto fail = [&](const Error& error) { return report_error(console, "denoise", error); };
     const Status named = check_ending({"--output", request.output}, "a denoised recording", text_endings);
     if (!named.ok()) { return fail(named.error()); }
+    const std::vector<std::string> files = files_of_array(request.input);
     std::vector<NamedPath> read;
-    for (const std::string& path : request.input.paths) { read.push_back({"RECORDING", path}); }
+    for (const std::string& path : files) { read.push_back({"RECORDING", path}); }
+    for (const std::string& path : request.models) { read.push_back({"--model", path}); }
     read.push_back({"--calibration", request.calibration});
     const NamedPath outputs[] = {
         {"--output", request.output}, {"--json", request.json_path}, {"--plot", request.plot_path}};

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <set>
 
 #include <fcntl.h>
@@ -50,6 +51,8 @@ protected:
         return found;
     }
 
+    std::vector<std::vector<std::string>> over_what_is_read() const;
+
     TemporaryFolder folder_;
     std::string capture_ = folder_.path("c.pcapng");
     std::string text_ = folder_.path("c.csv");
@@ -57,52 +60,78 @@ protected:
     std::string curve_ = folder_.path("curve.csv");
 };
 
-TEST_F(Outputs, AreNeverWrittenOverWhatIsRead) {
-    make_inputs();
+// Command lines that would write over what they read, or two results into one file.
+std::vector<std::vector<std::string>> Outputs::over_what_is_read() const {
     const std::string link = folder_.path("link.csv");
-    const std::string second_name = folder_.path("second.csv");
-    fs::create_symlink(text_, link);
-    fs::create_hard_link(text_, second_name);
     const std::string other = folder_.path("other.json");
-    const std::vector<std::vector<std::string>> commands{
+    const std::string figure = folder_.path("other.png");
+    const std::string in_parent = folder_.path("../") + fs::path(text_).parent_path().filename().string();
+    return {
         {"analyze", capture_, "--json", capture_},
         {"analyze", text_, "--model", text_},
         {"analyze", text_, "--json", link},
         {"analyze", link, "--json", text_},
-        {"analyze", text_, "--json", second_name},
-        {"analyze", text_, "--json",
-         folder_.path("../") + fs::path(text_).parent_path().filename().string() + "/c.csv"},
+        {"analyze", text_, "--json", folder_.path("second.csv")},
+        {"analyze", text_, "--json", in_parent + "/c.csv"},
         {"analyze", text_, "--json", other, "--model", other},
+        {"analyze", text_, "--plot", figure, "--histogram", figure},
         {"analyze", "--curve", curve_, "--json", curve_},
         {"check", capture_, "--json", capture_},
         {"check", capture_, "--jsonl", capture_},
         {"analyze", capture_, text_, "--jsonl", text_},
         {"compare", capture_, model_, "--jsonl", model_},
+        {"compare", text_, model_, "--json", figure, "--plot", figure},
         {"table", text_, "-o", text_},
         {"table", text_, "-o", folder_.path("t.csv"), "--population", text_},
+        {"table", curve_, "--expected", text_, "-o", text_},
         {"info", capture_, "--json", capture_},
         {"recover", capture_, "-o", capture_},
         {"recover", capture_, "-o", folder_.path("r.pcapng"), "--json", capture_},
         {"export", text_, "-o", text_},
         {"export", link, "-o", text_},
         {"export", model_, "-o", model_},
+        {"export", model_ + "#imu", "-o", model_},
         {"calibrate", text_, "--model-out", text_},
+        {"calibrate", text_, "--json", text_},
+        {"calibrate", text_, "--header", text_},
         {"calibrate", text_, "--px4", other, "--ardupilot", other},
         {"compare", text_, model_, "--json", text_},
+        {"conform", "--device", "replay:" + capture_, "--transcript", capture_},
+        {"conform", "--device", "sim:model=" + model_, "--json", model_},
         {"diagnose", text_, "--model", model_, "--model-out", model_},
+        {"diagnose", text_, "--model", model_, "--json", figure, "--plot", figure},
+        {"diagnose", text_, text_, "--model", model_, "--jsonl", model_},
+        {"diagnose", text_, "--model", model_, "--holdout", curve_, "--json", curve_},
+        {"diagnose", text_, "--model", model_, "--ask", curve_, "--json", curve_},
+        {"diagnose", "--curve", curve_, "--json", curve_},
         {"report", text_, "-o", text_},
         {"report", text_, "--model", model_, "-o", model_},
         {"denoise", text_, "-o", text_},
+        {"denoise", text_, "--model", model_, "--json", model_},
+        {"denoise", text_, "--model", curve_, model_, "--json", model_},
+        {"denoise", "sim:boards=2,model=" + model_, "--json", model_},
+        {"denoise", text_, "--calibration", curve_, "--json", curve_},
+        {"denoise", text_, "--plot", figure, "--json", figure},
         {"simulate", model_, "-o", text_, "--model-out", model_},
+        {"simulate", model_, "--like", text_, "-o", text_},
+        {"simulate", model_, "--like", text_, "-o", folder_.path("s.csv"), "--json", text_},
         {"capture", "--device", "replay:" + capture_, "-o", capture_, "--force"},
         {"capture", "--device", "sim:model=" + model_, "-o", model_, "--force"},
         {"capture", "--device", "sim:", "--samples", "10", "-o", other, "--json", other},
+        {"capture", "--device", "sim:", "--samples", "10", "-o", folder_.path("n.pcapng"), "--denoise",
+         "kalman", "--denoise-model", model_, "--denoise-out", model_},
         {"--device", "sim:model=" + model_, "-o", model_, "--force"},
         {"--device", "sim:model=" + folder_.path("b.model.json"), "-o", folder_.path("b.pcapng")},
     };
+}
+
+TEST_F(Outputs, AreNeverWrittenOverWhatIsRead) {
+    make_inputs();
+    fs::create_symlink(text_, folder_.path("link.csv"));
+    fs::create_hard_link(text_, folder_.path("second.csv"));
     fs::copy_file(model_, folder_.path("b.model.json"));
     const auto before = names();
-    for (const std::vector<std::string>& command : commands) {
+    for (const std::vector<std::string>& command : over_what_is_read()) {
         std::string line;
         for (const std::string& word : command) { line += word + " "; }
         std::array<std::string, 4> contents;
@@ -117,6 +146,42 @@ TEST_F(Outputs, AreNeverWrittenOverWhatIsRead) {
         }
     }
     EXPECT_EQ(names(), before);
+}
+
+// A new option for a file needs a row above.
+TEST_F(Outputs, NoOptionForAFileIsForgotten) {
+    std::set<std::string> tried;
+    for (const std::vector<std::string>& command : over_what_is_read()) {
+        const bool bare = command[0].starts_with('-');
+        for (const std::string& word : command) {
+            if (word.starts_with('-')) { tried.insert((bare ? "" : command[0] + " ") + word); }
+        }
+    }
+    // These read no file that a result could cost; a pipe keeps nothing.
+    const std::set<std::string> alone{"list --json", "doctor --json", "extcap --fifo"};
+    const auto look_at = [&](const std::string& command) {
+        const std::string help = run_gyrolog(command.empty() ? std::vector<std::string>{"--help"}
+                                                             : std::vector<std::string>{command, "--help"})
+                                     .out;
+        const std::regex option("\n  (?:-(\\w),)?(--[\\w-]+) (?:FILE|RECORDING)\\b");
+        std::size_t found = 0;
+        for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at, ++found) {
+            const std::string prefix = command.empty() ? "" : command + " ";
+            const bool known = tried.contains(prefix + (*at)[2].str()) ||
+                               alone.contains(prefix + (*at)[2].str()) ||
+                               tried.contains(prefix + "-" + (*at)[1].str());
+            EXPECT_TRUE(known) << prefix << (*at)[2] << " has no row";
+        }
+        return found;
+    };
+    std::size_t options = look_at("");
+    const std::string help = run_gyrolog({"--help"}).out;
+    const std::string commands = help.substr(help.find("Subcommands:"));
+    const std::regex name("\n  (\\w+) ");
+    for (std::sregex_iterator at(commands.begin(), commands.end(), name), end; at != end; ++at) {
+        options += look_at((*at)[1]);
+    }
+    EXPECT_GT(options, 45U) << "the help is not read";
 }
 
 // `| head -0`: the reader is gone before the first byte.
