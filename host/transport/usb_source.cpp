@@ -107,7 +107,10 @@ Status UsbSource::start(TransferSink& sink) {
     }
     silence_.await([this](std::int64_t time_ns) {
         constexpr std::int64_t ns_per_ms = 1'000'000;
-        return stream_->wait_for_end((time_ns + ns_per_ms - 1) / ns_per_ms);
+        if (stream_->wait_for_end((time_ns + ns_per_ms - 1) / ns_per_ms)) { return true; }
+        // On a busy machine the event thread may have yet to tell what has come.
+        usb_->call([] {});
+        return false;
     });
     return {};
 }

@@ -13,6 +13,7 @@
 #include <gyrolog_protocol/usb_identity.h>
 #include <unistd.h>
 
+#include "host/base/clock.hpp"
 #include "tests/support/collecting_sink.hpp"
 #include "tests/support/needs.hpp"
 #include "tests/support/umockdev_board.hpp"
@@ -67,6 +68,15 @@ private:
 
 void expect_running_count(const Bytes& stream) {
     for (std::size_t i = 0; i < stream.size(); ++i) { ASSERT_EQ(stream[i], i % 256) << "at byte " << i; }
+}
+
+std::int64_t last_data_before(std::int64_t end_ns, const CollectingSink& sink) {
+    std::int64_t last_ns = 0;
+    for (const CollectingSink::Told& told : sink.told()) {
+        const std::int64_t time_ns = told.transfer.time.monotonic_ns;
+        if (!told.data.empty() && time_ns < end_ns) { last_ns = time_ns; }
+    }
+    return last_ns;
 }
 
 class UsbSourceTest : public ::testing::Test {
@@ -473,19 +483,20 @@ TEST_F(UsbSourceTest, WhatIsLetGoIsTheDriversAgain) {
     EXPECT_FALSE(board.kernel_driver_bound());
 }
 
-// SPEC.md, 9.5.
+// SPEC.md, 9.5: 50 ms from the last stale byte. When that comes, below 200 ms, is the board's affair.
 TEST_F(UsbSourceTest, StartWaitsUntilABoardThatWasLeftStreamingIsSilent) {
-    using Clock = std::chrono::steady_clock;
-    function_.talks_on = std::chrono::milliseconds(200);
+    using std::chrono::milliseconds;
+    function_.talks_on = milliseconds(200);
     plug_in();
     open();
-    const auto before = Clock::now();
     start();
-    EXPECT_GE(Clock::now() - before, std::chrono::milliseconds(249));
-    const std::size_t stale = sink_.stream().size();
-    EXPECT_GT(stale, 0U);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    EXPECT_EQ(sink_.stream().size(), stale);
+    const std::int64_t started_ns = host_now().monotonic_ns;
+    const Bytes stale = sink_.stream();
+    ASSERT_FALSE(stale.empty());
+    EXPECT_GE(started_ns - last_data_before(started_ns, sink_), 50'000'000);
+    // Nothing of it comes later.
+    std::this_thread::sleep_for(milliseconds(220));
+    EXPECT_EQ(sink_.stream().size(), stale.size());
 }
 
 TEST_F(UsbSourceTest, StartDoesNotWaitForeverForABoardThatTalksOn) {
@@ -495,8 +506,13 @@ TEST_F(UsbSourceTest, StartDoesNotWaitForeverForABoardThatTalksOn) {
     open();
     const auto before = Clock::now();
     start();
-    EXPECT_GE(Clock::now() - before, std::chrono::milliseconds(990));
-    EXPECT_LT(Clock::now() - before, std::chrono::seconds(2));
+    const auto waited = Clock::now() - before;
+    const std::int64_t started_ns = host_now().monotonic_ns;
+    EXPECT_LT(waited, std::chrono::seconds(2));
+    // A mocked board on a busy machine may pause for 50 ms: then it was silent.
+    const bool was_silent = started_ns - last_data_before(started_ns, sink_) >= 50'000'000;
+    EXPECT_TRUE(waited >= std::chrono::milliseconds(990) || was_silent)
+        << std::chrono::duration_cast<std::chrono::milliseconds>(waited).count() << " ms";
 }
 
 TEST_F(UsbSourceTest, WhatIsFoundInsteadIsNamed) {
