@@ -1,6 +1,7 @@
 // The program without a command: find the board, capture with a live view, on Ctrl-C close the file and
-// analyse it.
+// analyse it; on another program's signal close it only.
 
+#include <csignal>
 #include <ctime>
 #include <memory>
 
@@ -70,6 +71,13 @@ ExitCode bench_session(Console& console, BenchSessionOptions options) {
     if (captured.link.samples.good == 0) {
         console.err << "there is nothing to analyse\n";
         return captured.code == ExitCode::ok ? ExitCode::failed : captured.code;
+    }
+    if (const int signal = console.stop_wanted() ? console.signal->load() : 0;
+        signal != 0 && signal != SIGINT) {
+        // Whoever sends these does not wait for an analysis.
+        console.err << "not analysed: ended by a signal (" << signal << "); run `gyrolog analyze "
+                    << options.path << "`\n";
+        return captured.code == ExitCode::ok ? ended_by_signal(signal) : captured.code;
     }
     const ExitCode analysed = analyze_to_files(console, "analyze", request);
     // The capture's own verdict comes first: a lost device stays a lost device however well its data analyse.

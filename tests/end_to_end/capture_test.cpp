@@ -12,8 +12,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/base/clock.hpp"
 #include "host/capture/block_scanner.hpp"
 #include "host/capture/input_file.hpp"
+#include "tests/support/instrumented.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -426,6 +428,22 @@ TEST_F(Capture, TheBareProgramCapturesUntilInterruptedAndThenAnalyses) {
     EXPECT_EQ(json::parse(read_whole_file(folder.path("s.json")))["schema"], "gyrolog-analysis/1");
     EXPECT_EQ(json::parse(read_whole_file(folder.path("s.model.json")))["schema"], "gyrolog-model/1");
     EXPECT_EQ(read_whole_file(folder.path("s.png")).substr(1, 3), "PNG");
+}
+
+TEST_F(Capture, TheBareProgramEndsAtATerminationWithoutAnalysis) {
+    for (const int number : {SIGTERM, SIGHUP}) {
+        const std::string name = "s" + std::to_string(number) + ".pcapng";
+        const ProgramResult result =
+            run_gyrolog_and_signal({"--device", "sim:rate=1000", "-o", folder.path(name)},
+                                   std::chrono::milliseconds(700), number, folder.path(name));
+        EXPECT_LT(static_cast<double>(host_now().monotonic_ns - result.signalled_ns) * 1e-9,
+                  GYROLOG_IS_INSTRUMENTED ? 5.0 : 1.0);
+        EXPECT_EQ(result.exit_code, 128 + number) << result.err;
+        EXPECT_NE(result.err.find("not analysed: ended by a signal"), std::string::npos) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(check(name)["end"], "clean");
+        EXPECT_FALSE(std::filesystem::exists(folder.path("s" + std::to_string(number) + ".json")));
+    }
 }
 
 TEST_F(Capture, AModelFileDrivesTheVirtualBoard) {
