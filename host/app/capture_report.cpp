@@ -121,18 +121,13 @@ std::string row(std::string_view what, std::uint64_t count, std::string_view rem
     return fmt::format("  {:<22}{:>16}{}{}\n", what, format_count(count), remark.empty() ? "" : "  ", remark);
 }
 
-// Whether the program that wrote the file also closed it; true where a foreign program cannot have said so.
-bool closed_by_writer(const LoadedCapture& capture) {
-    return !capture.metadata || (capture.last_checkpoint && capture.last_checkpoint->last);
-}
-
 std::string end_text(const std::string& path, const LoadedCapture& capture) {
     const BlockAccounts& file = capture.file.blocks;
     switch (file.end) {
         case FileEnd::clean:
-            return closed_by_writer(capture) ? "clean"
-                                             : "clean, but the writer did not close it: it was stopped "
-                                               "short, by a full disk or a kill";
+            return capture.closed_by_writer() ? "clean"
+                                              : "clean, but the writer did not close it: it was stopped "
+                                                "short, by a full disk or a kill";
         case FileEnd::torn_tail:
             return fmt::format(
                 "torn tail: the writer died there. {} bytes at the end are in no whole block; all "
@@ -160,7 +155,7 @@ std::string verdict(const LoadedCapture& capture) {
         return "nothing is missing before the torn tail; what came after it, when the writer died, is not "
                "here";
     }
-    if (!closed_by_writer(capture)) {
+    if (!capture.closed_by_writer()) {
         return "nothing is missing before the end; the writer was stopped there, and did not close the file";
     }
     return "nothing is missing";
@@ -200,7 +195,7 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
         {"rate_hz", rate_hz ? Json(*rate_hz) : Json(nullptr)},
         {"duration_s", duration_s(capture, link)},
         {"end", name_of(file.end)},
-        {"closed", closed_by_writer(capture)},
+        {"closed", capture.closed_by_writer()},
         {"files", capture.files},
         {"bytes",
          {{"total", link.bytes.total},

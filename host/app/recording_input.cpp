@@ -15,6 +15,23 @@
 namespace gyrolog {
 namespace {
 
+// Empty: nothing. Who reads a part only does not see the end.
+std::string what_is_wrong_with_the_end(const LoadedCapture& capture, const RecordingInput& input) {
+    const BlockAccounts& blocks = capture.file.blocks;
+    if (blocks.end == FileEnd::damaged) {
+        return fmt::format("the file is damaged in {}; the samples lost there count as missing",
+                           counted(blocks.damaged_ranges, "place"));
+    }
+    if (input.samples_most != RecordingInput{}.samples_most) { return {}; }
+    if (blocks.end == FileEnd::torn_tail) {
+        return "the file ends in a torn tail: its writer died there, and what came after it is not here";
+    }
+    if (!capture.closed_by_writer()) {
+        return "the writer did not close the file: it was stopped short, or is still at work";
+    }
+    return {};
+}
+
 Result<TimedRecording> read_capture(const RecordingInput& input) {
     GYROLOG_TRY(LoadedCapture capture,
                 load_capture(input.path, true, input.on_stage,
@@ -22,11 +39,8 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
     input.on_stage("place");
     auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
-    if (capture.file.blocks.end == FileEnd::damaged) {
-        recording->warnings.push_back(
-            fmt::format("the file is damaged in {}; the samples lost there count as missing",
-                        counted(capture.file.blocks.damaged_ranges, "place")));
-    }
+    const std::string hurt = what_is_wrong_with_the_end(capture, input);
+    if (!hurt.empty()) { recording->warnings.push_back(hurt); }
     const TextChoice& text = input.text;
     if (!text.columns.empty() || !text.gyro_unit.empty() || !text.accelerometer_unit.empty()) {
         recording->warnings.emplace_back(

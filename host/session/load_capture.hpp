@@ -25,6 +25,10 @@ struct LoadedCapture {
     std::uint64_t stream_bytes_gone = 0;
     HostTime first_data;  // arrival of the first stream bytes
     std::unique_ptr<StreamDecoder> decoder;
+
+    // Whether the program that wrote the last file also closed it; true where a foreign program cannot have
+    // said so. Of a capture that was read to its end.
+    bool closed_by_writer() const { return !metadata || (last_checkpoint && last_checkpoint->last); }
 };
 
 // Of samples that are kept.

@@ -8,6 +8,7 @@
 #include <random>
 #include <tuple>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -23,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::AnyOf;
+using testing::HasSubstr;
 
 class Capture : public testing::Test {
 protected:
@@ -387,8 +390,11 @@ TEST_F(Capture, BlocksTakenOutAreMissedByTheWritersSums) {
 
 TEST_F(Capture, AFileThatWasNotClosedIsNeverGoodWithoutAWord) {
     ASSERT_EQ(capture("sim:", "a.pcapng", {"--duration", "1m"}).exit_code, 0);
+    const auto analysis = [&](const char* name) { return run_gyrolog({"analyze", folder.path(name)}).out; };
+    EXPECT_THAT(analysis("a.pcapng"), Not(AnyOf(HasSubstr("torn tail"), HasSubstr("did not close"))));
     const std::string whole = read_whole_file(folder.path("a.pcapng"));
     std::ofstream(folder.path("a.pcapng"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+    EXPECT_THAT(analysis("a.pcapng"), HasSubstr("warning: the file ends in a torn tail"));
     const ProgramResult torn = run_gyrolog({"check", folder.path("a.pcapng")});
     EXPECT_EQ(torn.exit_code, 0);
     EXPECT_NE(torn.out.find("before the torn tail"), std::string::npos) << torn.out;
@@ -398,6 +404,7 @@ TEST_F(Capture, AFileThatWasNotClosedIsNeverGoodWithoutAWord) {
     const ProgramResult unclosed = run_gyrolog({"check", folder.path("recovered.pcapng")});
     EXPECT_EQ(unclosed.exit_code, 0);
     EXPECT_NE(unclosed.out.find("did not close the file"), std::string::npos) << unclosed.out;
+    EXPECT_THAT(analysis("recovered.pcapng"), HasSubstr("warning: the writer did not close the file"));
 }
 
 TEST_F(Capture, RecoveryLeavesNoFileWhereItHasNothingToWrite) {
