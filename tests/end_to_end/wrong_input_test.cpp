@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -530,6 +531,109 @@ TEST_F(WrongInput, OfExportAndConform) {
     if (!has_full_disk()) { GTEST_SKIP() << needs_full_disk; }
     fs::create_symlink("/dev/full", "full.mat");
     expect_told({{"export c.csv -o full.mat", 6, "disk full"}});
+}
+
+TEST_F(WrongInput, OfReportAndCalibrate) {
+    expect_told({
+        {"report", 2, "RECORDING is required"},
+        {"report c.csv", 2, "--output is required"},
+        {"report none.csv -o r.html", 1, "read 'none.csv': no such file"},
+        {"report dir -o r.html", 1, "read 'dir': it is a directory"},
+        {"report m.json -o r.html", 1, "read 'm.json': this is JSON, a model or a report perhaps"},
+        {"report c.csv -o r.txt", 2, "'r.txt' has none of the endings of a page: .html, .htm"},
+        {"report c.csv -o -", 2, "--output '-': only --json goes to standard output"},
+        {"report c.csv -o dir", 1, "write 'dir': it is a directory"},
+        {"report c.csv --model none.json -o r.html", 1, "read model 'none.json': no such file"},
+        {"report c.csv --model \"\" -o r.html", 2, "--model is given and empty"},
+        {"calibrate dir", 1, "read 'dir': it is a directory"},
+        {"calibrate m.json", 1, "read 'm.json': this is JSON"},
+        {"calibrate word.csv", 1, "line 3, column 'gx_dps': 'two' is no number"},
+        {"calibrate c.csv --turn x", 2, "--turn: 'x' is no number"},
+        {"calibrate c.csv --turn 0", 2, "--turn: 0 must be a finite number above 0"},
+        {"calibrate c.csv --px4 \"\"", 2, "--px4 is given and empty"},
+        {"calibrate c.csv --header -", 2, "--header '-': only --json goes to standard output"},
+    });
+}
+
+TEST_F(WrongInput, OfTable) {
+    expect_told({
+        {"table", 2, "LINES is required"},
+        {"table \"\" -o t.csv", 2, "LINES is given and empty"},
+        {"table none.jsonl -o t.csv", 1, "read 'none.jsonl': no such file"},
+        {"table dir -o t.csv", 1, "read 'dir': it is a directory"},
+        {"table c.csv -o t.csv", 1, "read 'c.csv': line 1: no JSON: column 2"},
+        {"table noise.csv -o t.csv", 1, "read 'noise.csv': line 1"},
+        {"table list.json -o t.csv", 1, "read 'list.json': line 1"},
+        {"table m.json -o t.csv", 1, "read 'm.json': line 1: no JSON"},
+        {"table m.json", 2, "--output is required"},
+        {"table m.json -o t.xls", 2, "'t.xls' has none of the endings of a table: .csv, .sqlite"},
+        {"table m.json -o -", 2, "--output '-': give a name that ends in .csv or .sqlite"},
+        {"table m.json -o t.csv --sensor nose", 2, "nose not in {gyro,accelerometer,all}"},
+        {"table m.json -o m.json", 2, "'m.json' has none of the endings of a table"},
+    });
+}
+
+TEST_F(WrongInput, OfDoctorExtcapAndCompletion) {
+    expect_told({
+        {"doctor extra", 2, "not expected: extra"},
+        {"doctor --root none", 2, "--root: Directory does not exist: none"},
+        {"doctor --root c.csv", 2, "--root: Directory is actually a file: c.csv"},
+        {"doctor --json dir", 1, "write 'dir': it is a directory"},
+        {"extcap", 2, "give --extcap-interfaces, or --extcap-interface NAME"},
+        {"extcap --extcap-interface gyrolog-sim", 2, "give --extcap-dlts, --extcap-config or --capture"},
+        {"extcap --extcap-interface gyrolog-sim --capture", 2, "--capture needs --fifo FILE"},
+        {"extcap --extcap-interface none --capture --fifo f", 1, "there is no interface 'none', only"},
+        {"extcap --extcap-interface gyrolog-sim --capture --fifo none", 1, "open pipe 'none': No such file"},
+        {"extcap --extcap-interface gyrolog-sim --capture --fifo m.json", 1,
+         "'m.json': it is no named pipe (mkfifo makes one)"},
+        {"extcap --extcap-interface gyrolog-sim --capture --fifo f --sim rat=3", 2,
+         "rat=3: there is no such option"},
+        {"completion", 2, "SHELL is required"},
+        {"completion tcsh", 2, "tcsh not in {bash,zsh,fish}"},
+        {"completion \"\"", 2, "SHELL:  not in {bash,zsh,fish}"},
+    });
+}
+
+// As the program itself lists them, so that a new command or option is tried as well.
+TEST_F(WrongInput, OfEveryCommandAndOption) {
+    const std::string help = run_gyrolog({"--help"}).out;
+    const std::regex command_line("\n  (\\w+) ");
+    const std::regex option_with_value("\n  (?:-\\w,)?(--[\\w-]+) (?!Excludes:|Needs:)[^ \n]");
+    const std::size_t listed = help.find("Subcommands:");
+    ASSERT_NE(listed, std::string::npos);
+    const auto all_of = [](const std::string& text, const std::regex& what) {
+        std::vector<std::string> found;
+        for (std::sregex_iterator at(text.begin(), text.end(), what), end; at != end; ++at) {
+            found.push_back((*at)[1]);
+        }
+        return found;
+    };
+    const std::vector<std::string> commands = all_of(help.substr(listed), command_line);
+    EXPECT_GE(commands.size(), 18U);
+    std::set<std::string> options;
+    const auto expect_usage_error = [](const std::string& command, const std::string& rest,
+                                       const std::string& named) {
+        const ProgramResult result = run_gyrolog({command, rest});
+        const std::string line = "gyrolog " + command + " " + rest;
+        EXPECT_EQ(result.exit_code, 2) << line;
+        EXPECT_EQ(result.out, "") << line;
+        EXPECT_THAT(result.err, testing::StartsWith("gyrolog " + command + ": ")) << line;
+        EXPECT_THAT(result.err, HasSubstr(named)) << line;
+        EXPECT_TRUE(result.err.ends_with("\nrun `gyrolog " + command + " --help` to see what there is\n"))
+            << line << '\n'
+            << result.err;
+    };
+    const auto before = names_here();
+    for (const std::string& command : commands) {
+        expect_usage_error(command, "--frobnicate", "");
+        for (const std::string& option : all_of(run_gyrolog({command, "--help"}).out, option_with_value)) {
+            const bool may_stand_alone = option == "--extcap-version" || option == "--extcap-capture-filter";
+            if (may_stand_alone || !options.insert(option).second) { continue; }
+            expect_usage_error(command, option, option + ": 1 required ");
+        }
+    }
+    EXPECT_GT(options.size(), 60U) << "the help is not read";
+    EXPECT_EQ(names_here(), before);
 }
 
 }  // namespace
