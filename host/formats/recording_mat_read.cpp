@@ -90,7 +90,17 @@ std::string text_of(const matvar_t& variable) {
     return {static_cast<const char*>(variable.data), variable.nbytes};
 }
 
-Status take(Variables& variables, mat_t* file, matvar_t& variable) {
+// A compressed variable may hold more numbers than its file has bytes.
+std::size_t numbers_most(const std::string& path) {
+    std::error_code failure;
+    const std::uintmax_t file_bytes = std::filesystem::file_size(path, failure);
+    if (failure || file_bytes > input_limits.numbers_most) { return input_limits.numbers_most; }
+    const std::size_t unpacked_bytes =
+        input_limits.unpacked_free_bytes + input_limits.unpacked_ratio_most * file_bytes;
+    return std::min(input_limits.numbers_most, unpacked_bytes / sizeof(double));
+}
+
+Status take(Variables& variables, mat_t* file, matvar_t& variable, std::size_t most) {
     const std::string name = variable.name == nullptr ? "" : variable.name;
     const bool is_axes = name == "gyro_axes" && variable.class_type == MAT_C_CHAR;
     if (!is_axes && !is_numeric(variable)) {
@@ -100,8 +110,8 @@ Status take(Variables& variables, mat_t* file, matvar_t& variable) {
     const std::size_t rows = variable.rank == 2 ? variable.dims[0] : 0;
     const std::size_t columns = variable.rank == 2 ? variable.dims[1] : 0;
     if (rows == 0 || columns == 0) { return {}; }
-    if (rows > input_limits.numbers_most / columns) {
-        return malformed(fmt::format("variable {} has {} x {} numbers, more than any recording",
+    if (rows > most / columns) {
+        return malformed(fmt::format("variable {} has {} x {} numbers, more than any recording of its size",
                                      in_quotes(name), rows, columns));
     }
     if (Mat_VarReadDataAll(file, &variable) != 0 || variable.data == nullptr ||
@@ -264,8 +274,9 @@ Result<Variables> read_variables(const std::string& path) {
     const std::unique_ptr<mat_t, CloseReadFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
     if (!file) { return malformed("no MAT-file that libmatio can read"); }
     Variables variables;
+    const std::size_t most = numbers_most(path);
     while (const ReadVariable variable{Mat_VarReadNextInfo(file.get())}) {
-        GYROLOG_CHECK(take(variables, file.get(), *variable));
+        GYROLOG_CHECK(take(variables, file.get(), *variable, most));
     }
     return variables;
 }

@@ -2,10 +2,14 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdint>
+#include <string>
 #include <utility>
 
 #include <archive.h>
 #include <archive_entry.h>
+
+#include "host/formats/input_limits.hpp"
 
 namespace gyrolog {
 namespace {
@@ -61,6 +65,15 @@ Status know_compressions(archive* file) {
     return {};
 }
 
+// Memory in proportion to the file, whatever was packed into it. -1 is the file, 0 what comes out.
+Status check_ratio(archive* file) {
+    const auto unpacked = static_cast<std::uint64_t>(archive_filter_bytes(file, 0));
+    const auto read = static_cast<std::uint64_t>(archive_filter_bytes(file, -1));
+    if (unpacked <= input_limits.unpacked_free_bytes + input_limits.unpacked_ratio_most * read) { return {}; }
+    return malformed("it unpacks to more than " + std::to_string(input_limits.unpacked_ratio_most) +
+                     " times its size, as no recording does: decompress it first");
+}
+
 }  // namespace
 
 void TextReader::Close::operator()(void* archive) const { archive_read_free(handle(archive)); }
@@ -88,6 +101,7 @@ Result<std::string_view> TextReader::read() {
     if (buffer_.empty()) { return std::string_view(); }
     const la_ssize_t bytes = archive_read_data(handle(archive_.get()), buffer_.data(), buffer_.size());
     if (bytes < 0) { return error_of(handle(archive_.get())); }
+    GYROLOG_CHECK(check_ratio(handle(archive_.get())));
     return std::string_view(buffer_.data(), static_cast<std::size_t>(bytes));
 }
 

@@ -71,6 +71,22 @@ TEST_F(HostileText, ALineWithoutEndIsRefused) {
                 HasSubstr("longer than 16777216 bytes"));
 }
 
+// 80 MB out of 80 kB; what it was made of would fill as many rows as bytes.
+TEST_F(HostileText, UnpacksInProportionToTheFile) {
+    const std::string path = file("rows.csv.gz", "gx_dps\n" + std::string(80U << 20U, '\n'));
+    EXPECT_LT(std::filesystem::file_size(path), 200'000U);
+    auto reader = TextReader::open(path);
+    ASSERT_TRUE(reader.ok());
+    std::size_t unpacked = 0;
+    auto piece = reader->read();
+    for (; piece.ok() && !piece->empty(); piece = reader->read()) { unpacked += piece->size(); }
+    ASSERT_FALSE(piece.ok());
+    EXPECT_THAT(piece.error().message, HasSubstr("it unpacks to more than 200 times its size"));
+    EXPECT_NEAR(static_cast<double>(unpacked),
+                static_cast<double>(input_limits.unpacked_free_bytes + 200U * (unpacked / 1000U)),
+                static_cast<double>(unpacked) / 20.0);
+}
+
 // libarchive would run lrzip, lzop or grzip from the PATH for these, and decode the last.
 TEST_F(HostileText, NoProgramRunsForAFile) {
     const std::string old_path = std::getenv("PATH");

@@ -32,7 +32,8 @@ protected:
         std::size_t columns = 1;
     };
 
-    std::string written(const std::string& name, std::vector<Variable> variables) const {
+    std::string written(const std::string& name, std::vector<Variable> variables,
+                        matio_compression compression = MAT_COMPRESSION_NONE) const {
         const std::string path = folder_.path(name);
         mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
         EXPECT_NE(file, nullptr);
@@ -40,7 +41,7 @@ protected:
             std::size_t size[] = {variable.values.size() / variable.columns, variable.columns};
             matvar_t* made =
                 Mat_VarCreate(variable.name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size, variable.values.data(), 0);
-            EXPECT_EQ(Mat_VarWrite(file, made, MAT_COMPRESSION_NONE), 0);
+            EXPECT_EQ(Mat_VarWrite(file, made, compression), 0);
             Mat_VarFree(made);
         }
         Mat_Close(file);
@@ -128,6 +129,18 @@ TEST_F(RecordingMat, SaysWhatItCannotRead) {
                 HasSubstr("'t' has 2 numbers, and 'omega_x' has 3"));
     EXPECT_THAT(refusal(written("f.mat", {{"pressure", {1, 2, 3}}})),
                 HasSubstr("no gyro column, but pressure"));
+}
+
+// 112 MB of zeros in some 110 kB.
+TEST_F(RecordingMat, UnpacksInProportionToTheFile) {
+    const std::string path = written(
+        "packed.mat", {{"Fs", {100.0}}, {"omega", std::vector<double>(14'000'000)}}, MAT_COMPRESSION_ZLIB);
+    EXPECT_LT(std::filesystem::file_size(path), 200'000U);
+    EXPECT_THAT(refusal(path),
+                HasSubstr("'omega' has 14000000 x 1 numbers, more than any recording of its size"));
+    const std::string less =
+        written("less.mat", {{"Fs", {100.0}}, {"omega", std::vector<double>(100'000)}}, MAT_COMPRESSION_ZLIB);
+    EXPECT_EQ(read(less).rows(), 100'000U);
 }
 
 TEST_F(RecordingMat, OfTextIsText) {
