@@ -494,13 +494,7 @@ Result<std::string> LiveDenoise::finish() {
     if (thread_.joinable()) { thread_.join(); }
     if (!writer_) { return std::string(); }
     Status closed = writer_->close();
-    writer_.reset();
-    if (rows_written_ == 0) {
-        std::error_code none;
-        if (std::filesystem::is_regular_file(setup_.output, none)) {
-            std::filesystem::remove(setup_.output, none);
-        }
-    }
+    writer_.reset();  // of a file without a row nothing stays, and an earlier one is as it was
     if (failed_) { return *failed_; }
     if (stopped_) { return *stopped_; }
     if (!closed.ok()) { return closed.error(); }

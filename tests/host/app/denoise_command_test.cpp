@@ -383,6 +383,17 @@ TEST_F(LiveDenoising, RefusesWhatItCannotDo) {
     EXPECT_THAT(err.str(), HasSubstr("nothing is denoised: --bandwidth 95 Hz"));
 }
 
+TEST_F(LiveDenoising, AnEarlierTextStaysWhereNothingIsDenoised) {
+    std::ofstream(live) << "last night's\n";
+    for (const char* device : {"sim:rate=200", "sim:rate=200,fault=int_lost@0"}) {
+        EXPECT_NE(capture(device, {"--duration", "4s", "--denoise", "joint"}), ExitCode::ok) << device;
+        EXPECT_EQ(read_whole_file(live), "last night's\n") << device;
+    }
+    EXPECT_EQ(capture("sim:rate=200", {"--duration", "12s", "--denoise", "joint"}), ExitCode::ok)
+        << err.str();
+    EXPECT_EQ(read(live).rows(), 2400U);
+}
+
 TEST_F(LiveDenoising, ATextThatCannotBeWrittenCostsTheCaptureNothing) {
     EXPECT_EQ(
         capture("sim:rate=200", {"--duration", "60s", "--denoise", "wavelet", "--denoise-out", "/dev/full"}),
