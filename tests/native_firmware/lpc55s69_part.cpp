@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "tests/native_firmware/ip3511.hpp"
 #include "tests/native_firmware/part.hpp"
 
 extern "C" void on_usb();
@@ -130,6 +131,7 @@ private:
 }  // namespace
 
 const std::uint64_t part_ticks_per_us = 96;
+const bool part_sees_cable = true;
 
 std::unique_ptr<Part> make_part(Processor& processor, MemoryRange memory) {
     return std::make_unique<Lpc55s69>(processor, memory);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "tests/native_firmware/ip3511.hpp"
 #include "tests/native_firmware/processor.hpp"
 #include "tests/native_firmware/usb_device.hpp"
 
@@ -12,6 +11,8 @@ namespace gyrolog {
 
 // The port's CORE_HZ.
 extern const std::uint64_t part_ticks_per_us;
+// Whether it has a pin for the cable's supply: else a cable that is out is a bus that idles.
+extern const bool part_sees_cable;
 
 class Part {
 public:
