@@ -525,10 +525,35 @@ static bool start(glp_board* self) {
     return true;
 }
 
+// No instant joins any more, but the FIFO fills on: of its records as many are taken as there are instants.
+static void take_last_records(glp_board* self) {
+    const uint32_t pending = instants_pending(self);
+    size_t bytes = 0;
+    bool overflowed = false;
+    if (!glp_mpu_fifo_level(self->hal, &bytes, &overflowed)) {
+        ++self->bus_errors;
+        return;
+    }
+    const uint32_t records = (uint32_t)bytes / self->plan.sample_bytes;
+    if (overflowed || (pending > INSTANTS_TRUSTED)) {
+        ++self->fifo_overflows;
+        lose_instants(self, pending, glp_flag_sensor_fifo_overflow);
+    } else if (pending > records + 1U) {
+        lose_instants(self, pending, glp_flag_time_discontinuity);
+    } else {
+        take_records(self, (records < pending) ? records : pending);
+    }
+}
+
 static void stop(glp_board* self) {
     if (!self->streaming) { return; }
-    if (self->plan.fifo && !self->resync && (instants_pending(self) > 0U)) { read_fifo(self); }
+    // First: what the sensor samples while its FIFO is read for the last time is not of this stream.
     self->armed = false;
+    const bool readable = self->plan.fifo && !self->resync;
+    // Once more where the interrupt ran ahead of the FIFO by a sample.
+    for (int reads = 0; readable && (reads < 2) && (instants_pending(self) > 0U); ++reads) {
+        take_last_records(self);
+    }
     send_samples(self);
     // What the FIFO could not give any more was sampled all the same.
     const uint32_t pending = instants_pending(self);

@@ -193,6 +193,27 @@ TEST_F(NativeFirmware, CountsWhatAHostThatDoesNotReadLoses) {
     EXPECT_NEAR(static_cast<double>(stream.samples + stream.jumps), 8000 * 3.5, 8000 * 0.2);
 }
 
+// The sensor samples on while its FIFO is read for the last time.
+TEST_F(NativeFirmware, StoppingLosesNoSample) {
+    start_stream(8000);
+    for (int i = 0; i < 20; ++i) {
+        rig_.run_s(0.0501 + 0.0003 * i);
+        ASSERT_TRUE(rig_.set_dtr(false));
+        rig_.run_s(0.1);
+        const std::vector<ArrivedFrame> frames = rig_.take_frames();
+        ASSERT_FALSE(frames.empty());
+        const glp_frame last = frames.back().as_frame();
+        glp_event stopped{};
+        ASSERT_EQ(glp_event_read(&last, &stopped), glp_status_ok) << "stop " << i;
+        EXPECT_EQ(stopped.code, glp_event_stopped);
+        EXPECT_EQ(stopped.value, 0) << "samples lost at stop " << i;
+        const StreamAccounts stream = accounts(frames);
+        EXPECT_EQ(stream.next_index, stopped.index) << "stop " << i;
+        EXPECT_EQ(stream.wrong_stamps, 0U) << "stop " << i;
+        ASSERT_TRUE(rig_.set_dtr(true));
+    }
+}
+
 // DTR has not fallen for the host, so that a resumed bus begins a stream of its own accord.
 TEST_F(NativeFirmware, SuspendEndsTheStreamAndResumeBeginsAnother) {
     start_stream(1000);
