@@ -12,10 +12,13 @@ import json
 import math
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from npm_package import NotThere, installed  # noqa: E402
 
 PACKAGE, VERSION = "@mujoco/mujoco", "3.14.0"
 SKIPPED = 77
@@ -25,32 +28,6 @@ STEP_S = 0.001
 RATE_HZ = 100.0
 LATENCY_S = 0.0234  # more than two periods
 DURATION_S = 0.5
-
-
-def skip(why):
-    print(f"skipped: {why}")
-    sys.exit(SKIPPED)
-
-
-def installed(folder):
-    """The package's folder: from the registry once, then as it is."""
-    package = folder / "node_modules" / PACKAGE
-    description = package / "package.json"
-    if description.exists() and json.loads(description.read_text())["version"] == VERSION:
-        return package
-    if shutil.which("npm") is None or shutil.which("node") is None:
-        skip("needs npm")
-    folder.mkdir(parents=True, exist_ok=True)
-    try:
-        done = subprocess.run(["npm", "install", "--prefix", folder, "--no-audit", "--no-fund", "--ignore-scripts",
-                               "--no-save", "--fetch-retries=1", f"{PACKAGE}@{VERSION}"], capture_output=True,
-                              text=True, timeout=120)
-    except subprocess.TimeoutExpired:
-        skip("needs npm's registry, which does not answer")
-    if done.returncode != 0:
-        print(done.stderr)
-        skip("needs npm's registry")
-    return package
 
 
 def exported(program, folder):
@@ -86,7 +63,11 @@ def for_newer_versions(text):
 
 def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    package = installed(folder)
+    try:
+        package = installed(folder, PACKAGE, VERSION)
+    except NotThere as missing:
+        print(f"skipped: {missing}")
+        sys.exit(SKIPPED)
     with tempfile.TemporaryDirectory() as name:
         work = pathlib.Path(name)
         text = exported(program, work)
