@@ -13,11 +13,11 @@ import pathlib
 import sqlite3
 import subprocess
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
 from npm_package import NotThere, installed  # noqa: E402
+from schemas import KeptFolder  # noqa: E402
 
 PACKAGE, VERSION = "@duckdb/node-api", "1.4.4-r.1"
 SKIPPED = 77
@@ -81,7 +81,7 @@ def main():
     except NotThere as missing:
         print(f"skipped: {missing}")
         sys.exit(SKIPPED)
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         made = pathlib.Path(name)
         lines = made_lines(program, made)
         answers = asked_of_duckdb(package, lines)

@@ -12,7 +12,10 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from schemas import KeptFolder  # noqa: E402
 
 MODEL = {"schema": "gyrolog-model/1", "rate_hz": 100, "axes": {axis: {"N": 0.01, "bias": 0.1} for axis in "xyz"}}
 
@@ -53,7 +56,7 @@ def main():
     if shutil.which("parallel") is None:
         print("skipped: GNU parallel is not installed")
         sys.exit(77)
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         folder = pathlib.Path(name)
         environment = {**os.environ, "GYROLOG": str(program), "HOME": name}
         model = folder / "model.json"

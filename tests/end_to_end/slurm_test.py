@@ -17,8 +17,11 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from schemas import KeptFolder  # noqa: E402
 
 RECORDINGS = 40
 SECONDS_EACH = 20
@@ -191,7 +194,7 @@ def main():
     if os.geteuid() != 0:
         print("skipped: Slurm's daemons want to be root")
         sys.exit(77)
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         folder = pathlib.Path(name)
         # Slow enough that the plug can be pulled while tasks run.
         slow = folder / "slow gyrolog"

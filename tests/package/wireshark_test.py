@@ -12,8 +12,11 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from schemas import KeptFolder  # noqa: E402
 
 SOON_S = 60  # on a busy machine
 
@@ -160,7 +163,7 @@ def main():
     if tshark is None or shutil.which("dumpcap") is None:
         print("skipped: needs tshark and dumpcap")
         sys.exit(77)
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         folder = pathlib.Path(name)
         tshark, environment = tshark_as_installed(tshark, folder, program, source)
         lists_interfaces(tshark, environment)

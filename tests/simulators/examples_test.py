@@ -12,10 +12,11 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "blind"))
 import numbers_or_skip  # noqa: E402, F401  it may start another interpreter
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from schemas import KeptFolder  # noqa: E402
 
 # What `compare` says of an axis on which nothing differs: of a model, of a recording.
 SAME = (re.compile(r"^[xyz]: the recording differs no more than simulations do among themselves$", re.M),
@@ -58,7 +59,7 @@ def noisier(path):
 
 def main():
     cmake, build, compiler = sys.argv[1:]
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         folder = pathlib.Path(name)
         prefix, work, tools = folder / "prefix", folder / "examples", folder / "tools"
         output_of([cmake, "--install", build, "--prefix", prefix])

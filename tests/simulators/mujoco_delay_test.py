@@ -14,11 +14,11 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
 from npm_package import NotThere, installed  # noqa: E402
+from schemas import KeptFolder  # noqa: E402
 
 PACKAGE, VERSION = "@mujoco/mujoco", "3.14.0"
 SKIPPED = 77
@@ -68,7 +68,7 @@ def main():
     except NotThere as missing:
         print(f"skipped: {missing}")
         sys.exit(SKIPPED)
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         work = pathlib.Path(name)
         text = exported(program, work)
         rows = shown(package, work, text)

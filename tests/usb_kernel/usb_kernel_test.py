@@ -19,8 +19,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE / "guest"))
+sys.path.insert(0, str(HERE.parent))
 
 import guest  # noqa: E402
+import schemas  # noqa: E402
 import usbmon_record  # noqa: E402
 from kernel_package import Unavailable  # noqa: E402
 
@@ -53,7 +55,7 @@ class Scenario(unittest.TestCase):
         return self.file(name).read_text(errors="replace")
 
     def json(self, name):
-        return json.loads(self.text(name))
+        return json.loads(schemas.keep(self.text(name), name))
 
     def assert_exit(self, command, expected):
         status = int(self.text(f"{command}.exit"))

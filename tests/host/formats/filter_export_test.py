@@ -15,8 +15,11 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import types
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+
+from schemas import KeptFolder  # noqa: E402
 
 RATE_HZ = 50.0
 DEG = math.pi / 180.0
@@ -230,7 +233,7 @@ def main():
         assert done.returncode == code, (arguments, done)
         return done.stderr
 
-    with tempfile.TemporaryDirectory() as folder:
+    with KeptFolder() as folder:
         model, gyro_only, coarse = (pathlib.Path(folder, name) for name in ("m.json", "gyro.json", "coarse.json"))
         out, recording = pathlib.Path(folder, "out"), pathlib.Path(folder, "night.csv")
         model.write_text(model_text(effects=[{"effect": "gauss_markov", "axes": ["y"],

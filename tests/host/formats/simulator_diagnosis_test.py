@@ -12,8 +12,11 @@ import math
 import pathlib
 import subprocess
 import sys
-import tempfile
 import xml.etree.ElementTree as ElementTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+
+from schemas import KeptFolder  # noqa: E402
 
 DEG = math.pi / 180.0
 RATE_HZ = 100.0
@@ -137,7 +140,7 @@ def check_commands(gyrolog, folder, plain, better):
 
 def main():
     gyrolog = pathlib.Path(sys.argv[1]).resolve()
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         folder = pathlib.Path(name)
         if len(sys.argv) > 2:
             check(gyrolog, folder, SLOW)

@@ -17,13 +17,14 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import xml.etree.ElementTree as ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "blind"))
 import numbers_or_skip  # noqa: E402, F401  it may start another interpreter
 
 import numpy as np  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from schemas import KeptFolder  # noqa: E402
 
 RATE_HZ = 50.0
 DT = 1.0 / RATE_HZ
@@ -318,7 +319,7 @@ def play(program):
     longest = round(RATE_HZ * PLAYED_HORIZON_S)
     m = sorted({max(1, round(longest * 2.0**(-k / 2.0))) for k in range(20)})
     random = np.random.default_rng(12)
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         folder = pathlib.Path(name)
         path, out = folder / "a.model.json", folder / "out"
         path.write_text(json.dumps(model))
@@ -367,7 +368,7 @@ def main():
     count = int(sys.argv[2]) if len(sys.argv) > 2 else 3
     horizons = [float(one) for one in sys.argv[3:]] or [100.0]
     done = 0
-    with tempfile.TemporaryDirectory() as folder:
+    with KeptFolder() as folder:
         path, out = pathlib.Path(folder, "a--model.json"), pathlib.Path(folder, "out")
         for name, model in list(models())[:count]:
             path.write_text(json.dumps(model))

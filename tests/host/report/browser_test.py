@@ -14,8 +14,11 @@ import select
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+
+from schemas import KeptFolder  # noqa: E402
 
 SOON_S = 120
 MODEL = {"schema": "gyrolog-model/1", "rate_hz": 100, "axes": {axis: {"N": 0.01, "B": 0.001} for axis in "xyz"}}
@@ -177,7 +180,7 @@ def main():
     if chromium is None:
         print("skipped: needs chromium")
         sys.exit(77)
-    with tempfile.TemporaryDirectory() as name:
+    with KeptFolder() as name:
         folder = pathlib.Path(name)
         keep = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else folder / "kept"
         keep.mkdir(exist_ok=True)

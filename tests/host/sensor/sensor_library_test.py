@@ -11,12 +11,13 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "blind"))
 import numbers_or_skip  # noqa: E402, F401  it may start another interpreter
 
 import numpy as np  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from schemas import KeptFolder  # noqa: E402
 
 RATE_HZ = 100.0
 COUNT = 2500
@@ -66,7 +67,7 @@ def main():
 
     version = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout
     assert gyrolog_sensor.version() in version, version
-    with tempfile.TemporaryDirectory() as work:
+    with KeptFolder() as work:
         path, out = pathlib.Path(work, "model.json"), pathlib.Path(work, "out.csv")
         path.write_text(json.dumps(model()))
         subprocess.run([program, "simulate", path, "-o", out, "--duration", f"{COUNT / RATE_HZ:g}s", "--seed", "7"],
