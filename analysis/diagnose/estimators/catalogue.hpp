@@ -21,6 +21,9 @@ enum class FarOff {
 struct EstimatorTraits {
     EvidenceMethod method = EvidenceMethod::response;
     EstimatorMaker make = nullptr;
+    // Normal noise of the same spectrum. Where that is a cause already, the effect is another one only by
+    // what its likelihood has beside the spectra.
+    std::string_view twin = {};
     // The effect changes the mean answer to the world.
     bool is_response = false;
     // The effect is noise, which takes up whatever is there. What tells it grows with the length of the
@@ -33,9 +36,6 @@ struct EstimatorTraits {
     // With the effect in the model the spectra's likelihood is another one, which does not compare with that
     // of a model without it.
     bool changes_likelihood = false;
-    // Normal noise of the same spectrum. Where that is a cause already, the effect is another one only by
-    // what its likelihood has beside the spectra.
-    std::string_view twin = {};
     // What tells the effect is beside the spectra: in the samples' distribution, their codes, their stamps,
     // the course of their variance, what axes share.
     bool is_beside_spectra = false;
