@@ -8,15 +8,14 @@ namespace gyrolog {
 
 // The firmware counts from each start and keeps the counts after a stop. A start that follows a stop between
 // two looks (a CONFIGURE restarts the stream) shows by instants that count from 0 again.
-void SessionLog::observe(const VirtualBoard& board) {
-    const std::uint64_t instants = board.sampling_instants();
+void SessionLog::observe(const glp_board& firmware) {
+    const std::uint64_t instants = firmware.next_index + (firmware.instants - firmware.instants_done);
     const bool restarted = streaming_ && instants < instants_;
-    if (board.streaming() && (!streaming_ || restarted)) { sessions_.emplace_back(); }
-    if (!sessions_.empty() && (board.streaming() || (streaming_ && !restarted))) {
-        const glp_board& firmware = board.firmware();
+    if (firmware.streaming && (!streaming_ || restarted)) { sessions_.emplace_back(); }
+    if (!sessions_.empty() && (firmware.streaming || (streaming_ && !restarted))) {
         sessions_.back() = {instants - firmware.lost_samples, firmware.lost_samples, firmware.lost_frames};
     }
-    streaming_ = board.streaming();
+    streaming_ = firmware.streaming;
     instants_ = instants;
 }
 

@@ -20,7 +20,8 @@ struct StreamingSession {
 class SessionLog {
 public:
     // Looks at the board; to be called after anything that may have started or stopped it.
-    void observe(const VirtualBoard& board);
+    void observe(const VirtualBoard& board) { observe(board.firmware()); }
+    void observe(const glp_board& firmware);
 
     // In order of time; the last one may still go on.
     const std::vector<StreamingSession>& sessions() const { return sessions_; }

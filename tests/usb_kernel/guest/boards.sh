@@ -39,3 +39,16 @@ trace_line_state() {
     echo 'request == 0x22' > /sys/kernel/tracing/events/kprobes/line_state/filter
     echo 1 > /sys/kernel/tracing/events/kprobes/line_state/enable
 }
+
+# native_serial N: the serial number of the Nth native board, 32 digits.
+native_serial() { printf 'A1B2C3D40102030405060708%08X' "$1"; }
+
+# plug_native_board PORT N [OPTION...]: the firmware of that port on vhci_hcd, as job board-native. Its accounts are in
+# board-native.json once it has been stopped.
+plug_native_board() {
+    native_port=$1
+    native_number=$(native_serial "$2")
+    shift 2
+    run_in_background board-native "native_${native_port}_on_vhci" --serial "$native_number" --report board-native.json "$@"
+    wait_for 20 usb_present "$native_number"
+}

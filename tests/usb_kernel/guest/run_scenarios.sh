@@ -8,7 +8,7 @@ for scenario in /test/scenarios/*.sh; do
     begin=$(cut -d. -f1 /proc/uptime)
     # The work is done in memory: what is tested is USB, and the share is slow.
     mkdir -p "/tmp/$name"
-    (cd "/tmp/$name" && timeout 180 sh -eux "/test/scenarios/$name.sh") > "/share/$name/log" 2>&1
+    (cd "/tmp/$name" && timeout 400 sh -eux "/test/scenarios/$name.sh") > "/share/$name/log" 2>&1
     status=$?
     for job in /tmp/$name/*.pid; do
         [ -e "$job" ] && kill "$(cat "$job")" 2> /dev/null
