@@ -159,6 +159,11 @@ private:
 
     Status plug_in() {
         unplugged_ = false;
+        // The kernel has given up what was under way when the cable was pulled: an answer to it would end the
+        // new link.
+        static_cast<void>(host_.take_ended());
+        replies_.clear();
+        reader_ = {};
         host_.plug(true);
         constexpr int power_on_steps = 1000;
         for (int i = 0; i < power_on_steps && !board_.usb().attached(); ++i) { advance(step_ns); }
