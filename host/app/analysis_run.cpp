@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "analysis/noise/analyze.hpp"
 #include "analysis/simulate/fitted_model.hpp"
@@ -13,6 +15,7 @@
 #include "host/app/command.hpp"
 #include "host/app/figure_file.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
@@ -32,6 +35,12 @@ RecordingInput input_of(const AnalysisRequest& request) {
     input.with_accelerometer = sensors_named(request.sensor) != Sensors::gyro;
     input.needs_gyro = sensors_named(request.sensor) == Sensors::gyro;
     return input;
+}
+
+// For whoever waits.
+std::string_view words_of_stage(std::string_view stage) {
+    if (stage == "spectrum") { return "spectrum"; }
+    return stage == "fit" ? "fitting the noise" : "Allan deviation";
 }
 
 std::string what_lacks(const AnalysisRequest& request) {
@@ -158,9 +167,16 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
     if (const Status fine = check_output_paths(read, written_paths); !fine.ok()) {
         return report_error(console, command, fine.error());
     }
-    const auto options = options_of(request);
+    auto options = options_of(request);
     if (!options.ok()) { return report_error(console, command, options.error()); }
-    auto read_in = read_timed_recording(input_of(request));
+    std::optional<ProgressLine> progress(std::in_place, console);
+    RecordingInput input = input_of(request);
+    input.on_share = progress->of_reading();
+    options->on_stage = StageObserver([&](const char* stage) {
+        request.on_stage(stage);
+        progress->show(words_of_stage(stage));
+    });
+    auto read_in = read_timed_recording(input);
     if (!read_in.ok()) {
         report_error(console, command, read_in.error());
         return read_in.error().code == ErrorCode::invalid_argument ? ExitCode::usage : ExitCode::failed;
@@ -169,6 +185,7 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
     read_in->capture.reset();
     const Recording& recording = read_in->recording;
     const AnalysisReport report = analyze(recording, *options);
+    progress.reset();
     if (request.json_path == "-") {  // the report for people, which is not written then, has them too
         for (const std::string& warning : report.warnings) {
             console.err << "gyrolog " << command << ": warning: " << warning << '\n';

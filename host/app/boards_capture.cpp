@@ -175,7 +175,8 @@ ExitCode capture_boards(Console& console, const char* command, const CaptureOpti
     }
     const Boards boards = std::move(opened).value();
     for (const auto& board : boards) {
-        console.err << "capturing from " << board->source().identity().uri << " to " << board->path() << '\n';
+        console.notices() << "capturing from " << board->source().identity().uri << " to " << board->path()
+                          << '\n';
         warn_of_former_id(console, command, board->source().identity());
     }
     const TidyEnd tidy;

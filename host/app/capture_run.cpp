@@ -35,9 +35,9 @@ void keep_what_is_stored(const std::string& path, const CaptureOutcome& outcome,
 
 void sum_up(Console& console, const CaptureOutcome& outcome, const LinkReport& link,
             const std::string& path) {
-    console.err << fmt::format("  {}: {} in {}, {}\n", path, counted(link.samples.good, "sample"),
-                               format_duration(seconds_of(outcome, link.instants())),
-                               format_bytes(outcome.progress.file_bytes));
+    console.notices() << fmt::format("  {}: {} in {}, {}\n", path, counted(link.samples.good, "sample"),
+                                     format_duration(seconds_of(outcome, link.instants())),
+                                     format_bytes(outcome.progress.file_bytes));
     if (link.samples.missing > 0 || link.frames.missing > 0) {
         console.err << fmt::format("  missing: {}, {}; run `gyrolog check {}` for each\n", missing_text(link),
                                    counted(link.frames.missing, "frame"), path);
@@ -214,10 +214,11 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
         request.samples.reset();
     }
     ByteSource& source = *opened.source;
-    console.err << "capturing from " << source.identity().uri << " to " << request.path
-                << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n" : "\n");
+    console.notices() << "capturing from " << source.identity().uri << " to " << request.path
+                      << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n"
+                                                        : "\n");
     warn_of_former_id(console, command, source.identity());
-    if (denoise != nullptr) { console.err << "  " << denoise->announcement() << '\n'; }
+    if (denoise != nullptr) { console.notices() << "  " << denoise->announcement() << '\n'; }
     const auto outcome = watch_capture(console, source, request, denoise);
     CaptureResult result = tell_outcome(console, command, outcome, request.path, limited);
     if (denoise != nullptr && result.file_written) { sum_up_denoising(console, command, *denoise, result); }

@@ -1,9 +1,12 @@
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
 #include "host/app/many_recordings.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/progress_line.hpp"
 #include "host/app/result_output.hpp"
 #include "host/formats/json.hpp"
 
@@ -30,7 +33,9 @@ ExitCode tell(Console& console, const char* command, const CheckOptions& options
     if (const Status fine = check_output_paths(read, paths); !fine.ok()) {
         return report_error(console, command, fine.error());
     }
-    const auto capture = load_capture(options.path, false);
+    std::optional<ProgressLine> progress(std::in_place, console);
+    const auto capture = load_capture(options.path, false, {}, {}, progress->of_reading());
+    progress.reset();
     if (!capture.ok()) { return report_error(console, command, capture.error()); }
     ResultOutput results(console);
     if (options.json != "-") { results.show(as_text(options.path, *capture)); }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/part_options.hpp"
+#include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
@@ -104,16 +106,14 @@ Result<Comparison> with_model(Console& console, const CompareRequest& request) {
     }
     complete_from(recording, file);
     ModelComparisonOptions options = request.simulations;
+    std::optional<ProgressLine> progress(std::in_place, console);
     options.on_progress = [&](std::size_t done) {
-        if (console.progress) {
-            console.drawing() << fmt::format("\r  simulation {} of {}", done, options.simulations)
-                              << std::flush;
-        }
+        progress->show("simulating", static_cast<double>(done) / static_cast<double>(options.simulations));
         return true;
     };
     auto comparison = compare_with_model(std::make_shared<const Recording>(std::move(recording)), file.model,
                                          source.name, options);
-    if (console.progress) { console.drawing() << "\r\x1b[K" << std::flush; }
+    progress.reset();
     comparison->notes = file.notes;
     comparison->warnings.insert(comparison->warnings.begin(), left_out.begin(), left_out.end());
     tell_of_reading(*comparison, request.recording_path, read);

@@ -35,8 +35,8 @@ ExitCode conform(Console& console, const ConformOptions& options) {
     }
     auto opened = open_source(options.device, {}, false);
     if (!opened.ok()) { return fail_to_open(console, opened.error()); }
-    console.err << "gyrolog conform: talking to " << opened->source->identity().uri
-                << " for about ten seconds\n";
+    console.notices() << "gyrolog conform: talking to " << opened->source->identity().uri
+                      << " for about ten seconds\n";
     warn_of_former_id(console, "conform", opened->source->identity());
     const auto dialogue = [&] {
         const TidyEnd tidy;  // the board is left as it was found

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "analysis/noise/analyze.hpp"
 #include "host/app/command.hpp"
@@ -7,6 +9,7 @@
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/part_options.hpp"
+#include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/base/file_output.hpp"
@@ -126,7 +129,10 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     RecordingInput input{options.source, options.rate_hz, options.lsb_dps};
     input.part = options.part;
     input.text = options.text;
+    std::optional<ProgressLine> progress(std::in_place, console);
+    input.on_share = progress->of_reading();
     GYROLOG_TRY(const Recording recording, read_recording(input));
+    progress.reset();
     for (const std::string& warning : recording.warnings) {
         console.err << "gyrolog export: warning: " << warning << '\n';
     }
@@ -182,7 +188,7 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
                                 ? export_noise_or_samples(console, options, export_format_of(*filter))
                                 : export_for_simulator(console, options);
         if (!done.ok()) { return report_error(console, "export", done.error()); }
-        console.err << "written: " << options.output << '\n';
+        console.notices() << "written: " << options.output << '\n';
         return ExitCode::ok;
     }
     const ExportFormat* format = export_format_of(options.output);
@@ -194,7 +200,7 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
     }
     const Status done = export_noise_or_samples(console, options, *format);
     if (!done.ok()) { return report_error(console, "export", done.error()); }
-    console.err << "written: " << options.output << '\n';
+    console.notices() << "written: " << options.output << '\n';
     return ExitCode::ok;
 }
 

@@ -178,20 +178,20 @@ std::string made_up(const RecordedWorld& like) {
 
 void tell(Console& console, const SimulateOptions& options, const Story& story,
           const SimulationOutcome& outcome) {
-    console.err << fmt::format("  {}: {} in {}, seed {}{}\n", options.output,
-                               counted(outcome.samples, "sample"),
-                               format_duration(static_cast<double>(outcome.instants) / outcome.rate_hz),
-                               options.seed, outcome.interrupted ? "; stopped early, whole up to there" : "");
+    console.notices() << fmt::format(
+        "  {}: {} in {}, seed {}{}\n", options.output, counted(outcome.samples, "sample"),
+        format_duration(static_cast<double>(outcome.instants) / outcome.rate_hz), options.seed,
+        outcome.interrupted ? "; stopped early, whole up to there" : "");
     const auto effects = effect_names(story.file.model);
-    if (!effects.empty()) { console.err << fmt::format("  effects: {}\n", fmt::join(effects, ", ")); }
+    if (!effects.empty()) { console.notices() << fmt::format("  effects: {}\n", fmt::join(effects, ", ")); }
     if (story.like) {
-        console.err << fmt::format("  from {}: {}{}\n", options.like, taken_over(*story.like),
-                                   made_up(*story.like));
+        console.notices() << fmt::format("  from {}: {}{}\n", options.like, taken_over(*story.like),
+                                         made_up(*story.like));
     }
     if (outcome.instants != outcome.samples) {
-        console.err << fmt::format("  missing: {} in {}\n",
-                                   counted(outcome.instants - outcome.samples, "sample"),
-                                   counted(outcome.dropouts, "dropout"));
+        console.notices() << fmt::format("  missing: {} in {}\n",
+                                         counted(outcome.instants - outcome.samples, "sample"),
+                                         counted(outcome.dropouts, "dropout"));
     }
     for (const std::string& note : story.file.notes) { console.err << "  " << note << '\n'; }
 }

@@ -30,9 +30,13 @@ Outcome outcome_of(const Console& console, const std::string& recording, const R
     std::ostringstream out;
     std::ostringstream err;
     Outcome outcome;
-    Console own{
-        out,           err, console.progress && console.screen != nullptr, console.signal, console.screen,
-        &outcome.error};
+    Console own{out,
+                err,
+                console.progress && console.screen != nullptr,
+                console.signal,
+                console.screen,
+                &outcome.error,
+                console.is_quiet};
     try {
         outcome.code = run(own, recording, true);
     } catch (const std::exception& problem) {  // of memory, most likely: the next one may need less
@@ -93,7 +97,7 @@ ExitCode write_lines(Console& console, const char* command, const ManyRecordings
     if (const Status closed = file->close(); !closed.ok()) {
         return worst_of(worst, report_error(console, command, closed.error()));
     }
-    console.err << "written: " << many.jsonl_path << '\n';
+    console.notices() << "written: " << many.jsonl_path << '\n';
     return worst;
 }
 

@@ -21,6 +21,7 @@
 #include "host/app/diagnosis_input.hpp"
 #include "host/app/diagnosis_output.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/sensor_choice.hpp"
@@ -66,15 +67,13 @@ std::optional<Diagnosis> diagnose_means(const DiagnosisInput& read, const Sensor
     return diagnosis;
 }
 
-DiagnosisOptions options_of(Console& console, const RecordingDiagnosisRequest& request) {
+DiagnosisOptions options_of(ProgressLine& progress, const RecordingDiagnosisRequest& request) {
     DiagnosisOptions options;
     options.seed = request.seed;
     options.simulations = request.simulations;
     options.threads = request.threads;
-    options.on_progress = [&console](const char* what, double share) {
-        if (console.progress) {
-            console.drawing() << fmt::format("\r\x1b[K  {}  {:.0f} %", what, 100.0 * share) << std::flush;
-        }
+    options.on_progress = [&progress](const char* what, double share) {
+        progress.show(what, share);
         return true;
     };
     return options;
@@ -217,7 +216,8 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
         input.part = {};
         GYROLOG_TRY(second, read_for_diagnosis(input, read));
     }
-    DiagnosisOptions options = options_of(console, request);
+    std::optional<ProgressLine> progress(std::in_place, console);
+    DiagnosisOptions options = options_of(*progress, request);
     options.holdout = second.samples;
     GYROLOG_TRY(options.asked, read_questions(request, read));
     const std::string name = is_plain ? "white noise and bias" : source->name;
@@ -225,7 +225,7 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
                          ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
                      : request.average > 1 ? diagnose_means(read, file.model, name, options)
                                            : diagnose(read.samples, file.model, name, options);
-    if (console.progress) { console.drawing() << "\r\x1b[K" << std::flush; }
+    progress.reset();
     append_warnings(diagnosis->warnings, read);
     append_new(diagnosis->warnings, file.notes);
     append_warnings(diagnosis->warnings, second);

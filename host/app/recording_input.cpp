@@ -33,9 +33,10 @@ std::string what_is_wrong_with_the_end(const LoadedCapture& capture, const Recor
 }
 
 Result<TimedRecording> read_capture(const RecordingInput& input) {
-    GYROLOG_TRY(LoadedCapture capture,
-                load_capture(input.path, true, input.on_stage,
-                             {input.samples_most, input.samples_per_row, input.with_accelerometer}));
+    GYROLOG_TRY(
+        LoadedCapture capture,
+        load_capture(input.path, true, input.on_stage,
+                     {input.samples_most, input.samples_per_row, input.with_accelerometer}, input.on_share));
     input.on_stage("place");
     auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }

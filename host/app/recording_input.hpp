@@ -21,6 +21,7 @@ struct RecordingInput {
     std::optional<double> rate_hz;  // overrides the file's own
     std::optional<double> lsb_dps;  // scale of text columns in counts
     StageObserver on_stage{};       // of "read", and for a capture "decode", "place"
+    ShareObserver on_share{};       // of a capture: how much of it is read
     // Reading ends soon after so many samples.
     std::size_t samples_most = std::numeric_limits<std::size_t>::max() - 1;
     // More: means of so many, as means_of() has them but for samples that are missing; no more is ever held.

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "analysis/noise/analyze.hpp"
 #include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/progress_line.hpp"
 #include "host/app/recording_diagnosis_run.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/report_figures.hpp"
@@ -83,17 +86,22 @@ ExitCode report_to_file(Console& console, const ReportRequest& request) {
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.part = request.part;
     input.text = request.text;
+    std::optional<ProgressLine> progress(std::in_place, console);
+    input.on_share = progress->of_reading();
     const auto read = read_timed_recording(input);
     if (!read.ok()) { return fail(read.error()); }
     AnalysisOptions options;
     options.sensors = Sensors::gyro;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
+    options.on_stage = StageObserver([&](const char* stage) { progress->show(stage); });
     const AnalysisReport analysis = analyze(read->recording, options);
     if (analysis.axes.empty()) {
         return fail({ErrorCode::failed, request.recording_path + ": there is no angular rate to report on"});
     }
+    progress->show("drawing");
     const auto page = page_of(request, *read, analysis, diagnosis ? &*diagnosis : nullptr);
     if (!page.ok()) { return fail(page.error()); }
+    progress.reset();
     ResultOutput results(console);
     results.text(request.page_path, [&] { return *page; });
     const Status written = results.finish();

@@ -37,7 +37,7 @@ void ResultOutput::json(const std::string& path, const std::function<Json()>& an
 // Whether standard output took it is asked once, when the program ends.
 Status ResultOutput::finish() {
     console_.out << shown_ << std::flush;
-    for (const std::string& path : written_) { console_.err << "written: " << path << '\n'; }
+    for (const std::string& path : written_) { console_.notices() << "written: " << path << '\n'; }
     return error_ ? Status(*error_) : Status();
 }
 

@@ -4,7 +4,9 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string_view>
+#include <utility>
 
 #include "host/capture/segment_files.hpp"
 
@@ -39,8 +41,9 @@ void add(CaptureAccounts& sum, const CaptureAccounts& part) {
 // Reads files one behind the other into one decoder.
 class Loading {
 public:
-    Loading(LoadedCapture& loaded, const StageObserver& on_stage, std::size_t samples_most)
-        : loaded_(loaded), on_stage_(on_stage), samples_most_(samples_most) {}
+    Loading(LoadedCapture& loaded, const StageObserver& on_stage, std::size_t samples_most,
+            std::function<void(std::uint64_t)> on_bytes)
+        : loaded_(loaded), on_stage_(on_stage), samples_most_(samples_most), on_bytes_(std::move(on_bytes)) {}
 
     bool enough() const { return loaded_.decoder->kept_samples() >= samples_most_; }
 
@@ -59,6 +62,7 @@ public:
             hold_against(reader.checkpoint());
             if (!captured) { break; }
             if (captured->transfer.carries_stream()) { stream_bytes += captured->transfer.data.size(); }
+            on_bytes_(captured->transfer.data.size());
             on_stage_("decode");
             meet_connection(reader.segment());
             take(captured->transfer);
@@ -92,6 +96,7 @@ private:
     LoadedCapture& loaded_;
     const StageObserver& on_stage_;
     std::size_t samples_most_;
+    std::function<void(std::uint64_t)> on_bytes_;  // of each transfer
     bool any_data_ = false;
     std::optional<CaptureSegment> present_;
 };
@@ -99,7 +104,7 @@ private:
 }  // namespace
 
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples, const StageObserver& on_stage,
-                                   const KeptRows& kept) {
+                                   const KeptRows& kept, const ShareObserver& on_share) {
     LoadedCapture loaded;
     loaded.files = segment_files(path);
     std::uint64_t stream_bytes = 0;
@@ -110,7 +115,13 @@ Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples, c
                                                              .stream_bytes = stream_bytes,
                                                              .samples_per_row = kept.samples_per_row,
                                                              .with_accelerometer = kept.with_accelerometer});
-    Loading loading(loaded, on_stage, kept.samples_most);
+    std::uint64_t bytes_read = 0;
+    Loading loading(loaded, on_stage, kept.samples_most, [&](std::uint64_t bytes) {
+        bytes_read += bytes;
+        if (on_share && stream_bytes > 0) {
+            on_share(static_cast<double>(bytes_read) / static_cast<double>(stream_bytes));
+        }
+    });
     for (const std::string& file : loaded.files) {
         GYROLOG_CHECK(loading.read(file));
         if (loading.enough()) { break; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -38,10 +39,14 @@ struct KeptRows {
     bool with_accelerometer = true;
 };
 
+// Told now and then how large a share of the files has been read.
+using ShareObserver = std::function<void(double)>;
+
 // Errors: those of CaptureReader. A capture without one good frame is no error.
 // Stages: "read", "decode", by turns.
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples,
-                                   const StageObserver& on_stage = {}, const KeptRows& kept = {});
+                                   const StageObserver& on_stage = {}, const KeptRows& kept = {},
+                                   const ShareObserver& on_share = {});
 
 // Whether the file begins like a capture (pcapng or pcap) rather than like text. False when it cannot be
 // read.
