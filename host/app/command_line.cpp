@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 #include <string_view>
 
 #include "host/app/command.hpp"
@@ -74,6 +75,21 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
     return meant.empty() ? std::string() : "; did you mean " + meant + "?";
 }
 
+// The parser's own words for a value that is missing, or is none of a few, said so that one can act on them.
+std::string plain_words(const std::string& problem) {
+    static const std::regex missing(": 1 required (.*) missing$");
+    static const std::regex none_of(": (.*) not in \\{(.*)\\}$");
+    std::smatch found;
+    if (std::regex_search(problem, found, missing)) {
+        return found.prefix().str() + " wants its " + found[1].str() + " behind it";
+    }
+    if (std::regex_search(problem, found, none_of)) {
+        const std::string names = std::regex_replace(found[2].str(), std::regex(","), ", ");
+        return found.prefix().str() + ": '" + found[1].str() + "' is none of " + names;
+    }
+    return problem;
+}
+
 std::string command_meant(const std::string& word) {
     std::vector<std::string> names;
     names.reserve(commands.size());
@@ -130,12 +146,17 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
     app.require_subcommand(0, 1);
     app.get_formatter()->column_width(34);
     Action action = setup_bench_session(app);
+    const auto add_quiet = [&](CLI::App& to) {
+        to.add_flag("-q,--quiet", console.is_quiet, "No progress and no notices; warnings and errors remain");
+    };
+    add_quiet(app);
     std::vector<Action> actions;
     actions.reserve(commands.size());
     for (const Command& command : commands) {
         CLI::App* sub = app.add_subcommand(command.name, command.summary);
         sub->get_formatter()->column_width(34);
         actions.push_back(command.setup(*sub));
+        add_quiet(*sub);
         const std::string said = sub->get_footer();
         sub->footer((said.empty() ? "" : said + "\n\n") + "Examples:\n" + command.examples);
         sub->callback([&action, &actions, i = actions.size() - 1] { action = actions[i]; });
@@ -150,10 +171,11 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
     } catch (const CLI::ExtrasError& wrong) {
         const std::vector<CLI::App*> chosen = app.get_subcommands();
         return refuse(wrong.what() + option_meant(chosen.empty() ? app : *chosen.front(), words));
-    } catch (const CLI::ParseError& wrong) { return refuse(wrong.what()); }
+    } catch (const CLI::ParseError& wrong) { return refuse(plain_words(wrong.what())); }
     if (const std::string name = name_of_empty(app); !name.empty()) {
         return refuse(name + " is given and empty: fill it in, or leave it out");
     }
+    console.progress = console.progress && !console.is_quiet;
     return action(console);
 }
 

@@ -19,9 +19,14 @@ Result<double> parse_duration_s(std::string_view text) {
     if (unit == "d") { factor = 86400.0; }
     const double duration_s = value * factor;
     constexpr double ten_years_s = 10.0 * 365.25 * 86400.0;
-    if (problem != std::errc() || factor == 0.0 || !(duration_s > 0.0) || !(duration_s <= ten_years_s)) {
+    if (problem != std::errc() || factor == 0.0 || std::isnan(duration_s)) {
         return Error{ErrorCode::invalid_argument,
                      fmt::format("'{}' is no duration: write 90, 90s, 15m, 6h or 1d", text)};
+    }
+    if (duration_s <= 0.0 || duration_s > ten_years_s) {
+        return Error{ErrorCode::invalid_argument,
+                     fmt::format("'{}' is no duration: it has to be {}", text,
+                                 duration_s <= 0.0 ? "longer than 0" : "ten years at the most")};
     }
     return duration_s;
 }
