@@ -274,17 +274,14 @@ TEST(DiagnosisText, OfManyPlacesListsThoseThatStandOut) {
     Diagnosis diagnosis = known();
     diagnosis.domains.assign(9, allan_domain());
     for (std::size_t i = 0; i < 9; ++i) { diagnosis.domains[i].name = "place " + std::to_string(i); }
-    diagnosis.domains[3].surprise_before_nats = 30.0;
-    diagnosis.domains[5].surprise_after_nats = 30.0;
+    diagnosis.domains[3].stands_out = diagnosis.domains[5].stands_out = true;
     const std::string text = diagnosis_text(diagnosis);
     for (std::size_t i = 0; i < 9; ++i) {
         const bool is_listed = text.find("place " + std::to_string(i)) != std::string::npos;
         EXPECT_EQ(is_listed, i == 3 || i == 5) << i;
     }
     EXPECT_THAT(text, HasSubstr("nothing stands out in 7 other comparisons"));
-    for (GapDomain& domain : diagnosis.domains) {
-        domain.surprise_before_nats = domain.surprise_after_nats = 0.0;
-    }
+    for (GapDomain& domain : diagnosis.domains) { domain.stands_out = false; }
     EXPECT_THAT(diagnosis_text(diagnosis), HasSubstr("nothing stands out in any of 9 comparisons"));
 }
 

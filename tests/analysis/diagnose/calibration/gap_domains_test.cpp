@@ -53,6 +53,9 @@ TEST(GapDomains, AreInUnitsThatPeopleUse) {
     EXPECT_NEAR(domains[4].recording[1], 0.0, 1e-12);
     EXPECT_NEAR(domains[4].before_hi[1], 1.96 * 0.02, 1e-5);
     EXPECT_TRUE(domains[0].after_lo.empty());
+    // Five standard deviations at a point, and none.
+    EXPECT_TRUE(domains[0].stands_out);
+    EXPECT_FALSE(domains[3].stands_out);
 }
 
 TEST(GapDomains, ShowTheCorrectedModelsBandAsSeenFromTheRecording) {
