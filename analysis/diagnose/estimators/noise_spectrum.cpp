@@ -33,6 +33,7 @@ public:
     }
 
     std::optional<Finding> find(const Observation& observation) const override {
+        if (starts_.empty()) { return std::nullopt; }
         std::vector<AxesFit> single;
         std::vector<std::size_t> all;
         for (const std::size_t axis : prediction_->axes()) {
@@ -66,7 +67,12 @@ private:
             }
             starts = std::move(more);
         }
-        for (ParamValues& start : starts) { starts_.push_back(std::move(start)); }
+        for (ParamValues& start : starts) {
+            const bool is_in_range = std::ranges::all_of(signature_.spectral, [&](std::string_view name) {
+                return start.at(std::string(name)) <= most_of(param_of(effect_, name));
+            });
+            if (is_in_range) { starts_.push_back(std::move(start)); }
+        }
     }
 
     EffectModel entry_of(const ParamValues& params) const {
@@ -141,7 +147,7 @@ private:
             for (std::size_t i = 0; i < logs.size(); ++i) {
                 const EffectParam& param = param_of(effect_, signature_.spectral[i]);
                 const double value = std::exp(logs[i]);
-                if (value < least_of(param) || value > param.plausible_to * decisions.beyond_plausible ||
+                if (value < least_of(param) || value > most_of(param) ||
                     (param.most && value > *param.most)) {
                     return minus_infinity;
                 }
@@ -175,6 +181,14 @@ private:
             });
         const double smaller = is_of_shape ? 1.0 : resolution::size_below_plausible;
         return param.plausible_from / (smaller * decisions.beyond_plausible);
+    }
+
+    // A filter whose corner lies beyond half of the rate is not seen as one: what folds back makes the noise
+    // stronger, and hardly less white.
+    double most_of(const EffectParam& param) const {
+        const double most = param.plausible_to * decisions.beyond_plausible;
+        const bool is_corner = signature_.folds && param.name.ends_with("_hz");
+        return is_corner ? std::min(most, 0.5 * prediction_->rate_hz()) : most;
     }
 
     // From the curvature of the gain about its maximum.

@@ -127,6 +127,19 @@ TEST(ForwardSelection, TakesTwoCausesApart) {
     EXPECT_LT(left->evidence_nats, 6.0);
 }
 
+// Beyond half of the rate a first-order filter folds to more white noise, within a tenth.
+TEST(EffectEvidence, OfMoreWhiteNoiseIsNoLowPassBeyondHalfTheRate) {
+    const SensorModel model = calibrated_sensor();
+    const auto recording = recorded(with_effect(model, "arw_scale", {{"factor", 1.45}}), 30000, 33);
+    const Hypotheses first = examined(recording, model);
+    const Finding lowpass = of(first, "lowpass");
+    ASSERT_FALSE(lowpass.entries.empty());
+    for (const EffectModel& entry : lowpass.entries) {
+        EXPECT_LE(entry.params.at("fc_hz"), 0.5 * recording->rate_hz);
+    }
+    EXPECT_GT(of(first, "arw_scale").evidence_nats, lowpass.evidence_nats + 100.0);
+}
+
 // A low-pass that was fitted beside more white noise is another one without it.
 TEST(ForwardSelection, FitsACauseAgainWhereAnotherIsLeftOut) {
     const SensorModel model = calibrated_sensor();
