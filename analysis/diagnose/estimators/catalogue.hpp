@@ -20,6 +20,7 @@ enum class FarOff {
 
 struct EstimatorTraits {
     EvidenceMethod method = EvidenceMethod::response;
+    FarOff far_off = FarOff::none;
     EstimatorMaker make = nullptr;
     // Normal noise of the same spectrum. Where that is a cause already, the effect is another one only by
     // what its likelihood has beside the spectra.
@@ -49,7 +50,6 @@ struct EstimatorTraits {
     // The time stamps show the effect. Simulations copy them, so that only its own likelihood tells its
     // chance.
     bool is_in_stamps = false;
-    FarOff far_off = FarOff::none;
     // Means of samples show the effect as samples do. They do not where it is in the samples' distribution,
     // their codes or their stamps: a mean is no sample. A sample that is far enough off they show smaller.
     bool shows_in_means = true;
