@@ -58,7 +58,9 @@ class Scenario(unittest.TestCase):
         return self.file(name).read_text(errors="replace")
 
     def json(self, name):
-        return json.loads(schemas.keep(self.text(name), name))
+        text = self.text(name)
+        # What a board of the tests reports of itself is no document of the program's.
+        return json.loads(text if name.startswith("board-") else schemas.keep(text, name))
 
     def assert_exit(self, command, expected):
         status = int(self.text(f"{command}.exit"))
