@@ -358,6 +358,7 @@ ExitCode denoise_command(Console& console, const Request& request) {
     if (!named.ok()) { return fail(named.error()); }
     const std::vector<std::string> files = files_of_array(request.input);
     std::vector<NamedPath> read;
+    read.reserve(files.size() + request.models.size() + 1);
     for (const std::string& path : files) { read.push_back({"RECORDING", path}); }
     for (const std::string& path : request.models) { read.push_back({"--model", path}); }
     read.push_back({"--calibration", request.calibration});
