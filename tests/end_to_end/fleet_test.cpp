@@ -168,15 +168,18 @@ TEST_F(Fleet, StoppedByCtrlCLeavesWholeLines) {
     const std::string lines = folder.path("lines.jsonl");
     std::vector<std::string> command{"analyze", "--jsonl", lines};
     command.insert(command.end(), many.begin(), many.end());
+    std::size_t lines_read = 0;
     for (const int after_ms : {50, 120, 333}) {
         const ProgramResult stopped =
             run_gyrolog_and_signal(command, std::chrono::milliseconds(after_ms), SIGINT, lines);
         EXPECT_EQ(stopped.exit_code, 128 + SIGINT);
         const std::vector<json> read = lines_of(read_whole_file(lines));
-        EXPECT_GE(read.size(), 1U);
         EXPECT_LT(read.size(), many.size());
+        lines_read += read.size();
         for (const json& line : read) { EXPECT_EQ(line["schema"], "gyrolog-analysis/1"); }
     }
+    // A busy machine may have none within the shortest time.
+    EXPECT_GE(lines_read, 1U);
 }
 
 TEST_F(Fleet, DoctorAnswersInBothForms) {
