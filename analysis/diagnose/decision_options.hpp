@@ -61,9 +61,10 @@ struct DecisionOptions {
     double band_quality_least = 2.0;
     // Ratio of the axes' gains to a noise that they share; below, it is one axis' own.
     double gain_ratio_least = 0.3;
-    // Of a step of the converter: printed decimals lie this near to its grid, and two steps that differ by
-    // less are one.
-    double step_tolerance = 0.05;
+    // Of a step of the converter: printed decimals lie this near to its grid.
+    double on_grid_tolerance = 0.05;
+    // Relative: a step that is coarser than the model's by less is the model's; of two axes, a tenth of it.
+    double same_step_rel = 0.02;
     // Relative: a smooth distribution of the samples' changes departs by this from its parabola.
     double smoothness_rel = 0.03;
 

@@ -43,7 +43,7 @@ Changes count_changes(const Column& column, const Recording& recording, double c
                         std::fabs(static_cast<double>(data[row]) - static_cast<double>(data[row - 1])) / code;
                     const double codes = std::round(step);
                     if (codes >= static_cast<double>(resolution::codes_max)) { continue; }
-                    if (std::fabs(step - codes) > decisions.step_tolerance) {
+                    if (std::fabs(step - codes) > decisions.on_grid_tolerance) {
                         changes.off_grid += 1.0;
                     } else if (codes > 0.0) {
                         changes.of_codes[static_cast<std::size_t>(codes)] += 1.0;
@@ -140,13 +140,13 @@ private:
             const Step multiple = coarser_multiple(count_changes(column, recording, 1.0), step_rad_s);
             step_rad_s = std::max(step_rad_s, multiple.rad_s);
         }
-        if (step_rad_s <= std::max(least_rad_s, expected_rad_s * (1.0 + decisions.step_tolerance))) {
+        if (step_rad_s <= std::max(least_rad_s, expected_rad_s * (1.0 + decisions.same_step_rel))) {
             return {};
         }
         const Changes changes = count_changes(column, recording, step_rad_s / std::fabs(column.scale));
         if (changes.on_grid <= decisions.nearly_all * (changes.on_grid + changes.off_grid)) { return {}; }
         const double chance =
-            expected_rad_s > 0.0 ? expected_rad_s / step_rad_s : 2.0 * decisions.step_tolerance;
+            expected_rad_s > 0.0 ? expected_rad_s / step_rad_s : 2.0 * decisions.on_grid_tolerance;
         return {step_rad_s, changes.on_grid * -std::log(chance)};
     }
 
@@ -154,7 +154,7 @@ private:
     void add(std::size_t axis, const Step& step, Finding& finding) const {
         const double step_dps = step.rad_s / rad_per_deg;
         const auto same = std::ranges::find_if(finding.entries, [&](const EffectModel& entry) {
-            return std::fabs(entry.params.at("lsb_dps") / step_dps - 1.0) < decisions.step_tolerance;
+            return std::fabs(entry.params.at("lsb_dps") / step_dps - 1.0) < 0.1 * decisions.same_step_rel;
         });
         if (same != finding.entries.end()) {
             same->axes.emplace_back(axis_names[axis]);

@@ -57,6 +57,23 @@ TEST(QuantisationStep, OfACoarserConverterIsFoundAxisByAxis) {
     }
 }
 
+// Three per cent are another step: of two axes, and of a model that states one.
+TEST(QuantisationStep, OfTwoAxesThatDifferByLittleIsFoundForEach) {
+    const SensorModel model = sensor(lsb_dps);
+    SensorModel coarse = with_effect(model, "quantization", {{"lsb_dps", 8.0 * lsb_dps}}, {"x"});
+    coarse = with_effect(coarse, "quantization", {{"lsb_dps", 8.24 * lsb_dps}}, {"y"});
+    coarse.lsb_rad_s = 0.0;
+    const auto recording = std::make_shared<const Recording>(printed(*recorded(coarse, two_minutes, 5)));
+    const auto finding = steps(recording, model);
+    ASSERT_TRUE(finding);
+    ASSERT_EQ(finding->entries.size(), 2U);
+    EXPECT_NEAR(finding->entries[0].params.at("lsb_dps"), 8.0 * lsb_dps, 1e-6);
+    EXPECT_NEAR(finding->entries[1].params.at("lsb_dps"), 8.24 * lsb_dps, 1e-6);
+    const auto beside_x = steps(recording, sensor(8.0 * lsb_dps));
+    ASSERT_TRUE(beside_x);
+    EXPECT_EQ(beside_x->entries.front().axes, (std::vector<std::string>{"y"}));
+}
+
 // Of one axis there is nothing to choose.
 TEST(QuantisationStep, PaysForTheChoiceOfAxesWhereThereIsOne) {
     const SensorModel model = sensor(lsb_dps);
