@@ -50,10 +50,6 @@ struct DecisionOptions {
     // Relative: a stated uncertainty of N, B or K as large as the coefficient, or larger, says no more than
     // this, and it is what one that was stated as nothing has; 1 would allow a coefficient of the other sign.
     double unknown_sd_rel = 0.9;
-    // Factor: a coefficient that is not seen by its stated uncertainty grows to so many times its size; N,
-    // however well known, falls to that part of it, for without white noise Gauss-Markov noise would be a
-    // low-pass. White noise is plausible up to twice the model's (effect arw_scale).
-    constexpr double noise_factor_most() const { return 2.0 * beyond_plausible; }
 
     // Hz: a slower swing is drift.
     double slowest_line_hz = 0.05;

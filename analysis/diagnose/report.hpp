@@ -80,6 +80,8 @@ struct Finding {
     // effect's likelihood is the spectra's times another.
     std::array<double, 3> axis_beside_nats{};
     Place where;
+
+    double beside_nats() const { return axis_beside_nats[0] + axis_beside_nats[1] + axis_beside_nats[2]; }
 };
 
 // A noise refit is a coefficient of the model that the recording has otherwise, once the causes are in the
@@ -185,8 +187,7 @@ struct GapDomain {
     std::vector<bool> outside_before, outside_after;
     double gap_before = 0.0;  // rms of the standardised differences; 1 is the floor
     double gap_after = 0.0;
-    // -ln of the probability that a simulation is as far off here. Of so many domains one or another reaches
-    // some 7 by chance.
+    // -ln of the probability that a simulation is as far off here.
     double surprise_before_nats = 0.0;
     double surprise_after_nats = 0.0;
     bool stands_out = false;  // before or after: rarer than chance has it in any domain

@@ -53,7 +53,7 @@ Expected expected_of(const SensorModel& model, const EffectDefinition& effect) {
 
 double length_gain_nats(const Gaps& gaps, double expected_longest) {
     if (expected_longest == 0.0) { return 0.0; }
-    // A gap longer than any stated is unlikely, not impossible.
+    // What the model says does not happen happens as seldom as a false alarm.
     const double too_long_probability = decisions.false_alarms_most;
     double gain_nats = 0.0;
     for (const double length : gaps.lengths) {

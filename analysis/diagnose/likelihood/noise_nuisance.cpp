@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <string>
 
 #include "analysis/diagnose/decision_options.hpp"
+#include "analysis/simulate/chain.hpp"
 
 namespace gyrolog::resolution {
 
@@ -26,6 +28,16 @@ double uncertainty(const SensorModel& model, std::size_t axis, const char* name)
     const auto in_all = all.find(name);
     const double sd = in_own != own.end() ? in_own->second : in_all != all.end() ? in_all->second : 0.0;
     return std::min(sd, decisions.unknown_sd_rel);
+}
+
+// A coefficient that is not seen by its stated uncertainty grows to so many times its size. N, however well
+// known, falls to that part of it: without white noise Gauss-Markov noise would be a low-pass.
+double noise_factor_most() {
+    static const double plausible = [] {
+        const std::span<const EffectParam> params = find_effect("arw_scale")->params;
+        return std::ranges::find(params, "factor", &EffectParam::name)->plausible_to;
+    }();
+    return plausible * decisions.beyond_plausible;
 }
 
 struct Terms {
@@ -77,14 +89,15 @@ NoiseNuisance fit_nuisance(const SpectralBins& bins, std::span<const SpectralPar
                            std::span<const double> power, const std::array<double, 3>& sd_rel,
                            const NoiseNuisance& start) {
     Eigen::Vector3d z(start.z.data());
+    const double factor_most = noise_factor_most();
     const auto clamped = [&](Eigen::Vector3d at) {
         for (std::size_t j = 0; j < 3; ++j) {
             if (!(sd_rel[j] > 0.0)) { continue; }
             double& each = at[static_cast<Eigen::Index>(j)];
-            const double least = j == 0 ? 1.0 / decisions.noise_factor_most() : resolution::least_factor;
+            const double least = j == 0 ? 1.0 / factor_most : resolution::least_factor;
             each = std::max(each, (least - 1.0) / sd_rel[j]);
             if (sd_rel[j] >= decisions.seen_sd_rel()) {
-                each = std::min(each, (decisions.noise_factor_most() - 1.0) / sd_rel[j]);
+                each = std::min(each, (factor_most - 1.0) / sd_rel[j]);
             }
         }
         return at;

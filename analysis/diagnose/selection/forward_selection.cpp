@@ -1,11 +1,9 @@
 #include "analysis/diagnose/selection/forward_selection.hpp"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <string>
 #include <string_view>
@@ -358,8 +356,7 @@ private:
 
     static double worth_beside_spectra_nats(const Finding& finding) {
         if (traits_of(finding.effect).is_beside_spectra) { return finding.evidence_nats; }
-        const double cost_nats = finding.gain_nats - finding.evidence_nats;
-        return std::accumulate(finding.axis_beside_nats.begin(), finding.axis_beside_nats.end(), -cost_nats);
+        return finding.evidence_nats - finding.gain_nats + finding.beside_nats();
     }
 
     // What `first`, which is all of the causes, and `next` explain; no bound where the spectra's likelihood
@@ -550,8 +547,7 @@ private:
     // A second part of the same spectrum is not yet what its name says.
     bool is_told_by_twin(const Finding& finding) const {
         const std::string_view twin = traits_of(finding.effect).twin;
-        const std::array<double, 3>& nats = finding.axis_beside_nats;
-        return !twin.empty() && std::accumulate(nats.begin(), nats.end(), 0.0) < decisions.strong_nats &&
+        return !twin.empty() && finding.beside_nats() < decisions.strong_nats &&
                std::ranges::any_of(causes_,
                                    [&](const FoundCause& cause) { return cause.finding.effect == twin; });
     }
