@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -35,12 +34,6 @@ RecordingInput input_of(const AnalysisRequest& request) {
     input.with_accelerometer = sensors_named(request.sensor) != Sensors::gyro;
     input.needs_gyro = sensors_named(request.sensor) == Sensors::gyro;
     return input;
-}
-
-// For whoever waits.
-std::string_view words_of_stage(std::string_view stage) {
-    if (stage == "spectrum") { return "spectrum"; }
-    return stage == "fit" ? "fitting the noise" : "Allan deviation";
 }
 
 std::string what_lacks(const AnalysisRequest& request) {
@@ -174,10 +167,11 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
     input.on_share = progress->of_reading();
     options->on_stage = StageObserver([&](const char* stage) {
         request.on_stage(stage);
-        progress->show(words_of_stage(stage));
+        progress->show_analysis(stage);
     });
     auto read_in = read_timed_recording(input);
     if (!read_in.ok()) {
+        progress.reset();
         report_error(console, command, read_in.error());
         return read_in.error().code == ErrorCode::invalid_argument ? ExitCode::usage : ExitCode::failed;
     }

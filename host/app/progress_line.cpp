@@ -8,20 +8,12 @@
 #include "host/app/quantity.hpp"
 
 namespace gyrolog {
-namespace {
-
-constexpr std::chrono::milliseconds quiet_for{1000};
-constexpr std::chrono::milliseconds between_drawings{100};
-// Before so much of the work is done, or so much time has passed, the time left is a guess.
-constexpr double least_share = 0.02;
-constexpr double least_elapsed_s = 0.5;
-
-}  // namespace
-
 std::string progress_text(std::string_view what, double share, double elapsed_s) {
     share = std::clamp(share, 0.0, 1.0);
     std::string text = fmt::format("{}  {:.0f} %", what, std::floor(100.0 * share));
-    if (share < least_share || elapsed_s < least_elapsed_s || share >= 1.0) { return text; }
+    const bool is_a_guess = share < progress_options.time_left_share_least ||
+                            elapsed_s < progress_options.time_left_elapsed_least_s;
+    if (is_a_guess || share >= 1.0) { return text; }
     return text + fmt::format("  {} left", format_elapsed(std::ceil(elapsed_s * (1.0 - share) / share)));
 }
 
@@ -39,7 +31,8 @@ bool ProgressLine::enters(std::string_view what, Clock::time_point now) {
         stage_began_ = told_at_;
     }
     told_at_ = now;
-    return now - began_ >= quiet_for && (is_new || now - drawn_at_ >= between_drawings);
+    return now - began_ >= progress_options.quiet_for &&
+           (is_new || now - drawn_at_ >= progress_options.between_drawings);
 }
 
 void ProgressLine::draw(const std::string& text) {
@@ -56,6 +49,10 @@ void ProgressLine::show(std::string_view what, double share) {
 void ProgressLine::show(std::string_view what) {
     if (!console_.progress || !enters(what, now_())) { return; }
     draw(std::string(what));
+}
+
+void ProgressLine::show_analysis(std::string_view stage) {
+    show(stage == "fit" ? "fitting the noise" : stage == "spectrum" ? "spectrum" : "Allan deviation");
 }
 
 std::function<void(double)> ProgressLine::of_reading() {

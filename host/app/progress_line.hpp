@@ -11,6 +11,16 @@
 
 namespace gyrolog {
 
+struct ProgressOptions {
+    std::chrono::milliseconds quiet_for{1000};        // nobody waits so long for a word
+    std::chrono::milliseconds between_drawings{100};  // quicker changes are not read
+    // A share, and s: before so much is done, or so much time has passed, the time left is a guess.
+    double time_left_share_least = 0.02;
+    double time_left_elapsed_least_s = 0.5;
+};
+
+inline constexpr ProgressOptions progress_options{};
+
 class ProgressLine {
 public:
     using Clock = std::chrono::steady_clock;
@@ -29,6 +39,8 @@ public:
 
     // For whoever reads a recording: "reading".
     std::function<void(double)> of_reading();
+    // A stage that AnalysisOptions::on_stage tells of.
+    void show_analysis(std::string_view stage);
 
 private:
     // Whether it is time to draw.

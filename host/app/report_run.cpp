@@ -74,7 +74,11 @@ Result<std::string> page_of(const ReportRequest& request, const TimedRecording& 
 }  // namespace
 
 ExitCode report_to_file(Console& console, const ReportRequest& request) {
-    const auto fail = [&](const Error& error) { return report_error(console, "report", error); };
+    std::optional<ProgressLine> progress;
+    const auto fail = [&](const Error& error) {
+        progress.reset();  // else the message stands behind the line
+        return report_error(console, "report", error);
+    };
     if (const Status fine = check_paths(request); !fine.ok()) { return fail(fine.error()); }
     // First, so that a model that is none is told of at once.
     std::optional<Diagnosis> diagnosis;
@@ -86,14 +90,14 @@ ExitCode report_to_file(Console& console, const ReportRequest& request) {
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.part = request.part;
     input.text = request.text;
-    std::optional<ProgressLine> progress(std::in_place, console);
+    progress.emplace(console);
     input.on_share = progress->of_reading();
     const auto read = read_timed_recording(input);
     if (!read.ok()) { return fail(read.error()); }
     AnalysisOptions options;
     options.sensors = Sensors::gyro;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
-    options.on_stage = StageObserver([&](const char* stage) { progress->show(stage); });
+    options.on_stage = StageObserver([&](const char* stage) { progress->show_analysis(stage); });
     const AnalysisReport analysis = analyze(read->recording, options);
     if (analysis.axes.empty()) {
         return fail({ErrorCode::failed, request.recording_path + ": there is no angular rate to report on"});

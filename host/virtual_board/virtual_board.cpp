@@ -181,10 +181,6 @@ void VirtualBoard::on_receive(ByteView bytes) {
     run_main_loop();
 }
 
-std::uint64_t VirtualBoard::sampling_instants() const {
-    return board_.next_index + (board_.instants - board_.instants_done);
-}
-
 void VirtualBoard::note_start() {
     if (!board_.streaming || first_start_ns_) { return; }
     first_start_ns_ = now_ns_;

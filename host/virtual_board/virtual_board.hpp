@@ -80,7 +80,10 @@ public:
     void set_duration_limit(std::optional<double> duration_s) { duration_limit_s_ = duration_s; }
     bool sample_limit_reached() const;
     // Sampling instants since the stream's last start.
-    std::uint64_t sampling_instants() const;
+    std::uint64_t sampling_instants() const { return sampling_instants_of(board_); }
+    static std::uint64_t sampling_instants_of(const glp_board& firmware) {
+        return firmware.next_index + (firmware.instants - firmware.instants_done);
+    }
     bool streaming() const { return board_.streaming; }
     // When the stream first started; nothing before.
     std::optional<std::int64_t> first_start_ns() const { return first_start_ns_; }

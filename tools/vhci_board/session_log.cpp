@@ -9,7 +9,7 @@ namespace gyrolog {
 // The firmware counts from each start and keeps the counts after a stop. A start that follows a stop between
 // two looks (a CONFIGURE restarts the stream) shows by instants that count from 0 again.
 void SessionLog::observe(const glp_board& firmware) {
-    const std::uint64_t instants = firmware.next_index + (firmware.instants - firmware.instants_done);
+    const std::uint64_t instants = VirtualBoard::sampling_instants_of(firmware);
     const bool restarted = streaming_ && instants < instants_;
     if (firmware.streaming && (!streaming_ || restarted)) { sessions_.emplace_back(); }
     if (!sessions_.empty() && (firmware.streaming || (streaming_ && !restarted))) {
