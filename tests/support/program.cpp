@@ -29,6 +29,7 @@ struct SignalPlan {
     int number;
     std::string once_there;             // counts from when this file exists; empty: from the start
     std::chrono::milliseconds held{0};  // SIGCONT follows after so long; 0: none
+    FileState state = FileState::is_there;
 };
 
 std::array<int, 2> make_pipe() {
@@ -37,12 +38,18 @@ std::array<int, 2> make_pipe() {
     return ends;
 }
 
-bool is_begun(const std::filesystem::path& path) {
-    if (std::filesystem::exists(path)) { return true; }
+bool is_in_state(const std::filesystem::path& path, FileState state) {
+    const auto is_so = [&](const std::filesystem::path& file) {
+        std::error_code none;
+        const std::uintmax_t bytes = std::filesystem::file_size(file, none);
+        return !none && (state == FileState::is_there || bytes > 0);
+    };
+    if (std::filesystem::exists(path)) { return is_so(path); }
     const std::filesystem::directory_iterator folder(path.parent_path());
     return std::any_of(begin(folder), end(folder), [&](const std::filesystem::directory_entry& entry) {
         const std::string name = entry.path().filename();
-        return name.starts_with(path.filename().string() + '.') && name.ends_with(".part");
+        return name.starts_with(path.filename().string() + '.') && name.ends_with(".part") &&
+               is_so(entry.path());
     });
 }
 
@@ -55,7 +62,7 @@ void collect(pid_t child, int out, int err, std::optional<SignalPlan> plan, Prog
     std::size_t open_ends = ends.size();
     while (open_ends > 0) {
         if (poll(ends.data(), ends.size(), 20) < 0 && errno != EINTR) { break; }
-        if (plan && !plan->once_there.empty() && is_begun(plan->once_there)) {
+        if (plan && !plan->once_there.empty() && is_in_state(plan->once_there, plan->state)) {
             plan->once_there.clear();
             counted_from = Clock::now();
         }
@@ -137,8 +144,8 @@ ProgramResult run_gyrolog(const std::vector<std::string>& arguments) { return ru
 
 ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,
                                      std::chrono::milliseconds after, int signal,
-                                     const std::string& once_there) {
-    return run(arguments, SignalPlan{after, signal, once_there, {}});
+                                     const std::string& once_there, FileState state) {
+    return run(arguments, SignalPlan{after, signal, once_there, {}, state});
 }
 
 ProgramResult run_gyrolog_and_hold(const std::vector<std::string>& arguments, std::chrono::milliseconds after,

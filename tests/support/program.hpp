@@ -25,11 +25,15 @@ std::string gyrolog_path();
 pid_t start_program(const std::vector<std::string>& command, int out, int err);
 
 ProgramResult run_gyrolog(const std::vector<std::string>& arguments);
-// The same, but `signal` is sent after a while: from the start, or from when the file `once_there` exists or
-// is being written under the name that it has until it is whole.
+// Under its own name, or under that which it has until it is whole.
+enum class FileState { is_there, holds_something };
+
+// The same, but `signal` is sent after a while: from the start, or from when the file `once_there` is in this
+// state.
 ProgramResult run_gyrolog_and_signal(const std::vector<std::string>& arguments,
                                      std::chrono::milliseconds after, int signal,
-                                     const std::string& once_there = "");
+                                     const std::string& once_there = "",
+                                     FileState state = FileState::is_there);
 
 // The same, but the program is stopped after a while and goes on when it was held for so long.
 ProgramResult run_gyrolog_and_hold(const std::vector<std::string>& arguments, std::chrono::milliseconds after,
