@@ -318,16 +318,23 @@ static void take_records(glp_board* self, uint32_t records) {
     }
 }
 
+// False where the bus failed: nothing is lost yet.
+static bool count_fifo_records(glp_board* self, uint32_t* records, bool* overflowed) {
+    size_t bytes = 0;
+    if (!glp_mpu_fifo_level(self->hal, &bytes, overflowed)) {
+        ++self->bus_errors;
+        return false;
+    }
+    *records = (uint32_t)bytes / self->plan.sample_bytes;
+    return true;
+}
+
 static void read_fifo(glp_board* self) {
     const uint32_t pending_before = instants_pending(self);
-    size_t bytes = 0;
+    uint32_t records = 0;
     bool overflowed = false;
-    if (!glp_mpu_fifo_level(self->hal, &bytes, &overflowed)) {
-        ++self->bus_errors;
-        return;  // nothing is lost yet
-    }
+    if (!count_fifo_records(self, &records, &overflowed)) { return; }
     const uint32_t pending_after = instants_pending(self);
-    const uint32_t records = (uint32_t)bytes / self->plan.sample_bytes;
     if (overflowed || (pending_after > INSTANTS_TRUSTED)) {
         ++self->fifo_overflows;
         resynchronise(self, glp_flag_sensor_fifo_overflow);
@@ -528,13 +535,9 @@ static bool start(glp_board* self) {
 // No instant joins any more, but the FIFO fills on: of its records as many are taken as there are instants.
 static void take_last_records(glp_board* self) {
     const uint32_t pending = instants_pending(self);
-    size_t bytes = 0;
+    uint32_t records = 0;
     bool overflowed = false;
-    if (!glp_mpu_fifo_level(self->hal, &bytes, &overflowed)) {
-        ++self->bus_errors;
-        return;
-    }
-    const uint32_t records = (uint32_t)bytes / self->plan.sample_bytes;
+    if (!count_fifo_records(self, &records, &overflowed)) { return; }
     if (overflowed || (pending > INSTANTS_TRUSTED)) {
         ++self->fifo_overflows;
         lose_instants(self, pending, glp_flag_sensor_fifo_overflow);

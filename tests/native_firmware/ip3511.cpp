@@ -22,8 +22,6 @@ enum Offset : std::uint32_t {
     eptoggle = 0x34,
 };
 
-constexpr std::uint32_t bit(unsigned number) { return std::uint32_t{1} << number; }
-
 constexpr unsigned indices = 10;  // five endpoint numbers, OUT and IN
 constexpr std::uint32_t list_bytes = indices * 2 * 4;
 constexpr std::uint32_t list_alignment = 256;

@@ -4,13 +4,14 @@
 // Registers' names, offsets and bits: NXP's device header (USB_Type). What the controller does when: UM11126,
 // chapter "USB0 full-speed device controller", as this project knows it, not the driver under test. Where the
 // manual leaves room, and what this model does there:
-//   SETUP pending   keeps every endpoint answering NAK, not only the control endpoint.
-//   Active          of the control endpoint falls like that of any other.
-//   an empty OUT    writes eight bytes into the buffer, as errata sheet ES_LPC55S6x, USB.5, tells of the
-//   high-speed
-//                   controller.
-//   address         written before the status stage of SET_ADDRESS has passed, it counts from behind that
-//   stage on. EPSKIP          takes 10 us; VBUS is debounced for 3 ms; 3 ms without traffic are a suspend.
+// - A pending SETUP keeps every endpoint answering NAK, not only the control endpoint.
+// - Active of the control endpoint falls like that of any other.
+// - An empty OUT writes eight bytes into the buffer, as errata sheet ES_LPC55S6x, USB.5, tells of the
+//   high-speed controller.
+// - An address that is written before the status stage of SET_ADDRESS has passed counts from behind that
+// stage
+//   on.
+// - EPSKIP takes 10 us. VBUS is debounced for 3 ms. 3 ms without traffic are a suspend.
 // Left out: isochronous endpoints, LPM, remote wake-up, the double buffer's second half beyond EPINUSE.
 #pragma once
 

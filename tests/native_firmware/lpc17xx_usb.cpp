@@ -45,8 +45,6 @@ enum Offset : std::uint32_t {  // from 5000C200
     usb_clk_st = 0xDF8,
 };
 
-constexpr std::uint32_t bit(unsigned number) { return std::uint32_t{1} << number; }
-
 // DevIntSt
 constexpr std::uint32_t frame_interrupt = bit(0);
 constexpr std::uint32_t fast = bit(1);

@@ -3,12 +3,14 @@
 //
 // UM10360, chapter 11, as this project knows it (registers.h says from where); nothing here is from the
 // driver under test. Where the manual leaves room, and what this model does there:
-//   commands       take 1.5 us, and so does the answer that a write to USBEpIntClr brings into USBCmdData.
-//   DMA            takes 2 us a packet.
-//   two buffers    for endpoints whose number is 2, 3, 5, 6 and so on; the others have one.
-//   address        written before the status stage of SET_ADDRESS has passed, it counts from behind that
-//   stage on. Clear Buffer   leaves a SETUP packet alone that came meanwhile. UDCA           holds pointers
-//   of this machine's size: the driver's own array of them.
+// - A command takes 1.5 us, and so does the answer that a write to USBEpIntClr brings into USBCmdData.
+// - The DMA takes 2 us a packet.
+// - Endpoints whose number is 2, 3, 5, 6 and so on have two buffers; the others have one.
+// - An address that is written before the status stage of SET_ADDRESS has passed counts from behind that
+// stage
+//   on.
+// - Clear Buffer leaves a SETUP packet alone that came meanwhile.
+// - UDCA holds pointers of this machine's size: the driver's own array of them.
 // Left out: isochronous endpoints, errors on the wire, the supply's pin, which this board does not wire.
 #pragma once
 

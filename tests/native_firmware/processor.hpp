@@ -24,6 +24,9 @@
 
 namespace gyrolog {
 
+// Of a register.
+constexpr std::uint32_t bit(unsigned number) { return std::uint32_t{1} << number; }
+
 constexpr std::uint64_t never_ticks = std::numeric_limits<std::uint64_t>::max();
 
 struct MemoryRange {
