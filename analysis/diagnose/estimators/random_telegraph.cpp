@@ -214,17 +214,24 @@ private:
         return out;
     }
 
+    struct Gain {
+        double spectral_nats = 0.0;
+        double beside_nats = 0.0;  // two levels against Gauss-Markov noise
+
+        double nats() const { return spectral_nats + beside_nats; }
+    };
+
     // Under the noise that goes with the telegraph: what one would explain, the other need not.
-    double gain(const Observation& observation, std::size_t axis, const Averages& averages,
-                const Telegraph& telegraph) const {
+    Gain gain(const Observation& observation, std::size_t axis, const Averages& averages,
+              const Telegraph& telegraph) const {
         const NoiseNuisance noise = noise_with(observation, axis, telegraph);
         std::vector<double> density(f_hz_.size());
         expected_density(prediction_->parts(axis), noise_uncertainty(prediction_->model(), axis), noise.z,
                          density);
         const DriftStates drift = drift_states(f_hz_, density, averages.step_s, prediction_->duration_s());
-        return noise.log_likelihood_nats - observation.axis(axis).noise.log_likelihood_nats +
-               telegraph_log_likelihood(averages.values, averages.step_s, drift, telegraph) -
-               gauss_markov_log_likelihood(averages.values, averages.step_s, drift, telegraph);
+        return {noise.log_likelihood_nats - observation.axis(axis).noise.log_likelihood_nats,
+                telegraph_log_likelihood(averages.values, averages.step_s, drift, telegraph) -
+                    gauss_markov_log_likelihood(averages.values, averages.step_s, drift, telegraph)};
     }
 
     // Whether one set of parameters can hold for all.
@@ -272,7 +279,7 @@ private:
             if (!plausible(logs)) { return minus_infinity; }
             double sum = 0.0;
             for (std::size_t i = 0; i < axes.size(); ++i) {
-                sum += gain(observation, axes[i], averages[i], telegraph_at(logs));
+                sum += gain(observation, axes[i], averages[i], telegraph_at(logs)).nats();
             }
             return sum;
         };
@@ -306,8 +313,9 @@ private:
         fit.axes = axes;
         const Telegraph telegraph = telegraph_at(maximum.at);
         for (std::size_t i = 0; i < axes.size(); ++i) {
-            fit.gain_nats.push_back(gain(observation, axes[i], averages[i], telegraph));
-            fit.beside_nats.push_back(fit.gain_nats.back() - spectral_gain(observation, axes[i], telegraph));
+            const Gain found = gain(observation, axes[i], averages[i], telegraph);
+            fit.gain_nats.push_back(found.nats());
+            fit.beside_nats.push_back(found.beside_nats);
         }
         fit.params = params_of(telegraph);
         add_uncertainty(objective, maximum, fit);

@@ -119,6 +119,8 @@ TEST(RandomTelegraph, IsWorthMoreThanGaussMarkovNoiseWhereTheLevelsAreTwo) {
         EXPECT_EQ(finding->where.axes, std::vector<std::size_t>{1});
         EXPECT_GT(finding->evidence_nats,
                   evidence(found(make_noise_spectrum_estimator, "gauss_markov", recording, model)) + 50.0);
+        EXPECT_GT(finding->beside_nats(), 50.0);
+        EXPECT_LT(finding->beside_nats(), finding->gain_nats);
         const auto& params = finding->entries.front().params;
         const auto& sd = finding->sd.front();
         EXPECT_NEAR(params.at("amplitude_dps"), 0.02, 5.0 * sd.at("amplitude_dps"));
@@ -140,8 +142,10 @@ TEST(RandomTelegraph, IsWorthLessWhereTheNoiseIsGaussMarkov) {
         const auto recording = recorded(truth, 120000, seed);
         const auto wandering = found(make_noise_spectrum_estimator, "gauss_markov", recording, model);
         ASSERT_TRUE(wandering);
-        EXPECT_GT(wandering->evidence_nats,
-                  evidence(found(make_random_telegraph_estimator, "rtn", recording, model)) + 30.0);
+        const auto levels = found(make_random_telegraph_estimator, "rtn", recording, model);
+        ASSERT_TRUE(levels);
+        EXPECT_GT(wandering->evidence_nats, levels->evidence_nats + 30.0);
+        EXPECT_LT(levels->beside_nats(), -30.0);
     }
 }
 
@@ -156,6 +160,7 @@ TEST(RandomTelegraph, IsWorthAsMuchWhereTheLevelsDrownInNoise) {
     ASSERT_TRUE(levels && spectrum);
     EXPECT_GT(spectrum->gain_nats, 10.0);
     EXPECT_NEAR(levels->gain_nats, spectrum->gain_nats, 5.0);
+    EXPECT_NEAR(levels->beside_nats(), 0.0, 5.0);
 }
 
 TEST(RandomTelegraph, AnswersForOneDeadAxisAndFewSamples) {
