@@ -76,12 +76,15 @@ struct Finding {
     double evidence_nats = 0.0;
     int parameters = 0;  // that were fitted
     std::array<double, 3> axis_gain_nats{};
-    // The part of it that the spectra's likelihood does not have, with the entries in the model: where an
-    // effect's likelihood is the spectra's times another.
-    std::array<double, 3> axis_beside_nats{};
+    // Of an effect that is told beside the spectra: the part of it that the spectra's likelihood has as well,
+    // with the entries in the model.
+    std::array<double, 3> axis_spectral_nats{};
     Place where;
 
-    double beside_nats() const { return axis_beside_nats[0] + axis_beside_nats[1] + axis_beside_nats[2]; }
+    double spectral_nats() const {
+        return axis_spectral_nats[0] + axis_spectral_nats[1] + axis_spectral_nats[2];
+    }
+    double beside_nats() const { return gain_nats - spectral_nats(); }
 };
 
 // A noise refit is a coefficient of the model that the recording has otherwise, once the causes are in the

@@ -23,7 +23,9 @@ Finding finding_of(const EffectDefinition& effect, const std::vector<AxesFit>& f
         for (std::size_t i = 0; i < fit.axes.size(); ++i) {
             entry.axes.emplace_back(axis_names[fit.axes[i]]);
             finding.axis_gain_nats[fit.axes[i]] = fit.gain_nats[i];
-            if (!fit.beside_nats.empty()) { finding.axis_beside_nats[fit.axes[i]] = fit.beside_nats[i]; }
+            if (!fit.spectral_nats.empty()) {
+                finding.axis_spectral_nats[fit.axes[i]] = fit.spectral_nats[i];
+            }
             finding.where.axes.push_back(fit.axes[i]);
         }
         finding.entries.push_back(std::move(entry));

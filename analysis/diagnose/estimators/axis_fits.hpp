@@ -15,8 +15,8 @@ namespace gyrolog {
 // A fit whose parameters hold for some axes alike.
 struct AxesFit {
     std::vector<std::size_t> axes;
-    std::vector<double> gain_nats;    // by axis
-    std::vector<double> beside_nats;  // by axis, Finding::axis_beside_nats; empty: none
+    std::vector<double> gain_nats;      // by axis
+    std::vector<double> spectral_nats;  // by axis, Finding::axis_spectral_nats; empty: none
     std::map<std::string, double> params;
     std::map<std::string, double> sd;  // of those that were fitted
     double cost_nats = 0.0;            // of the freedom of all of them

@@ -315,7 +315,7 @@ private:
         for (std::size_t i = 0; i < axes.size(); ++i) {
             const Gain found = gain(observation, axes[i], averages[i], telegraph);
             fit.gain_nats.push_back(found.nats());
-            fit.beside_nats.push_back(found.beside_nats);
+            fit.spectral_nats.push_back(found.spectral_nats);
         }
         fit.params = params_of(telegraph);
         add_uncertainty(objective, maximum, fit);

@@ -265,6 +265,7 @@ private:
                 own_level_cost(observation, sum, axis, h[static_cast<Eigen::Index>(axis)]));
             levels += fit.gain_nats.back();
         }
+        fit.spectral_nats = fit.gain_nats;
         for (double& nats : fit.gain_nats) {
             nats += (maximum.value - levels) / static_cast<double>(axes.size());
         }

@@ -526,6 +526,7 @@ private:
                 const double of_level = level_gain_nats(observation, fit, a);
                 gain += of_level;
                 finding.evidence_nats += of_level;
+                finding.axis_spectral_nats[fit.scans[a]->axis] = of_level;
             }
             const std::size_t axis = fit.scans[a]->axis;
             finding.gain_nats += gain;

@@ -214,6 +214,7 @@ private:
         fit.params[std::string(effect_.params[1].name)] = from_reference ? reference_C_ : mean_C_;
         if (from_reference && certain) {
             for (std::size_t i = 0; i < subset.size(); ++i) { fit.gain_nats[i] += level_gain[i]; }
+            fit.spectral_nats = std::move(level_gain);
         }
         return fit;
     }

@@ -41,7 +41,7 @@ std::optional<Finding> on_axes(const Finding& finding, const std::vector<std::si
         rest.gain_nats -= finding.axis_gain_nats.at(axis);
         rest.evidence_nats -= finding.axis_gain_nats.at(axis);
         rest.axis_gain_nats.at(axis) = 0.0;
-        rest.axis_beside_nats.at(axis) = 0.0;
+        rest.axis_spectral_nats.at(axis) = 0.0;
     }
     return rest;
 }

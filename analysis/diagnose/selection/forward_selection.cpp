@@ -355,8 +355,9 @@ private:
     }
 
     static double worth_beside_spectra_nats(const Finding& finding) {
-        if (traits_of(finding.effect).is_beside_spectra) { return finding.evidence_nats; }
-        return finding.evidence_nats - finding.gain_nats + finding.beside_nats();
+        const EstimatorTraits& traits = traits_of(finding.effect);
+        const bool is_told_beside = traits.is_beside_spectra || !traits.twin.empty();
+        return finding.evidence_nats - (is_told_beside ? finding.spectral_nats() : finding.gain_nats);
     }
 
     // What `first`, which is all of the causes, and `next` explain; no bound where the spectra's likelihood

@@ -44,6 +44,26 @@ TEST(VarianceChangePoint, OfAStepIsTheLikelihoodRatio) {
     }
 }
 
+// That the level before the change is the model's, the spectra's likelihood has as well: for less white noise
+// than the model's, they would mend each other without end.
+TEST(VarianceChangePoint, TellsWhatOfItsGainTheSpectraHave) {
+    const double factor = 1.5;
+    SensorModel model = known_sensor();
+    model.sd_rel["N"] = 0.005;
+    const auto seen = seen_effects(model, {change(factor, 700.0, 0.0, {"x"})}, half_hour, 33);
+    const auto found = seen.find("variance_change", make_variance_change_point_estimator);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->where.axes, std::vector<std::size_t>{0});
+    const auto n = static_cast<double>(seen.prediction->length());
+    const double after = 1.0 - 700.0 / seen.prediction->duration_s();
+    const double square = factor * factor;
+    const double share = white_share(*seen.prediction, 0).variance;
+    const double of_course =
+        0.5 * n * (std::log(1.0 - after + after * square) - after * std::log(square)) * share;
+    EXPECT_NEAR(found->beside_nats(), of_course, 5.0 * std::sqrt(2.0 * of_course));
+    EXPECT_GT(found->spectral_nats(), 500.0);
+}
+
 TEST(VarianceChangePoint, TellsARampFromAStep) {
     const auto seen = seen_effects(known_sensor(), {change(1.6, 400.0, 800.0)}, half_hour, 32);
     const auto found = seen.find("variance_change", make_variance_change_point_estimator);
