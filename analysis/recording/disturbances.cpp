@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "analysis/numerics/distributions.hpp"
+#include "analysis/recording/grid_step.hpp"
 
 namespace gyrolog {
 namespace {
@@ -44,15 +46,22 @@ void keep_largest(std::array<double, largest_left_out>& largest, double square) 
     std::ranges::sort(largest);
 }
 
-Power power_of(std::span<const double> values) {
+// The means of a block: one before the step and one behind it.
+struct TwoMeans {
+    std::size_t step = 0;
+    double before = 0.0;
+    double after = 0.0;
+
+    double off(std::span<const double> values, std::size_t i) const {
+        return values[i] - (i < step ? before : after);
+    }
+};
+
+TwoMeans two_means(std::span<const double> values) {
     const auto n = static_cast<double>(values.size());
     const double origin = values.front();
     double sum = 0.0;
-    double squares = 0.0;
-    for (const double value : values) {
-        sum += value - origin;
-        squares += (value - origin) * (value - origin);
-    }
+    for (const double value : values) { sum += value - origin; }
     std::size_t step = values.size();
     double before = sum;
     double explained = sum * sum / n;
@@ -65,15 +74,36 @@ Power power_of(std::span<const double> values) {
         if (here > explained) { explained = here, step = i, before = running; }
     }
     const double mean = origin + before / static_cast<double>(step);
-    const double after =
-        step < values.size() ? origin + (sum - before) / (n - static_cast<double>(step)) : mean;
+    const bool is_one = step == values.size();
+    return {step, mean, is_one ? mean : origin + (sum - before) / (n - static_cast<double>(step))};
+}
+
+// About two means, less its largest squares. `least`: a power that the numbers' grid has by itself.
+Power power_of(std::span<const double> values, double least) {
+    const TwoMeans means = two_means(values);
     std::array<double, largest_left_out> largest{};
+    double squares = 0.0;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const double off = values[i] - (i < step ? mean : after);
+        const double off = means.off(values, i);
+        squares += off * off;
         keep_largest(largest, off * off);
     }
-    const double kept = squares - explained - largest[0] - largest[1];
-    return {std::log(std::max(kept / n, std::numeric_limits<double>::min())), std::sqrt(largest.back())};
+    const double kept = squares - largest[0] - largest[1];
+    return {std::log(std::max(kept / static_cast<double>(values.size()), least)), std::sqrt(largest.back())};
+}
+
+// A block less its outliers: single samples that are farther off than this, between such as are not.
+std::vector<double> without_outliers(std::span<const double> values, double far_off) {
+    const TwoMeans means = two_means(values);
+    const auto is_far = [&](std::size_t i) {
+        return i < values.size() && std::abs(means.off(values, i)) > far_off;
+    };
+    std::vector<double> kept;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool is_single = is_far(i) && !is_far(i + 1) && (i == 0 || !is_far(i - 1));
+        if (!is_single) { kept.push_back(values[i]); }
+    }
+    return kept;
 }
 
 double median_of(std::vector<double> values) {
@@ -106,34 +136,115 @@ std::vector<double> levels_of(const std::vector<Power>& powers, const Disturbanc
     return levels;
 }
 
+// A block less the pulse that explains most of it: a level between two edges. Two jumps of one bias are no
+// bump.
+std::vector<double> without_pulse(std::vector<double> values) {
+    const auto n = static_cast<double>(values.size());
+    double mean = 0.0;
+    for (const double value : values) { mean += value / n; }
+    double most = 0.0;
+    std::size_t from = 0;
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        double inside = 0.0;
+        for (std::size_t j = i + 1; j <= values.size() && j - i < values.size(); ++j) {
+            inside += values[j - 1] - mean;
+            const auto k = static_cast<double>(j - i);
+            const double explained = inside * inside * n / (k * (n - k));
+            if (explained > most) { most = explained, from = i, to = j; }
+        }
+    }
+    const auto k = static_cast<double>(to - from);
+    double inside = 0.0;
+    for (std::size_t i = from; i < to; ++i) { inside += values[i] - mean; }
+    const double level = k > 0.0 ? inside * n / (k * (n - k)) : 0.0;
+    for (std::size_t i = from; i < to; ++i) { values[i] -= level; }
+    return values;
+}
+
 struct Signal {
     std::vector<Power> powers;   // by block
     std::vector<double> excess;  // of the logarithm of the power over its level, in standard deviations
     std::vector<double> levels;
+    std::vector<bool> is_beyond_own;  // by block: the tail of the signal's own blocks
+    double sd_log = 0.0;
     double loud_from = 0.0;
 
     bool is_loud(std::size_t block) const { return excess[block] > loud_from; }
     double ratio(std::size_t block) const { return std::exp(powers[block].log - levels[block]); }
 };
 
-Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double quantile,
-                 const DisturbanceOptions& options) {
-    Signal signal;
-    signal.loud_from = quantile;
-    for (const Block& block : blocks) {
-        signal.powers.push_back(power_of(values.subspan(block.first, block.count)));
-    }
-    signal.levels = levels_of(signal.powers, options);
+// What a grid has by itself (Widrow, Kollar 2008, 1.1): numbers that hardly ever change have no less.
+double power_of_grid(std::span<const double> values) {
+    const double step = grid_step(values);
+    return std::max(step * step / 12.0, std::numeric_limits<double>::min());
+}
+
+double sd_of_logs(const Signal& signal, std::size_t samples_per_block) {
     std::vector<double> off;
-    for (std::size_t block = 0; block < blocks.size(); ++block) {
+    for (std::size_t block = 0; block < signal.powers.size(); ++block) {
         off.push_back(std::abs(signal.powers[block].log - signal.levels[block]));
     }
     // A logarithm of a chi-squared variable has this spread at least; coarse codes may have none.
-    const double degrees = static_cast<double>(blocks.front().count) - fitted_per_block;
-    const double sd = std::max(sd_per_mad * median_of(std::move(off)), std::sqrt(2.0 / degrees));
-    for (std::size_t block = 0; block < blocks.size(); ++block) {
-        signal.excess.push_back((signal.powers[block].log - signal.levels[block]) / sd);
+    const double degrees = static_cast<double>(samples_per_block) - fitted_per_block;
+    return std::max(sd_per_mad * median_of(std::move(off)), std::sqrt(2.0 / degrees));
+}
+
+// Where the tail of these numbers ends: chance has one beyond in a share `chance` of such samples. What lies
+// beyond a high threshold is exponential at most, for they are logarithms of a power (Pickands 1975). The
+// largest of it may be no noise: its mean is that of a sample censored there (Epstein, Sobel 1953), and no
+// less than a normal distribution's.
+double end_of_tail(std::vector<double> excess, double chance, const DisturbanceOptions& options) {
+    const auto blocks = static_cast<double>(excess.size());
+    const double in_tail = std::max(options.tail_blocks_least, std::floor(options.tail_share * blocks));
+    const auto tail = static_cast<std::size_t>(in_tail);
+    if (2 * tail > excess.size()) { return std::numeric_limits<double>::infinity(); }
+    std::ranges::sort(excess);
+    const auto seen = static_cast<std::size_t>(std::floor(in_tail * (1.0 - options.tail_censored_share)));
+    const std::size_t first = excess.size() - tail;
+    const double threshold = excess[first - 1];
+    double sum = 0.0;
+    for (std::size_t i = 0; i < tail; ++i) { sum += excess[first + std::min(i, seen - 1)] - threshold; }
+    const auto r = static_cast<double>(seen);
+    const double share = in_tail / blocks;
+    const double quantile = normal_upper_quantile(share);
+    const double normal_mean =
+        std::exp(-0.5 * quantile * quantile) / (share * std::sqrt(2.0 * std::numbers::pi)) - quantile;
+    const double mean = std::max(sum / r, normal_mean);
+    // The estimated mean is a gamma variable of shape r, and the ratio to it has Lomax' tail.
+    return threshold + mean * r * (std::pow(in_tail / chance, 1.0 / r) - 1.0);
+}
+
+void find_own_tail(Signal& signal, std::span<const double> values, const std::vector<Block>& blocks,
+                   double least, double end) {
+    signal.is_beyond_own.assign(blocks.size(), false);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        if (!(signal.excess[i] > end)) { continue; }
+        const std::span<const double> block = values.subspan(blocks[i].first, blocks[i].count);
+        const Power less = power_of(without_pulse({block.begin(), block.end()}), least);
+        signal.is_beyond_own[i] = (less.log - signal.levels[i]) / signal.sd_log > signal.loud_from;
     }
+}
+
+Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double quantile,
+                 double chance_own, const DisturbanceOptions& options) {
+    Signal signal;
+    signal.loud_from = quantile;
+    const double least = power_of_grid(values);
+    for (const Block& block : blocks) {
+        signal.powers.push_back(power_of(values.subspan(block.first, block.count), least));
+    }
+    signal.levels = levels_of(signal.powers, options);
+    signal.sd_log = sd_of_logs(signal, blocks.front().count);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const double far_off = options.outlier_sigma * std::exp(0.5 * signal.levels[i]);
+        if (signal.powers[i].largest > far_off) {
+            const auto rest = without_outliers(values.subspan(blocks[i].first, blocks[i].count), far_off);
+            if (rest.size() < blocks[i].count) { signal.powers[i] = power_of(rest, least); }
+        }
+        signal.excess.push_back((signal.powers[i].log - signal.levels[i]) / signal.sd_log);
+    }
+    find_own_tail(signal, values, blocks, least, end_of_tail(signal.excess, chance_own, options));
     return signal;
 }
 
@@ -196,16 +307,28 @@ void add_block(Disturbance& disturbance, const std::vector<Signal>& signals, std
     }
 }
 
-// By block: loud on two signals at once, or beside such as long as all together are loud; and the neighbours.
-std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals) {
+bool is_beyond_own(const std::vector<Signal>& signals, std::size_t block) {
+    return std::ranges::any_of(signals, [&](const Signal& signal) { return signal.is_beyond_own[block]; });
+}
+
+// By block: loud on two signals at once where these are no chance, or beyond the tail of one signal's own
+// blocks; or beside such as long as a signal that is loud there stays so, or all together are; and the
+// neighbours.
+std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals, bool two_are_no_chance) {
     const std::size_t blocks = signals.front().powers.size();
     std::vector<bool> disturbed(blocks, false);
     for (std::size_t block = 0; block < blocks; ++block) {
-        if (loud_at_once(signals, block) < 2) { continue; }
+        const bool at_once = two_are_no_chance && loud_at_once(signals, block) > 1;
+        if (!at_once && !is_beyond_own(signals, block)) { continue; }
+        const auto goes_on = [&](std::size_t at) {
+            return is_loud_in_sum(signals, at) || std::ranges::any_of(signals, [&](const Signal& signal) {
+                       return signal.is_loud(block) && signal.is_loud(at);
+                   });
+        };
         std::size_t from = block;
         std::size_t to = block + 1;
-        while (from > 0 && is_loud_in_sum(signals, from - 1)) { --from; }
-        while (to < blocks && is_loud_in_sum(signals, to)) { ++to; }
+        while (from > 0 && goes_on(from - 1)) { --from; }
+        while (to < blocks && goes_on(to)) { ++to; }
         for (std::size_t i = from == 0 ? 0 : from - 1; i < std::min(to + 1, blocks); ++i) {
             disturbed[i] = true;
         }
@@ -216,8 +339,8 @@ std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals) {
 
 // Disturbed blocks as long as they follow without a hole.
 std::vector<Disturbance> stretches(const Recording& recording, const std::vector<Block>& blocks,
-                                   const std::vector<Signal>& signals) {
-    const std::vector<bool> disturbed = disturbed_blocks(signals);
+                                   const std::vector<Signal>& signals, bool two_are_no_chance) {
+    const std::vector<bool> disturbed = disturbed_blocks(signals, two_are_no_chance);
     std::vector<Disturbance> found;
     const std::int64_t origin = recording.segments.front().first_index;
     const auto seconds = [&](std::int64_t index) {
@@ -244,21 +367,23 @@ std::vector<Disturbance> stretches(const Recording& recording, const std::vector
 std::vector<Disturbance> disturbances(const Recording& recording,
                                       std::span<const std::vector<double>> signals,
                                       const DisturbanceOptions& options) {
-    if (signals.size() < 2) { return {}; }
     const std::vector<Block> blocks = blocks_of(recording, options);
-    if (blocks.size() < options.blocks_least) { return {}; }
-    const auto pairs = 0.5 * static_cast<double>(signals.size() * (signals.size() - 1));
+    if (signals.empty() || blocks.size() < options.blocks_least) { return {}; }
+    const auto count = static_cast<double>(signals.size());
+    // One axis has no other to be loud with at once.
+    const double pairs = std::max(0.5 * count * (count - 1.0), 1.0);
     const double chance_each =
         std::sqrt(options.false_alarms_most / (pairs * static_cast<double>(blocks.size())));
     std::vector<Signal> seen;
     for (const std::vector<double>& signal : signals) {
-        seen.push_back(signal_of(signal, blocks, normal_upper_quantile(chance_each), options));
+        seen.push_back(signal_of(signal, blocks, normal_upper_quantile(chance_each),
+                                 options.false_alarms_most / count, options));
     }
-    if (!is_no_chance(seen, chance_each, options.false_alarms_most)) { return {}; }
-    std::vector<Disturbance> found = stretches(recording, blocks, seen);
+    const bool two_are_no_chance = is_no_chance(seen, chance_each, options.false_alarms_most);
+    std::vector<Disturbance> found = stretches(recording, blocks, seen, two_are_no_chance);
     const auto rows = static_cast<double>(recording.rows());
     std::erase_if(found, [&](const Disturbance& one) {
-        return static_cast<double>(one.rows) > options.longest_share * rows || one.loud.size() < 2;
+        return static_cast<double>(one.rows) > options.longest_share * rows || one.loud.empty();
     });
     double together = 0.0;
     for (const Disturbance& one : found) { together += static_cast<double>(one.rows); }

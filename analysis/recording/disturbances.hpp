@@ -1,13 +1,16 @@
 // Disturbances are short stretches in which something outside moved the sensor: a bump on the bench, a shock,
 // a hand on the cable.
 //
-// A sensor's own noise is loud on one axis at a time. A block of the recording is loud on an axis where the
-// logarithm of its power lies above the axis' median around it by more than chance has it; the block's power
-// is what is left about two means with one step between them, less its two largest squares, so that neither a
-// step of the bias nor single samples that are off count. A block that is loud on two axes at once is
-// disturbed, where the recording has more of them than the axes' loud blocks would meet by chance (Poisson).
-// So are the blocks that follow or lead to it as long as the axes together are as loud as one has to be, for
-// what was bumped rings out, and one more on either side.
+// A sensor's own noise is loud on one axis at a time, and about as loud as its other loud stretches are. The
+// power of a block of the recording is what is left about two means with one step between them, less its two
+// largest squares and its outliers, so that neither a step of the bias nor single samples that are off count.
+// A block is loud on an axis where the logarithm of its power lies above the axis' median around it by more
+// than chance has it.
+//
+// A block is disturbed that is loud on two axes at once, where the recording has more of them than the axes'
+// loud blocks would meet by chance (Poisson); or that lies beyond the tail of one axis' own blocks, for a
+// bump may move one axis alone. So are the blocks that follow or lead to it as long as the axis, or the axes
+// together, stay loud, for what was bumped rings out, and one more on either side.
 #pragma once
 
 #include <array>
@@ -25,6 +28,14 @@ struct DisturbanceOptions {
     // One block that is loud is a twentieth of the recording then, which is the longest disturbance.
     std::size_t blocks_least = 20;
     double false_alarms_most = 1e-3;  // share of the recordings without disturbances
+    // The tail of one axis' blocks: the share of them whose power may be exponential noise, and the number
+    // that a tail is known from; of these the share that may be disturbed. A normal tail is nearly
+    // exponential from there on; more would be no rare event.
+    double tail_share = 0.05;
+    double tail_blocks_least = 20.0;
+    double tail_censored_share = 0.25;
+    // Standard deviations: single samples beyond are outliers, 1 in 5e8 by chance; the normal distribution.
+    double outlier_sigma = 6.0;
     // Shares of the recording. What lasts longer is not from outside, or cannot be told from a sensor whose
     // noise changes.
     double longest_share = 0.05;
@@ -41,7 +52,7 @@ struct Disturbance {
     double largest = 0.0;           // off the means of its blocks, in the signals' unit
 };
 
-// Of the signals, one value a row each, all as long as the recording has rows. Empty with fewer than two.
+// The function looks at signals of one value a row each, all as long as the recording has rows.
 std::vector<Disturbance> disturbances(const Recording& recording,
                                       std::span<const std::vector<double>> signals,
                                       const DisturbanceOptions& options = {});

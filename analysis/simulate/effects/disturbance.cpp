@@ -138,8 +138,9 @@ constexpr EffectSignature disturbance_signature = {
     .whole_sensor = true,
     .unjudged = unjudged,
     .words =
-        "The axes are loud together in short stretches, {per_hour}, by up to {size_dps}, as from bumps: "
-        "those are left out.",
+        "The sensor is loud in short stretches, {per_hour}, by up to {size_dps}, as from bumps: those are "
+        "left "
+        "out.",
     .noun = "bumps of {size_dps}, {per_hour}",
     .decided_by = "a recording at rest where nothing touches the bench",
 };

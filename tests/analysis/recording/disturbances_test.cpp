@@ -141,11 +141,68 @@ TEST(Disturbances, AreNotWhatASensorDoes) {
     }
 }
 
-TEST(Disturbances, NeedTwoAxes) {
-    Signals signals = white(7);
-    add_bump(signals, 7000, 8.0);
-    signals.resize(1);
-    EXPECT_TRUE(disturbances(grid_of(rows), signals).empty());
+// A bump may turn the sensor about one of its axes, and a sensor may have one.
+TEST(Disturbances, AreFoundAboutOneAxis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Signals signals = white(7);
+        Signals turned = {signals[axis]};
+        add_bump(turned, 7000, 12.0);
+        signals[axis] = turned[0];
+        const std::vector<Disturbance> found = disturbances(grid_of(rows), signals);
+        ASSERT_EQ(found.size(), 1U) << axis;
+        EXPECT_NEAR(found[0].from_s, 70.0, 1.0);
+        EXPECT_EQ(found[0].loud, std::vector<std::size_t>{axis});
+        EXPECT_EQ(disturbances(grid_of(rows), turned).size(), 1U);
+    }
+}
+
+// Noise that is seldom loud on one axis, but often enough to be its own: two levels with a pulse now and
+// then, spikes that come in numbers, codes that hardly change.
+Signals two_levels(std::uint64_t seed) {
+    Signals signals = white(seed, 6000);
+    std::mt19937_64 random(seed + 1);
+    std::bernoulli_distribution jumps(0.005);
+    double level = 0.0;
+    for (double& value : signals[0]) {
+        if (jumps(random)) { level = 6.0 - level; }
+        value += level;
+    }
+    return signals;
+}
+
+Signals many_spikes(std::uint64_t seed) {
+    Signals signals = white(seed, 6000);
+    std::mt19937_64 random(seed + 1);
+    std::bernoulli_distribution is_spike(0.01);
+    for (double& value : signals[1]) { value += is_spike(random) ? 20.0 : 0.0; }
+    return signals;
+}
+
+Signals coarse_codes(std::uint64_t seed) {
+    Signals signals = noise(seed, std::normal_distribution<double>(0.1, 0.15), 6000);
+    for (std::vector<double>& signal : signals) {
+        for (double& value : signal) { value = std::round(value); }
+    }
+    return signals;
+}
+
+// The chance is one in 1000 each; 5 of 200 is one in 400 000 by Poisson's law.
+TEST(Disturbances, AreNotWhatOneAxisDoesByItself) {
+    constexpr std::uint64_t recordings = 200;
+    int found_levels = 0;
+    int found_spikes = 0;
+    int found_codes = 0;
+    for (std::uint64_t seed = 1; seed <= recordings; ++seed) {
+        const Recording grid = grid_of(6000);
+        found_levels += disturbances(grid, two_levels(seed)).empty() ? 0 : 1;
+        found_spikes += disturbances(grid, many_spikes(seed)).empty() ? 0 : 1;
+        found_codes += disturbances(grid, coarse_codes(seed)).empty() ? 0 : 1;
+    }
+    std::cout << "of " << recordings << " recordings: two levels " << found_levels << ", spikes "
+              << found_spikes << ", codes " << found_codes << '\n';
+    EXPECT_LT(found_levels, 5);
+    EXPECT_LT(found_spikes, 5);
+    EXPECT_LT(found_codes, 5);
 }
 
 // The chance is one in 1000 each; 9 of 1000 or more is one in 10^6 by Poisson's law.
