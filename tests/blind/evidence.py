@@ -280,11 +280,11 @@ def _structure_nats(context, true, other):
         return count * np.log(count / rival) - count + rival
 
     if "stale" in a:
-        chance = np.log(n)  # of which repeats, were there no order in them
+        # Nobody knows which they are: new samples repeat by chance, too.
+        by_chance = n
         for axis in range(3):
-            chance = chance + np.log(max(2.0, np.sqrt(4.0 * np.pi) * context.sigma_dps(axis) / context.step_dps))
-        repeats = a["stale"] * n
-        total += poisson(repeats, b["stale"] * n) if b.get("stale") else repeats * min(chance, 12.0)
+            by_chance /= max(2.0, np.sqrt(4.0 * np.pi) * context.sigma_dps(axis) / context.step_dps)
+        total += poisson(a["stale"] * n + by_chance, b.get("stale", 0.0) * n + by_chance)
     for kind, worth in (("gaps", GAP_NATS), ("slips", SLIP_NATS)):
         if kind in a:
             total += poisson(a[kind], b[kind]) if b.get(kind) else a[kind] * worth

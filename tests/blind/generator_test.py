@@ -246,6 +246,25 @@ class Evidence(unittest.TestCase):
 
         self.ratios(ArwScale, lambda c: {"up": True}, ratio)
 
+    def test_of_repeats_is_that_of_their_number_against_chance(self):
+        values, asked = [], []
+        for seed in range(self.SEEDS):
+            context = quiet(Context(seed + 160, False, self.MINUTES))
+            sigma = np.array([context.sigma_dps(axis) for axis in range(3)])
+            # Noise so fine that hardly any repeat is by chance, or so coarse that most are.
+            context.step_dps = float(np.mean(sigma)) / (40.0, 4.0)[seed % 2]
+            effect = Stale(context, {"eps": 40.0 / context.n, "run_length": 0.0}, list("xyz"))
+            asked.append(generate.evidence_of(context, [effect]))
+            noise = np.round(stream(seed, "repeats").standard_normal((context.n, 3)) * sigma / context.step_dps)
+            rows = effect.rows({"gx_dps": noise, "t_s": np.arange(context.n)}, stream(seed, "stale"))["gx_dps"]
+            repeats = np.count_nonzero(np.all(np.diff(rows, axis=0) == 0.0, axis=1))
+            chance = context.n * np.prod(context.step_dps / (np.sqrt(4.0 * np.pi) * sigma))
+            values.append(repeats * np.log((40.0 + chance) / chance) - 40.0)
+        off = np.subtract(values, asked)
+        self.assertGreater(min(asked), 5.0)
+        self.assertGreater(max(asked), 100.0)
+        self.assertLess(abs(np.mean(off)), LIMIT * np.std(off, ddof=1) / np.sqrt(self.SEEDS))
+
     def test_of_heavy_tails(self):
         def ratio(context, effect, x, t, variance):
             z, nu = (x - x.mean()) / np.sqrt(variance), effect.params["nu"]
