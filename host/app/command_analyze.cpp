@@ -11,6 +11,7 @@
 #include "host/app/many_recordings.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/app/stage_clock.hpp"
 #include "host/app/text_options.hpp"
 

@@ -3,6 +3,7 @@
 #include "host/app/calibration_run.hpp"
 #include "host/app/command.hpp"
 #include "host/app/option_check.hpp"
+#include "host/app/sensor_choice.hpp"
 
 namespace gyrolog {
 namespace {
