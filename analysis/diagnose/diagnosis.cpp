@@ -176,21 +176,23 @@ private:
         return unnamed_.empty() || judge_what_forms_leave();
     }
 
-    // Of the causes, then the forms: one without which the gap is no larger.
+    // Of the causes, then the forms: one without which the gap is no larger. What is counted was not fitted.
     std::optional<std::size_t> needless() const {
+        const std::size_t causes = found_.causes.size();
         const std::vector<double>& nats = measured_->returning_nats;
         const auto least_of = [&](std::size_t from, std::size_t to) {
-            const auto begin = nats.begin();
-            return static_cast<std::size_t>(std::min_element(begin + static_cast<std::ptrdiff_t>(from),
-                                                             begin + static_cast<std::ptrdiff_t>(to)) -
-                                            begin);
+            std::optional<std::size_t> least;
+            for (std::size_t i = from; i < to; ++i) {
+                if (i < causes && traits_of(found_.causes[i].finding.effect).is_counted) { continue; }
+                if (!least || nats[i] < nats[*least]) { least = i; }
+            }
+            return least;
         };
-        const std::size_t causes = found_.causes.size();
-        const std::size_t least = least_of(0, nats.size());
-        if (nats[least] <= 0.0) { return least; }
-        if (causes > 0 && measured_->named.value > measured_->before.value) { return least_of(0, causes); }
-        const bool forms_harm = !unnamed_.empty() && measured_->after.value > measured_->named.value;
-        return forms_harm ? std::optional(least_of(causes, nats.size())) : std::nullopt;
+        const std::optional<std::size_t> least = least_of(0, nats.size());
+        if (!least || nats[*least] <= 0.0) { return least; }
+        if (measured_->named.value > measured_->before.value) { return least_of(0, causes); }
+        const bool forms_harm = measured_->after.value > measured_->named.value;
+        return forms_harm ? least_of(causes, nats.size()) : std::nullopt;
     }
 
     // A sensor that was turned and whose reference nobody knows leaves its motion.

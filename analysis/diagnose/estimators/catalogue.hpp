@@ -35,7 +35,7 @@ struct EstimatorTraits {
     // does.
     bool is_not_normal = false;
     // With the effect in the model the spectra's likelihood is another one, which does not compare with that
-    // of a model without it.
+    // of a model without it: of normal noise it is not, or of other samples, the effect's own left out.
     bool changes_likelihood = false;
     // What tells the effect is beside the spectra: in the samples' distribution, their codes, their stamps,
     // the course of their variance, what axes share.
@@ -53,8 +53,12 @@ struct EstimatorTraits {
     // Means of samples show the effect as samples do. They do not where it is in the samples' distribution,
     // their codes or their stamps: a mean is no sample. A sample that is far enough off they show smaller.
     bool shows_in_means = true;
-    // The effect can be fitted to one half of a recording and judged by the other. Codes, repeated samples
-    // and stamps are counted: no noise is fitted that could be fitted too well. Two levels that the model has
+    // The effect is counted in the numbers: codes, repeated samples, gaps in the stamps. No noise is fitted
+    // that could be fitted too well, so that its own evidence tells how likely it is, and data that the fit
+    // did not use have nothing to add.
+    bool is_counted = false;
+    // The effect can be fitted to one half of a recording and judged by the other. What is counted needs
+    // not. Two levels that the model has
     // already cannot be looked for again. A line lies in few coefficients, which may all be in one half; the
     // largest of some spikes or of clipped samples is no parameter that a second sample of them would share.
     bool can_be_halved = true;

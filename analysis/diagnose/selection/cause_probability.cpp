@@ -22,7 +22,9 @@ Cause with_probability(const FoundCause& found, double returning_nats,
     Cause cause;
     cause.finding = found.finding;
     // In units of the cause's own likelihood: itself, then nothing, then every rival.
-    double sum = 1.0 + std::exp(-returning_nats);
+    const double against_nothing_nats =
+        traits_of(effect).is_counted ? found.finding.evidence_nats : returning_nats;
+    double sum = 1.0 + std::exp(-against_nothing_nats);
     for (const Finding& rival : found.rivals) {
         if (rival.effect == effect) { continue; }
         const double behind = found.finding.evidence_nats - rival.evidence_nats;

@@ -11,7 +11,7 @@
 namespace gyrolog {
 
 // `returning_nats`: the surprisal that returns without the cause, on data that the fit did not use: its
-// evidence against nothing.
+// evidence against nothing. What is counted has evidence of its own.
 Cause with_probability(const FoundCause& found, double returning_nats,
                        const std::optional<BetterShape>& better_shape);
 

@@ -73,6 +73,17 @@ TEST(Diagnosis, NamesAsManyEffectsAsThereAre) {
     EXPECT_EQ(five.not_held_out, std::vector<std::string>{"tone"});
 }
 
+// Ten repeats in ten minutes are certain, one by one, and yet no curve shows them.
+TEST(Diagnosis, NamesRepeatsThatAreTooRareForTheMeasures) {
+    SensorModel sensor = with_effect(calibrated_sensor(), "stale", {{"eps", 0.0002}}, {});
+    sensor = with_effect(sensor, "arw_scale", {{"factor", 1.1}}, {"y"});
+    DiagnosisOptions options;
+    options.simulations = 20;
+    const Diagnosis answer = *diagnose(recorded(sensor, 60000, 91), calibrated_sensor(), "model", options);
+    EXPECT_EQ(effects_of(answer), (std::set<std::string>{"arw_scale", "stale"}));
+    for (const Cause& cause : answer.causes) { EXPECT_GT(cause.score, 0.95) << cause.finding.effect; }
+}
+
 // What the catalogue lacks is left, with its place, and does not touch what is certain of the rest.
 TEST(Diagnosis, IsPartOfAnAnswerWhereSomethingElseIsLeft) {
     const SensorModel model = calibrated_sensor();

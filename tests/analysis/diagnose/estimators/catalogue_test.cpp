@@ -64,9 +64,23 @@ TEST(Catalogue, KnowsWhatEachEffectIs) {
     EXPECT_THAT(effects_with([](const auto& t) { return !t.shows_in_means; }),
                 ElementsAre("clock_jitter", "clock_rate", "density_table", "disturbance", "dropped",
                             "heavy_tail", "quantization", "saturation", "stale"));
+    EXPECT_THAT(effects_with([](const auto& t) { return t.is_counted; }),
+                ElementsAre("dropped", "quantization", "saturation", "stale"));
     EXPECT_THAT(effects_with([](const auto& t) { return !t.can_be_halved; }),
                 ElementsAre("clock_jitter", "clock_rate", "disturbance", "dropped", "quantization", "rtn",
                             "saturation", "spikes", "stale", "tone"));
+}
+
+// With the effect in the model its samples are left out. A clock's rate leaves out the last ones only.
+TEST(Catalogue, ComparesNoLikelihoodsOfOtherSamples) {
+    std::size_t effects = 0;
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect == nullptr || link.effect->signature == nullptr) { continue; }
+        if (link.effect->signature->unjudged == nullptr || link.effect->name == "clock_rate") { continue; }
+        EXPECT_TRUE(traits_of(link.effect->name).changes_likelihood) << link.effect->name;
+        ++effects;
+    }
+    EXPECT_GE(effects, 4U);
 }
 
 // In motion the mean answer tells far more of a filter than the noise does.

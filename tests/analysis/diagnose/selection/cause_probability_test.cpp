@@ -47,5 +47,9 @@ TEST(CauseProbability, IsSmallWhereNothingDoesBetter) {
     EXPECT_LT(with_probability(found(50.0, {}), -5.0, {}).score, 0.01);
 }
 
+TEST(CauseProbability, OfWhatIsCountedIsThatOfItsOwnEvidence) {
+    EXPECT_GT(with_probability({finding("stale", 50.0), {}}, -5.0, {}).score, 0.99);
+}
+
 }  // namespace
 }  // namespace gyrolog
