@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/gain_band.hpp"
 #include "analysis/diagnose/estimators/resolutions.hpp"
@@ -22,6 +23,9 @@ constexpr double simplex_width = 0.05;
 constexpr double fall_polished_nats = 0.25;
 constexpr std::size_t polishing_passes = 2;
 constexpr int simplex_simulations_most = 18;
+// Of noise and response in turns: what one more would gain.
+constexpr double turn_settled_nats = 0.02;
+constexpr int turns_most = 30;
 
 }  // namespace gyrolog::resolution
 
@@ -39,6 +43,117 @@ struct Quick {
     NormalEquations equations;
     double gain_nats = 0.0;
     double cost_nats = 0.0;  // of the linear parameters
+};
+
+// One axis, whose noise and response are fitted in turns, each as the other is.
+class AxisInTurns {
+public:
+    AxisInTurns(const Observation& observation, std::size_t axis, const MeanResponses& responses,
+                std::vector<SpectralParts> parts)
+        : bins_(&observation.prediction().bins()),
+          seen_(&observation.axis(axis)),
+          regression_(observation, axis, responses),
+          sd_rel_(noise_uncertainty(observation.prediction().model(), axis)),
+          parts_(std::move(parts)) {
+        start_from(seen_->noise);
+    }
+
+    // Whether its slow noise may be anything, and so may have taken up the response.
+    bool has_open_noise() const { return std::max(sd_rel_[1], sd_rel_[2]) >= decisions.seen_sd_rel(); }
+
+    // Open noise at the least that it can be.
+    void start_without_slow_noise() {
+        NoiseNuisance noise = seen_->noise;
+        for (const std::size_t index : {std::size_t{1}, std::size_t{2}}) {
+            if (sd_rel_[index] >= decisions.seen_sd_rel()) { noise.z[index] = -1.0 / sd_rel_[index]; }
+        }
+        start_from(noise);
+    }
+
+    const NormalEquations& equations() const { return equations_; }
+
+    void take(std::span<const double> c) {
+        const MeanRegression::Rest rest = regression_.rest(equations_, c);
+        noise_ = fit_nuisance(*bins_, parts_, rest.power, sd_rel_, noise_);
+        gain_nats_ = noise_.log_likelihood_nats - seen_->noise.log_likelihood_nats - rest.charge_nats;
+        weigh();
+    }
+
+    double gain_nats() const { return gain_nats_; }
+
+private:
+    void start_from(const NoiseNuisance& noise) {
+        noise_ = noise;
+        weigh();
+    }
+
+    void weigh() {
+        std::vector<double> density(parts_.size());
+        expected_density(parts_, sd_rel_, noise_.z, density);
+        equations_ = regression_.equations(density);
+    }
+
+    const SpectralBins* bins_;
+    const AxisObservation* seen_;
+    MeanRegression regression_;
+    std::array<double, 3> sd_rel_;
+    std::vector<SpectralParts> parts_;
+    NoiseNuisance noise_;
+    NormalEquations equations_;
+    double gain_nats_ = 0.0;
+};
+
+// One response of some axes, with N, B and K of each fitted with it.
+class CommonFit {
+public:
+    // Without linear parameters the response is what it is.
+    explicit CommonFit(bool is_linear) : is_linear_(is_linear) {}
+
+    void add(AxisInTurns axis) { axes_.push_back(std::move(axis)); }
+
+    bool has_open_noise() const { return std::ranges::any_of(axes_, &AxisInTurns::has_open_noise); }
+
+    void start_without_slow_noise() {
+        for (AxisInTurns& axis : axes_) { axis.start_without_slow_noise(); }
+    }
+
+    void settle() {
+        for (int turn = 0; turn < resolution::turns_most; ++turn) {
+            pool();
+            c_ = is_linear_ ? equations_.solution() : std::vector{1.0};
+            double gain_nats = 0.0;
+            for (AxisInTurns& axis : axes_) {
+                axis.take(c_);
+                gain_nats += axis.gain_nats();
+            }
+            const double more_nats = gain_nats - gain_nats_;
+            gain_nats_ = gain_nats;
+            if (!(more_nats > resolution::turn_settled_nats)) { break; }
+        }
+    }
+
+    double gain_nats() const { return gain_nats_; }
+    const std::vector<double>& c() const { return c_; }
+    // Of all axes together.
+    const NormalEquations& equations() const { return equations_; }
+
+    std::vector<double> gains_nats() const {
+        std::vector<double> gains;
+        for (const AxisInTurns& axis : axes_) { gains.push_back(axis.gain_nats()); }
+        return gains;
+    }
+
+private:
+    void pool() {
+        equations_ = axes_.front().equations();
+        for (std::size_t i = 1; i < axes_.size(); ++i) { equations_.add(axes_[i].equations()); }
+    }
+
+    bool is_linear_;
+    std::vector<AxisInTurns> axes_;
+    std::vector<double> c_;
+    NormalEquations equations_;
+    double gain_nats_ = minus_infinity;
 };
 
 class MeanResponseEstimator final : public Estimator {
@@ -348,15 +463,6 @@ private:
         return sd;
     }
 
-    // The gain with N, B and K refitted, on one axis.
-    struct AxisFit {
-        std::vector<double> c;
-        std::vector<double> sd;
-        double gain_nats = 0.0;
-        double cost_nats = 0.0;
-        NormalEquations equations;
-    };
-
     // What filters the motion filters the noise as well.
     std::vector<SpectralParts> expected_parts(std::size_t axis, const Trial& trial) const {
         std::vector<SpectralParts> parts = prediction_->parts(axis);
@@ -368,39 +474,42 @@ private:
         return parts;
     }
 
-    AxisFit refitted(const Observation& observation, std::size_t axis, const Trial& trial,
-                     const std::vector<double>* given) const {
-        const AxisObservation& seen = observation.axis(axis);
-        const MeanRegression regression(observation, axis, trial.responses[axis]);
-        const std::array<double, 3> sd_rel = noise_uncertainty(prediction_->model(), axis);
-        const std::vector<SpectralParts> parts = expected_parts(axis, trial);
-        NoiseNuisance noise = seen.noise;
-        std::vector<double> density(parts.size());
-        expected_density(parts, sd_rel, noise.z, density);
-        AxisFit fit;
-        for (int round = 0; round < 3; ++round) {
-            fit.equations = regression.equations(density);
-            fit.c = given != nullptr ? *given : solved(fit.equations);
-            const MeanRegression::Rest rest = regression.rest(fit.equations, fit.c);
-            noise = fit_nuisance(prediction_->bins(), parts, rest.power, sd_rel, noise);
-            expected_density(parts, sd_rel, noise.z, density);
-            fit.gain_nats = noise.log_likelihood_nats - seen.noise.log_likelihood_nats - rest.charge_nats;
+    CommonFit beginning(const Observation& observation, const Trial& trial,
+                        const std::vector<std::size_t>& axes) const {
+        CommonFit fit(!signature_.linear.empty());
+        for (const std::size_t axis : axes) {
+            fit.add(AxisInTurns(observation, axis, trial.responses[axis], expected_parts(axis, trial)));
         }
-        if (!signature_.linear.empty()) { fit.sd = fit.equations.sd(); }
-        fit.cost_nats = linear_cost(fit.equations, fit.c);
         return fit;
     }
 
-    AxesFit described(const std::vector<std::size_t>& axes, const Trial& trial, const AxisFit& fit) const {
+    // Slow noise and a slow response take up each other, and turns that begin with one end with it: the best
+    // of what both beginnings come to.
+    CommonFit common_fit(const Observation& observation, const Trial& trial,
+                         const std::vector<std::size_t>& axes) const {
+        CommonFit fit = beginning(observation, trial, axes);
+        fit.settle();
+        if (!fit.has_open_noise()) { return fit; }
+        CommonFit without = beginning(observation, trial, axes);
+        without.start_without_slow_noise();
+        without.settle();
+        return without.gain_nats() > fit.gain_nats() ? without : fit;
+    }
+
+    AxesFit described(const std::vector<std::size_t>& axes, const Trial& trial, const ParamValues& trial_sd,
+                      const CommonFit& fit) const {
         AxesFit described;
         described.axes = axes;
         described.params = trial.point.params;
-        described.cost_nats = fit.cost_nats;
+        described.gain_nats = fit.gains_nats();
+        described.cost_nats = linear_cost(fit.equations(), fit.c());
+        const std::vector<double> sd = fit.equations().sd();
         for (std::size_t j = 0; j < signature_.linear.size(); ++j) {
             const std::string name(signature_.linear[j]);
-            described.params[name] = fit.c[j];
-            described.sd[name] = fit.sd[j];
+            described.params[name] = fit.c()[j];
+            described.sd[name] = sd[j];
         }
+        described.sd.insert(trial_sd.begin(), trial_sd.end());
         return described;
     }
 
@@ -410,32 +519,18 @@ private:
         for (const auto& [name, sd] : trial_sd) {
             common_cost += occam_cost_nats(param_of(effect_, name), trial.point.params.at(name), sd);
         }
-        const bool only_shared = signature_.whole_sensor && prediction_->axes().size() > 1;
+        const std::vector<std::size_t>& axes = prediction_->axes();
+        const auto fit_to = [&](const std::vector<std::size_t>& some) {
+            return described(some, trial, trial_sd, common_fit(observation, trial, some));
+        };
         std::vector<AxesFit> single;
-        NormalEquations pooled;
-        for (const std::size_t axis : prediction_->axes()) {
-            const AxisFit fit = refitted(observation, axis, trial, nullptr);
-            AxesFit described_fit = described({axis}, trial, fit);
-            described_fit.gain_nats = {fit.gain_nats};
-            described_fit.sd.insert(trial_sd.begin(), trial_sd.end());
-            if (!only_shared) { single.push_back(std::move(described_fit)); }
-            if (pooled.b.empty()) {
-                pooled = fit.equations;
-            } else {
-                pooled.add(fit.equations);
-            }
+        if (!signature_.whole_sensor || axes.size() == 1) {
+            for (const std::size_t axis : axes) { single.push_back(fit_to({axis})); }
         }
         std::optional<AxesFit> shared;
-        if (prediction_->axes().size() > 1) {
-            AxisFit common;
-            common.c = solved(pooled);
-            if (!signature_.linear.empty()) { common.sd = pooled.sd(); }
-            common.cost_nats = linear_cost(pooled, common.c) + common_cost;
-            shared = described(prediction_->axes(), trial, common);
-            shared->sd.insert(trial_sd.begin(), trial_sd.end());
-            for (const std::size_t axis : prediction_->axes()) {
-                shared->gain_nats.push_back(refitted(observation, axis, trial, &common.c).gain_nats);
-            }
+        if (axes.size() > 1) {
+            shared = fit_to(axes);
+            shared->cost_nats += common_cost;
         }
         return best_of(effect_, single, common_cost, shared);
     }

@@ -1,15 +1,29 @@
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/likelihood/noise_refit.hpp"
+#include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
 
 SensorModel with_cause(SensorModel model, const Finding& finding) {
     model.effects.insert(model.effects.end(), finding.entries.begin(), finding.entries.end());
     return model;
+}
+
+SensorModel with_open_cause(SensorModel model, const Finding& finding) {
+    const EffectSignature* signature = find_effect(finding.effect)->signature;
+    if (signature != nullptr && signature->slow_coefficient != 0) {
+        const std::string coefficient(1, signature->slow_coefficient);
+        for (const std::size_t axis : finding.where.axes) {
+            model.axes[axis].sd_rel[coefficient] = decisions.unknown_sd_rel;
+        }
+    }
+    return with_cause(std::move(model), finding);
 }
 
 SensorModel corrected_model(SensorModel model, const Diagnosis& diagnosis, const SensorModel& centred) {

@@ -46,4 +46,26 @@ std::optional<Finding> on_axes(const Finding& finding, const std::vector<std::si
     return rest;
 }
 
+std::optional<Finding> on_more_axes(Finding finding, const Finding& more) {
+    const auto is_of_single_axes = [](const EffectModel& entry) { return !entry.axes.empty(); };
+    if (!std::ranges::all_of(finding.entries, is_of_single_axes) ||
+        !std::ranges::all_of(more.entries, is_of_single_axes)) {
+        return std::nullopt;
+    }
+    for (const std::size_t axis : more.where.axes) {
+        if (std::ranges::count(finding.where.axes, axis) != 0) { return std::nullopt; }
+        finding.where.axes.push_back(axis);
+        finding.axis_gain_nats.at(axis) = more.axis_gain_nats.at(axis);
+        finding.axis_spectral_nats.at(axis) = more.axis_spectral_nats.at(axis);
+    }
+    std::ranges::sort(finding.where.axes);
+    finding.sd.resize(finding.entries.size());
+    finding.entries.insert(finding.entries.end(), more.entries.begin(), more.entries.end());
+    finding.sd.insert(finding.sd.end(), more.sd.begin(), more.sd.end());
+    finding.parameters += more.parameters;
+    finding.gain_nats += more.gain_nats;
+    finding.evidence_nats += more.evidence_nats;
+    return finding;
+}
+
 }  // namespace gyrolog

@@ -16,4 +16,8 @@ std::vector<std::size_t> axes_explained_by(const Finding& rival, const Finding& 
 // axes.
 std::optional<Finding> on_axes(const Finding& finding, const std::vector<std::size_t>& axes);
 
+// The finding on the axes of another one of the same effect as well. No value where they share an axis, or
+// where entries are not of single axes.
+std::optional<Finding> on_more_axes(Finding finding, const Finding& more);
+
 }  // namespace gyrolog

@@ -88,7 +88,8 @@ public:
         causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(cause));
         forget_null_bias();
         static_cast<void>(settle_responses());
-        if (!refit(Rivals::stay_out)) { return std::nullopt; }
+        // Those that are refitted first are so beside the others as these were.
+        if (!refit(Rivals::stay_out) || !refit(Rivals::stay_out)) { return std::nullopt; }
         static_cast<void>(settle_responses());
         return result_of(with_causes());
     }
@@ -102,7 +103,10 @@ private:
             model_ = with_noise(first_.prediction->model(), result.noise_refits);
             latest = with_causes();
         }
-        result.corrected = model_with_all_but(causes_.size());
+        result.corrected = model_;
+        for (const FoundCause& cause : causes_) {
+            result.corrected = with_cause(std::move(result.corrected), cause.finding);
+        }
         result.null_bias = null_bias_;
         result.causes = std::move(causes_);
         std::ranges::sort(result.causes, std::greater{},
@@ -245,7 +249,7 @@ private:
             if (std::ranges::count(places, i) != 0) {
                 together.push_back(causes_[i].finding);
             } else {
-                model = with_cause(std::move(model), causes_[i].finding);
+                model = with_open_cause(std::move(model), causes_[i].finding);
             }
         }
         if (more != nullptr) { together.push_back(*more); }
@@ -344,7 +348,7 @@ private:
     double worth_nats(const Hypotheses& with_causes, const Finding* next) const {
         if (next == nullptr) { return worth_nats(*with_causes.observation); }
         return worth_nats(
-                   with_causes.observation->under(with_cause(with_causes.prediction->model(), *next))) +
+                   with_causes.observation->under(with_open_cause(with_causes.prediction->model(), *next))) +
                worth_beside_spectra_nats(*next);
     }
 
@@ -375,7 +379,7 @@ private:
     double likelihood_with(const Hypotheses& hypotheses, const Finding* next) const {
         if (next == nullptr) { return log_likelihood_nats(*hypotheses.observation); }
         const auto prediction =
-            hypotheses.prediction->with(with_cause(hypotheses.prediction->model(), *next));
+            hypotheses.prediction->with(with_open_cause(hypotheses.prediction->model(), *next));
         return log_likelihood_nats({prediction, recording_, options_.seed});
     }
 
@@ -449,27 +453,40 @@ private:
     }
 
     // Each cause was chosen before those that were found after it, and these were fitted to what it left. So
-    // each cause once gives its axes to the rival that explains them nearly as well. All causes are refitted,
-    // and the best further cause is added. The exchange stays if it raises the worth of all measures. The
-    // function returns whether any exchange stays; no value when it was ended early.
+    // each cause once gives its axes to the best rival of each estimator that explains them nearly as well.
+    // All causes are refitted, and the best further cause is added. The first exchange stays that raises the
+    // worth of all measures, or keeps it with fewer causes. The function returns whether any exchange stays;
+    // no value when it was ended early.
     std::optional<bool> exchange() {
         bool any = false;
         for (std::size_t i = 0; !was_exchanged_ && i < causes_.size(); ++i) {
-            const std::vector<FoundCause> before = causes_;
-            if (!give_to_rival(i)) { continue; }
-            const double before_nats = worth_nats_of(before);
-            // What was fitted beside the cause is fitted beside the rival before that is judged.
-            if (!refit(Rivals::stay_out) || !refit(Rivals::stay_out)) { return std::nullopt; }
-            const double least_nats = before_nats + decisions.strong_nats;
-            const bool were_weighed = std::exchange(are_weighed_, true);
-            if (!add_next_if_worth(least_nats)) { return std::nullopt; }
-            const bool is_better = change_likelihood_among(causes_) == change_likelihood_among(before) &&
-                                   worth_nats(observed()) > least_nats;
-            if (!is_better) { causes_ = before, are_weighed_ = were_weighed; }
-            any = any || is_better;
+            for (const Finding& rival : best_rivals(causes_[i])) {
+                const std::optional<bool> is_better = exchange_for(i, rival);
+                if (!is_better) { return std::nullopt; }
+                if (!*is_better) { continue; }
+                any = true;
+                break;
+            }
         }
         was_exchanged_ = true;
         return any;
+    }
+
+    // Whether the exchange stays.
+    std::optional<bool> exchange_for(std::size_t place, const Finding& rival) {
+        const std::vector<FoundCause> before = causes_;
+        if (!give_to_rival(place, rival)) { return false; }
+        const double before_nats = worth_nats_of(before);
+        // What was fitted beside the cause is fitted beside the rival before that is judged.
+        if (!refit(Rivals::stay_out) || !refit(Rivals::stay_out)) { return std::nullopt; }
+        const double more_nats = decisions.strong_nats;
+        const bool were_weighed = std::exchange(are_weighed_, true);
+        if (!add_next_if_worth(before_nats + more_nats)) { return std::nullopt; }
+        const double least_nats = before_nats + (causes_.size() < before.size() ? -more_nats : more_nats);
+        const bool is_better = change_likelihood_among(causes_) == change_likelihood_among(before) &&
+                               worth_nats(observed()) > least_nats;
+        if (!is_better) { causes_ = before, are_weighed_ = were_weighed; }
+        return is_better;
     }
 
     // With what is called for next, where that may lift the worth above this. False when ended early.
@@ -489,32 +506,50 @@ private:
         return nats;
     }
 
-    // Whether there is a rival for any of the axes of the cause at this place.
-    bool give_to_rival(std::size_t place) {
-        const Finding cause = causes_[place].finding;
-        if (is_of_codes(cause) || traits_of(cause.effect).recurs) { return false; }
-        for (const Finding& rival : causes_[place].rivals) {
-            const EstimatorTraits& traits = traits_of(rival.effect);
-            if (rival.effect == cause.effect || !is_new(rival) || traits.is_beside_spectra || traits.recurs) {
+    // Of each estimator, the best first.
+    std::vector<Finding> best_rivals(const FoundCause& cause) const {
+        const EstimatorTraits& own = traits_of(cause.finding.effect);
+        if (own.is_of_codes || own.recurs) { return {}; }
+        std::map<EvidenceMethod, Finding> best;
+        for (const Finding& rival : cause.rivals) {
+            const EstimatorTraits& traits = traits_of(rival.effect, *first_.prediction);
+            if (rival.effect == cause.finding.effect || traits.is_beside_spectra || traits.recurs) {
                 continue;
             }
-            const std::vector<std::size_t> given = axes_explained_by(rival, cause, decisions.nearly_all);
-            if (given.empty()) { continue; }
-            std::vector<std::size_t> kept;
-            std::ranges::set_difference(cause.where.axes, given, std::back_inserter(kept));
-            if (kept.empty() && traits_of(cause.effect).changes_likelihood) { continue; }
-            if (kept.empty()) {
-                causes_[place].finding = rival;
-                return true;
-            }
-            const std::optional<Finding> rest = on_axes(cause, kept);
-            const std::optional<Finding> other = on_axes(rival, given);
-            if (!rest || !other) { continue; }
-            causes_[place].finding = *rest;
-            causes_.push_back({*other, {}});
-            return true;
+            if (axes_explained_by(rival, cause.finding, decisions.nearly_all).empty()) { continue; }
+            best.try_emplace(traits.method, rival);
         }
-        return false;
+        return best_first(std::move(best));
+    }
+
+    // The cause's axes that the rival explains nearly as well. A rival that is a cause already takes them
+    // beside its own. Whether it took any.
+    bool give_to_rival(std::size_t place, const Finding& rival) {
+        const Finding cause = causes_[place].finding;
+        const std::vector<std::size_t> given = axes_explained_by(rival, cause, decisions.nearly_all);
+        std::vector<std::size_t> kept;
+        std::ranges::set_difference(cause.where.axes, given, std::back_inserter(kept));
+        if (kept.empty() && traits_of(cause.effect).changes_likelihood) { return false; }
+        const std::optional<Finding> rest = kept.empty() ? std::nullopt : on_axes(cause, kept);
+        const auto same = std::ranges::find(causes_, rival.effect,
+                                            [](const FoundCause& found) { return found.finding.effect; });
+        const bool takes_all = kept.empty() && same == causes_.end();
+        const std::optional<Finding> taken = takes_all ? rival : on_axes(rival, given);
+        if ((!kept.empty() && !rest) || !taken) { return false; }
+        if (same != causes_.end()) {
+            std::optional<Finding> more = on_more_axes(same->finding, *taken);
+            if (!more) { return false; }
+            same->finding = *std::move(more);
+        } else if (!is_new(*taken)) {
+            return false;
+        }
+        if (rest) { causes_[place].finding = *rest; }
+        if (same == causes_.end() && rest) { causes_.push_back({*taken, {}}); }
+        if (same == causes_.end() && !rest) { causes_[place].finding = *taken; }
+        if (same != causes_.end() && !rest) {
+            causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(place));
+        }
+        return true;
     }
 
     // Of a long recording an observation is large: the fits that follow make their own.
@@ -577,7 +612,7 @@ private:
     SensorModel model_with_all_but(std::size_t left_out) const {
         SensorModel model = model_;
         for (std::size_t i = 0; i < causes_.size(); ++i) {
-            if (i != left_out) { model = with_cause(std::move(model), causes_[i].finding); }
+            if (i != left_out) { model = with_open_cause(std::move(model), causes_[i].finding); }
         }
         return model;
     }
@@ -630,11 +665,21 @@ private:
         return true;
     }
 
-    // What is a cause already is no rival of another.
+    // What is a cause already is no rival of another, unless on axes that it has not taken.
+    bool is_rival(const Finding& finding, const Finding& cause) const {
+        if (is_new(finding)) { return true; }
+        if (traits_of(finding.effect).recurs || is_told_by_twin(finding)) { return false; }
+        const auto same = std::ranges::find(causes_, finding.effect,
+                                            [](const FoundCause& found) { return found.finding.effect; });
+        return same != causes_.end() && std::ranges::none_of(cause.where.axes, [&](std::size_t axis) {
+                   return std::ranges::count(same->finding.where.axes, axis) != 0;
+               });
+    }
+
     std::vector<Finding> rivals_of(const Finding& cause, const std::vector<Finding>& findings) const {
         std::vector<Finding> rivals;
         std::ranges::copy_if(findings, std::back_inserter(rivals), [&](const Finding& f) {
-            return f.effect == cause.effect || (is_new(f) && !is_of_codes(cause));
+            return f.effect == cause.effect || (is_rival(f, cause) && !is_of_codes(cause));
         });
         return rivals;
     }

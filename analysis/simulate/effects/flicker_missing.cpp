@@ -32,6 +32,7 @@ constexpr std::string_view flicker_missing_fitted[] = {"B_dps"};
 
 constexpr EffectSignature flicker_missing_signature = {
     .spectral = flicker_missing_fitted,
+    .slow_coefficient = 'B',
     .spectrum = flicker_missing_spectrum,
     .words = "Flicker noise is missing in the model, a bias instability of {B_dps}",
     .noun = "flicker noise of {B_dps}",

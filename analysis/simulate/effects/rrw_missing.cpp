@@ -36,6 +36,7 @@ constexpr std::string_view rrw_missing_fitted[] = {"K_dps_sqrt_hz"};
 
 constexpr EffectSignature rrw_missing_signature = {
     .spectral = rrw_missing_fitted,
+    .slow_coefficient = 'K',
     .spectrum = rrw_missing_spectrum,
     .words = "The output wanders: a rate random walk of {K_dps_sqrt_hz} is missing in the model",
     .noun = "a rate random walk of {K_dps_sqrt_hz}",

@@ -61,5 +61,20 @@ TEST(FindingAxes, AreNotTakenFromWhatTheSensorHasAsAWhole) {
     EXPECT_FALSE(on_axes(finding(), {}));
 }
 
+TEST(FindingAxes, AreJoinedWhereTheyAreOthers) {
+    const auto all = on_more_axes(*on_axes(finding(), {0}), *on_axes(finding(), {1, 2}));
+    ASSERT_TRUE(all);
+    EXPECT_EQ(all->where.axes, (Axes{0, 1, 2}));
+    ASSERT_EQ(all->entries.size(), 2U);
+    ASSERT_EQ(all->sd.size(), 2U);
+    EXPECT_EQ(all->entries[1].axes, (std::vector<std::string>{"y", "z"}));
+    EXPECT_DOUBLE_EQ(all->gain_nats, 80.0);
+    EXPECT_DOUBLE_EQ(all->axis_gain_nats[2], 10.0);
+    EXPECT_FALSE(on_more_axes(finding(), *on_axes(finding(), {1})));
+    Finding whole = *on_axes(finding(), {1, 2});
+    for (EffectModel& entry : whole.entries) { entry.axes.clear(); }
+    EXPECT_FALSE(on_more_axes(*on_axes(finding(), {0}), whole));
+}
+
 }  // namespace
 }  // namespace gyrolog
