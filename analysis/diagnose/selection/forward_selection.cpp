@@ -522,34 +522,40 @@ private:
         return best_first(std::move(best));
     }
 
-    // The cause's axes that the rival explains nearly as well. A rival that is a cause already takes them
-    // beside its own. Whether it took any.
+    // The cause's axes that the rival explains nearly as well. Whether it took any.
     bool give_to_rival(std::size_t place, const Finding& rival) {
         const Finding cause = causes_[place].finding;
         const std::vector<std::size_t> given = axes_explained_by(rival, cause, decisions.nearly_all);
         std::vector<std::size_t> kept;
         std::ranges::set_difference(cause.where.axes, given, std::back_inserter(kept));
         if (kept.empty() && traits_of(cause.effect).changes_likelihood) { return false; }
-        const std::optional<Finding> rest = kept.empty() ? std::nullopt : on_axes(cause, kept);
-        const auto same = std::ranges::find(causes_, rival.effect,
-                                            [](const FoundCause& found) { return found.finding.effect; });
-        const bool takes_all = kept.empty() && same == causes_.end();
-        const std::optional<Finding> taken = takes_all ? rival : on_axes(rival, given);
-        if ((!kept.empty() && !rest) || !taken) { return false; }
-        if (same != causes_.end()) {
-            std::optional<Finding> more = on_more_axes(same->finding, *taken);
-            if (!more) { return false; }
-            same->finding = *std::move(more);
-        } else if (!is_new(*taken)) {
-            return false;
+        std::vector<FoundCause> causes = causes_;
+        if (kept.empty()) {
+            causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(place));
+        } else {
+            const std::optional<Finding> rest = on_axes(cause, kept);
+            if (!rest) { return false; }
+            causes[place].finding = *rest;
         }
-        if (rest) { causes_[place].finding = *rest; }
-        if (same == causes_.end() && rest) { causes_.push_back({*taken, {}}); }
-        if (same == causes_.end() && !rest) { causes_[place].finding = *taken; }
-        if (same != causes_.end() && !rest) {
-            causes_.erase(causes_.begin() + static_cast<std::ptrdiff_t>(place));
-        }
+        const bool is_whole = given.size() == rival.where.axes.size();
+        const std::optional<Finding> taken = is_whole ? rival : on_axes(rival, given);
+        if (!taken || !take_into(causes, *taken, kept.empty() ? place : causes.size())) { return false; }
+        causes_ = std::move(causes);
         return true;
+    }
+
+    // As a cause of its own at this place; one of the same effect has the axes beside its own. Whether it
+    // can.
+    static bool take_into(std::vector<FoundCause>& causes, const Finding& finding, std::size_t place) {
+        const auto same = std::ranges::find(causes, finding.effect,
+                                            [](const FoundCause& found) { return found.finding.effect; });
+        if (same == causes.end()) {
+            causes.insert(causes.begin() + static_cast<std::ptrdiff_t>(place), {finding, {}});
+            return true;
+        }
+        std::optional<Finding> more = on_more_axes(same->finding, finding);
+        if (more) { same->finding = *std::move(more); }
+        return more.has_value();
     }
 
     // Of a long recording an observation is large: the fits that follow make their own.

@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/estimators/mean_response.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
@@ -21,6 +24,12 @@ std::shared_ptr<const World> swept() {
     auto world = std::make_shared<FormulaWorld>();
     world->temperature_C = [](double t_s) { return 27.0 + 12.0 * triangle(t_s / 1800.0); };
     return world;
+}
+
+std::optional<Finding> finding_of(const std::vector<std::optional<Finding>>& findings, const char* effect) {
+    const auto is_it = [&](const std::optional<Finding>& one) { return one && one->effect == effect; };
+    const auto place = std::ranges::find_if(findings, is_it);
+    return place == findings.end() ? std::nullopt : *place;
 }
 
 std::map<std::string, double> evidences(const SensorModel& sensor, std::uint64_t seed) {
@@ -63,6 +72,34 @@ TEST(TemperatureCurve, OfEachOrderIsItself) {
             EXPECT_GT(best->second, 20.0) << seed;
         }
     }
+}
+
+// A walk that was found first has taken up the course, and has no size of its own beside it: however large it
+// was, the course's coefficient is as certain as without it.
+TEST(TemperatureCurve, IsFittedTogetherWithTheWalkThatStoodForIt) {
+    constexpr double c1_dps_per_C = 0.002;
+    SensorModel model = calibrated_sensor();
+    for (AxisModel& axis : model.axes) { axis.noise = {.N_rad_per_sqrt_s = axis.noise.N_rad_per_sqrt_s}; }
+    model.sd_rel = {{"N", 0.005}};
+    const auto recording =
+        recorded(with_effect(model, "temp_linear", {{"c1_dps_per_C", c1_dps_per_C}}, {"x"}), half_an_hour, 63,
+                 swept());
+    const Hypotheses first = examine(prediction_of(recording, model), recording, 1, 1);
+    auto walk = finding_of(first.findings, "rrw_missing");
+    ASSERT_TRUE(walk);
+    ASSERT_EQ(walk->where.axes, std::vector<std::size_t>{0});
+    walk->entries.front().params.at("K_dps_sqrt_hz") *= 4.0;
+    const auto beside =
+        found(make_mean_response_estimator, "temp_linear", recording, with_open_cause(model, *walk));
+    ASSERT_TRUE(beside);
+    EXPECT_EQ(beside->where.axes, std::vector<std::size_t>{0});
+    EXPECT_NEAR(beside->entries.front().params.at("c1_dps_per_C"), c1_dps_per_C, 0.2 * c1_dps_per_C);
+    const auto as_it_was =
+        found(make_mean_response_estimator, "temp_linear", recording, with_cause(model, *walk));
+    ASSERT_TRUE(as_it_was);
+    const auto sd = [](const Finding& finding) { return finding.sd.front().at("c1_dps_per_C"); };
+    EXPECT_LT(sd(*beside), 0.3 * sd(*as_it_was));
+    EXPECT_GT(beside->evidence_nats, 10.0);
 }
 
 TEST(TemperatureCurve, IsNoneWhereNothingFollowsTheTemperature) {
