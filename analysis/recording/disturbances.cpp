@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "analysis/numerics/distributions.hpp"
+#include "analysis/numerics/exponential_tail.hpp"
 #include "analysis/recording/grid_step.hpp"
 
 namespace gyrolog {
@@ -166,7 +171,7 @@ struct Signal {
     std::vector<Power> powers;   // by block
     std::vector<double> excess;  // of the logarithm of the power over its level, in standard deviations
     std::vector<double> levels;
-    std::vector<bool> is_beyond_own;  // by block: the tail of the signal's own blocks
+    double least_power = 0.0;
     double sd_log = 0.0;
     double loud_from = 0.0;
 
@@ -174,10 +179,28 @@ struct Signal {
     double ratio(std::size_t block) const { return std::exp(powers[block].log - levels[block]); }
 };
 
-// What a grid has by itself (Widrow, Kollar 2008, 1.1): numbers that hardly ever change have no less.
-double power_of_grid(std::span<const double> values) {
+// Of numbers that lie on no grid, or on one of two or three codes only, the largest of the gaps between
+// these.
+double code_step(std::span<const double> values) {
     const double step = grid_step(values);
-    return std::max(step * step / 12.0, std::numeric_limits<double>::min());
+    constexpr std::size_t codes_most = 3;
+    std::set<double> codes;
+    for (std::size_t i = 0; step == 0.0 && i < values.size() && codes.size() <= codes_most; ++i) {
+        codes.insert(values[i]);
+    }
+    if (codes.size() < 2 || codes.size() > codes_most) { return step; }
+    double widest = 0.0;
+    for (auto code = codes.begin(), next = std::next(code); next != codes.end(); ++code, ++next) {
+        widest = std::max(widest, *next - *code);
+    }
+    return widest;
+}
+
+// Numbers on two neighbouring codes have no more power (Popoviciu 1935): how often they change from one to
+// the other is no loudness.
+double power_of_codes(std::span<const double> values) {
+    const double step = code_step(values);
+    return std::max(step * step / 4.0, std::numeric_limits<double>::min());
 }
 
 double sd_of_logs(const Signal& signal, std::size_t samples_per_block) {
@@ -190,49 +213,19 @@ double sd_of_logs(const Signal& signal, std::size_t samples_per_block) {
     return std::max(sd_per_mad * median_of(std::move(off)), std::sqrt(2.0 / degrees));
 }
 
-// Where the tail of these numbers ends: chance has one beyond in a share `chance` of such samples. What lies
-// beyond a high threshold is exponential at most, for they are logarithms of a power (Pickands 1975). The
-// largest of it may be no noise: its mean is that of a sample censored there (Epstein, Sobel 1953), and no
-// less than a normal distribution's.
-double end_of_tail(std::vector<double> excess, double chance, const DisturbanceOptions& options) {
-    const auto blocks = static_cast<double>(excess.size());
-    const double in_tail = std::max(options.tail_blocks_least, std::floor(options.tail_share * blocks));
-    const auto tail = static_cast<std::size_t>(in_tail);
-    if (2 * tail > excess.size()) { return std::numeric_limits<double>::infinity(); }
-    std::ranges::sort(excess);
-    const auto seen = static_cast<std::size_t>(std::floor(in_tail * (1.0 - options.tail_censored_share)));
-    const std::size_t first = excess.size() - tail;
-    const double threshold = excess[first - 1];
-    double sum = 0.0;
-    for (std::size_t i = 0; i < tail; ++i) { sum += excess[first + std::min(i, seen - 1)] - threshold; }
-    const auto r = static_cast<double>(seen);
-    const double share = in_tail / blocks;
+// Of a normal variable, over the threshold that a share of them exceeds.
+double normal_mean_excess(double share) {
     const double quantile = normal_upper_quantile(share);
-    const double normal_mean =
-        std::exp(-0.5 * quantile * quantile) / (share * std::sqrt(2.0 * std::numbers::pi)) - quantile;
-    const double mean = std::max(sum / r, normal_mean);
-    // The estimated mean is a gamma variable of shape r, and the ratio to it has Lomax' tail.
-    return threshold + mean * r * (std::pow(in_tail / chance, 1.0 / r) - 1.0);
+    return std::exp(-0.5 * quantile * quantile) / (share * std::sqrt(2.0 * std::numbers::pi)) - quantile;
 }
 
-void find_own_tail(Signal& signal, std::span<const double> values, const std::vector<Block>& blocks,
-                   double least, double end) {
-    signal.is_beyond_own.assign(blocks.size(), false);
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-        if (!(signal.excess[i] > end)) { continue; }
-        const std::span<const double> block = values.subspan(blocks[i].first, blocks[i].count);
-        const Power less = power_of(without_pulse({block.begin(), block.end()}), least);
-        signal.is_beyond_own[i] = (less.log - signal.levels[i]) / signal.sd_log > signal.loud_from;
-    }
-}
-
-Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double quantile,
-                 double chance_own, const DisturbanceOptions& options) {
+Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks,
+                 const DisturbanceOptions& options) {
     Signal signal;
-    signal.loud_from = quantile;
-    const double least = power_of_grid(values);
+    signal.loud_from = normal_upper_quantile(1.0 / static_cast<double>(blocks.size()));
+    signal.least_power = power_of_codes(values);
     for (const Block& block : blocks) {
-        signal.powers.push_back(power_of(values.subspan(block.first, block.count), least));
+        signal.powers.push_back(power_of(values.subspan(block.first, block.count), signal.least_power));
     }
     signal.levels = levels_of(signal.powers, options);
     signal.sd_log = sd_of_logs(signal, blocks.front().count);
@@ -240,23 +233,45 @@ Signal signal_of(std::span<const double> values, const std::vector<Block>& block
         const double far_off = options.outlier_sigma * std::exp(0.5 * signal.levels[i]);
         if (signal.powers[i].largest > far_off) {
             const auto rest = without_outliers(values.subspan(blocks[i].first, blocks[i].count), far_off);
-            if (rest.size() < blocks[i].count) { signal.powers[i] = power_of(rest, least); }
+            if (rest.size() < blocks[i].count) { signal.powers[i] = power_of(rest, signal.least_power); }
         }
         signal.excess.push_back((signal.powers[i].log - signal.levels[i]) / signal.sd_log);
     }
-    find_own_tail(signal, values, blocks, least, end_of_tail(signal.excess, chance_own, options));
     return signal;
 }
 
-// P(X >= count) of a Poisson variable.
-double poisson_tail(std::size_t count, double mean) {
-    if (count == 0) { return 1.0; }
-    return 1.0 - gamma_upper_tail(static_cast<double>(count), mean);
+// Two jumps of one bias in a block are no bump.
+bool is_pulse(const Signal& signal, std::span<const double> values, std::size_t block) {
+    const Power rest = power_of(without_pulse({values.begin(), values.end()}), signal.least_power);
+    return (rest.log - signal.levels[block]) / signal.sd_log <= signal.loud_from;
 }
 
-std::size_t loud_at_once(const std::vector<Signal>& signals, std::size_t block) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(signals, [&](const Signal& signal) { return signal.is_loud(block); }));
+// P(X >= least) of a binomial variable, as -ln; p below 1.
+double binomial_tail_nats(double p, std::size_t count, std::size_t least) {
+    double ways = 1.0;  // to choose j of all
+    double sum = 0.0;   // over p^least
+    for (std::size_t j = 0; j <= count; ++j) {
+        const auto chosen = static_cast<double>(j);
+        const auto all = static_cast<double>(count);
+        if (j >= least) {
+            sum += ways * std::pow(p, chosen - static_cast<double>(least)) * std::pow(1.0 - p, all - chosen);
+        }
+        ways *= (all - chosen) / (chosen + 1.0);
+    }
+    return -std::log(sum);
+}
+
+// That two of these, or more, are as large as they are, if they are independent: a sensor's own noise is loud
+// on one axis at a time.
+double surprisal_of_several(std::vector<double> nats) {
+    std::ranges::sort(nats, std::greater{});
+    double most = 0.0;
+    for (std::size_t several = 2; several <= nats.size(); ++several) {
+        const double each = nats[several - 1];
+        most = std::max(most, static_cast<double>(several) * each +
+                                  binomial_tail_nats(std::exp(-each), nats.size(), several));
+    }
+    return most;
 }
 
 // Whether all signals together are as loud as one has to be: a disturbance that rings out is still there.
@@ -264,29 +279,6 @@ bool is_loud_in_sum(const std::vector<Signal>& signals, std::size_t block) {
     double sum = 0.0;
     for (const Signal& signal : signals) { sum += signal.excess[block]; }
     return sum > signals.front().loud_from * std::sqrt(static_cast<double>(signals.size()));
-}
-
-// Whether blocks that are loud on two signals at once are more than chance has.
-bool is_no_chance(const std::vector<Signal>& signals, double chance_each, double false_alarms_most) {
-    const std::size_t blocks = signals.front().powers.size();
-    std::size_t together = 0;
-    std::vector<double> alone(signals.size(), 0.0);
-    for (std::size_t block = 0; block < blocks; ++block) {
-        const std::size_t count = loud_at_once(signals, block);
-        if (count > 1) { ++together; }
-        if (count != 1) { continue; }
-        for (std::size_t s = 0; s < signals.size(); ++s) {
-            alone[s] += signals[s].is_loud(block) ? 1.0 : 0.0;
-        }
-    }
-    const auto n = static_cast<double>(blocks);
-    double expected = 0.0;
-    for (std::size_t a = 0; a < signals.size(); ++a) {
-        for (std::size_t b = a + 1; b < signals.size(); ++b) {
-            expected += n * (chance_each + alone[a] / n) * (chance_each + alone[b] / n);
-        }
-    }
-    return together > 0 && poisson_tail(together, expected) < false_alarms_most;
 }
 
 // Of a variance of its own: the likelihood ratio of a block of normal samples.
@@ -307,40 +299,116 @@ void add_block(Disturbance& disturbance, const std::vector<Signal>& signals, std
     }
 }
 
-bool is_beyond_own(const std::vector<Signal>& signals, std::size_t block) {
-    return std::ranges::any_of(signals, [&](const Signal& signal) { return signal.is_beyond_own[block]; });
-}
+// Of some signals in the blocks that are not disturbed, what is: in a row of passes, each with what is left.
+class DisturbedBlocks {
+public:
+    DisturbedBlocks(const std::vector<Signal>& signals, std::span<const std::vector<double>> values,
+                    const std::vector<Block>& blocks)
+        : signals_(signals), values_(values), blocks_(blocks), is_disturbed_(blocks.size(), false) {}
 
-// By block: loud on two signals at once where these are no chance, or beyond the tail of one signal's own
-// blocks; or beside such as long as a signal that is loud there stays so, or all together are; and the
-// neighbours.
-std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals, bool two_are_no_chance) {
-    const std::size_t blocks = signals.front().powers.size();
-    std::vector<bool> disturbed(blocks, false);
-    for (std::size_t block = 0; block < blocks; ++block) {
-        const bool at_once = two_are_no_chance && loud_at_once(signals, block) > 1;
-        if (!at_once && !is_beyond_own(signals, block)) { continue; }
+    // Blocks in which several signals are loud at once, as by chance they are not.
+    void take_loud_at_once(ExponentialTailOptions options, double chance) {
+        const std::vector<std::size_t> left = undisturbed();
+        std::vector<std::vector<double>> nats;
+        options.mean_least = normal_mean_excess(options.share);
+        for (const Signal& signal : signals_) {
+            const std::vector<double> excess = excess_of(signal, left);
+            const auto tail = ExponentialTail::of(excess, options);
+            if (!tail) { return; }
+            nats.push_back(tail->surprisals_nats(excess));
+        }
+        std::vector<double> at_once(left.size());
+        for (std::size_t i = 0; i < left.size(); ++i) {
+            std::vector<double> each;
+            for (const std::vector<double>& of_signal : nats) { each.push_back(of_signal[i]); }
+            at_once[i] = surprisal_of_several(std::move(each));
+        }
+        options.mean_least = 1.0;
+        const auto tail = ExponentialTail::of(at_once, options);
+        const double end = tail->end(at_once, chance, beyond_);
+        for (std::size_t i = 0; i < left.size(); ++i) {
+            if (at_once[i] > end) { take(left[i]); }
+        }
+    }
+
+    // Blocks in which one signal is louder than it is otherwise.
+    void take_loud_alone(ExponentialTailOptions options, double chance) {
+        const std::vector<std::size_t> left = undisturbed();
+        options.mean_least = normal_mean_excess(options.share);
+        for (std::size_t s = 0; s < signals_.size(); ++s) {
+            const std::vector<double> excess = excess_of(signals_[s], left);
+            const auto tail = ExponentialTail::of(excess, options);
+            if (!tail) { return; }
+            const double end = tail->end(excess, chance, beyond_);
+            for (std::size_t i = 0; i < left.size(); ++i) {
+                const Block& block = blocks_[left[i]];
+                const auto of_block = std::span(values_[s]).subspan(block.first, block.count);
+                if (excess[i] > end && !is_pulse(signals_[s], of_block, left[i])) { take(left[i]); }
+            }
+        }
+    }
+
+    const std::vector<bool>& are() const { return is_disturbed_; }
+
+private:
+    std::vector<std::size_t> undisturbed() const {
+        std::vector<std::size_t> left;
+        for (std::size_t block = 0; block < is_disturbed_.size(); ++block) {
+            if (!is_disturbed_[block]) { left.push_back(block); }
+        }
+        return left;
+    }
+
+    static std::vector<double> excess_of(const Signal& signal, const std::vector<std::size_t>& blocks) {
+        std::vector<double> excess;
+        for (const std::size_t block : blocks) { excess.push_back(signal.excess[block]); }
+        return excess;
+    }
+
+    // With those beside it as long as a signal that is loud there stays so, or all together are; and the
+    // neighbours.
+    void take(std::size_t block) {
         const auto goes_on = [&](std::size_t at) {
-            return is_loud_in_sum(signals, at) || std::ranges::any_of(signals, [&](const Signal& signal) {
+            return is_loud_in_sum(signals_, at) || std::ranges::any_of(signals_, [&](const Signal& signal) {
                        return signal.is_loud(block) && signal.is_loud(at);
                    });
         };
+        ++beyond_;
+        const std::size_t blocks = is_disturbed_.size();
         std::size_t from = block;
         std::size_t to = block + 1;
         while (from > 0 && goes_on(from - 1)) { --from; }
         while (to < blocks && goes_on(to)) { ++to; }
         for (std::size_t i = from == 0 ? 0 : from - 1; i < std::min(to + 1, blocks); ++i) {
-            disturbed[i] = true;
+            is_disturbed_[i] = true;
         }
-        block = to - 1;
     }
-    return disturbed;
+
+    const std::vector<Signal>& signals_;
+    std::span<const std::vector<double>> values_;
+    const std::vector<Block>& blocks_;
+    std::vector<bool> is_disturbed_;
+    std::size_t beyond_ = 0;  // of these, that are so without those beside
+};
+
+// First as many blocks are censored as may be disturbed; a sharper tail is that of what is left then.
+std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals,
+                                   std::span<const std::vector<double>> values,
+                                   const std::vector<Block>& blocks, const DisturbanceOptions& options) {
+    DisturbedBlocks disturbed(signals, values, blocks);
+    const auto tails = static_cast<double>(signals.size() + 2);
+    const double chance = options.false_alarms_most / tails;
+    if (signals.size() > 1) {
+        disturbed.take_loud_at_once({.share = 2.0 * options.together_share, .censored_share = 0.5}, chance);
+        disturbed.take_loud_at_once({}, chance);
+    }
+    disturbed.take_loud_alone({}, chance);
+    return disturbed.are();
 }
 
 // Disturbed blocks as long as they follow without a hole.
 std::vector<Disturbance> stretches(const Recording& recording, const std::vector<Block>& blocks,
-                                   const std::vector<Signal>& signals, bool two_are_no_chance) {
-    const std::vector<bool> disturbed = disturbed_blocks(signals, two_are_no_chance);
+                                   const std::vector<Signal>& signals, const std::vector<bool>& disturbed) {
     std::vector<Disturbance> found;
     const std::int64_t origin = recording.segments.front().first_index;
     const auto seconds = [&](std::int64_t index) {
@@ -369,21 +437,13 @@ std::vector<Disturbance> disturbances(const Recording& recording,
                                       const DisturbanceOptions& options) {
     const std::vector<Block> blocks = blocks_of(recording, options);
     if (signals.empty() || blocks.size() < options.blocks_least) { return {}; }
-    const auto count = static_cast<double>(signals.size());
-    // One axis has no other to be loud with at once.
-    const double pairs = std::max(0.5 * count * (count - 1.0), 1.0);
-    const double chance_each =
-        std::sqrt(options.false_alarms_most / (pairs * static_cast<double>(blocks.size())));
     std::vector<Signal> seen;
-    for (const std::vector<double>& signal : signals) {
-        seen.push_back(signal_of(signal, blocks, normal_upper_quantile(chance_each),
-                                 options.false_alarms_most / count, options));
-    }
-    const bool two_are_no_chance = is_no_chance(seen, chance_each, options.false_alarms_most);
-    std::vector<Disturbance> found = stretches(recording, blocks, seen, two_are_no_chance);
+    for (const std::vector<double>& signal : signals) { seen.push_back(signal_of(signal, blocks, options)); }
+    std::vector<Disturbance> found =
+        stretches(recording, blocks, seen, disturbed_blocks(seen, signals, blocks, options));
     const auto rows = static_cast<double>(recording.rows());
     std::erase_if(found, [&](const Disturbance& one) {
-        return static_cast<double>(one.rows) > options.longest_share * rows || one.loud.empty();
+        return static_cast<double>(one.rows) > options.longest_share * rows;
     });
     double together = 0.0;
     for (const Disturbance& one : found) { together += static_cast<double>(one.rows); }

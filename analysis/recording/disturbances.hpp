@@ -7,10 +7,10 @@
 // A block is loud on an axis where the logarithm of its power lies above the axis' median around it by more
 // than chance has it.
 //
-// A block is disturbed that is loud on two axes at once, where the recording has more of them than the axes'
-// loud blocks would meet by chance (Poisson); or that lies beyond the tail of one axis' own blocks, for a
-// bump may move one axis alone. So are the blocks that follow or lead to it as long as the axis, or the axes
-// together, stay loud, for what was bumped rings out, and one more on either side.
+// A block is disturbed that lies beyond the tail of one axis' own blocks, for a bump may move one axis alone,
+// or whose axes together lie beyond the tail of what they are otherwise. So are the blocks that follow or
+// lead to it as long as the axis, or the axes together, stay loud, for what was bumped rings out, and one
+// more on either side.
 #pragma once
 
 #include <array>
@@ -27,13 +27,9 @@ struct DisturbanceOptions {
     std::size_t block_samples_least = 16;  // a power is known to a third
     // One block that is loud is a twentieth of the recording then, which is the longest disturbance.
     std::size_t blocks_least = 20;
-    double false_alarms_most = 1e-3;  // share of the recordings without disturbances
-    // The tail of one axis' blocks: the share of them whose power may be exponential noise, and the number
-    // that a tail is known from; of these the share that may be disturbed. A normal tail is nearly
-    // exponential from there on; more would be no rare event.
-    double tail_share = 0.05;
-    double tail_blocks_least = 20.0;
-    double tail_censored_share = 0.25;
+    // Of the recordings without disturbances the share in which one is found, and of the blocks that are
+    // found to be disturbed the share that is not.
+    double false_alarms_most = 0.01;
     // Standard deviations: single samples beyond are outliers, 1 in 5e8 by chance; the normal distribution.
     double outlier_sigma = 6.0;
     // Shares of the recording. What lasts longer is not from outside, or cannot be told from a sensor whose
