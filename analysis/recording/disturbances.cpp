@@ -319,8 +319,9 @@ public:
         }
         std::vector<double> at_once(left.size());
         for (std::size_t i = 0; i < left.size(); ++i) {
-            std::vector<double> each;
-            for (const std::vector<double>& of_signal : nats) { each.push_back(of_signal[i]); }
+            std::vector<double> each(nats.size());
+            std::ranges::transform(nats, each.begin(),
+                                   [&](const std::vector<double>& of_signal) { return of_signal[i]; });
             at_once[i] = surprisal_of_several(std::move(each));
         }
         options.mean_least = 1.0;
@@ -360,8 +361,9 @@ private:
     }
 
     static std::vector<double> excess_of(const Signal& signal, const std::vector<std::size_t>& blocks) {
-        std::vector<double> excess;
-        for (const std::size_t block : blocks) { excess.push_back(signal.excess[block]); }
+        std::vector<double> excess(blocks.size());
+        std::ranges::transform(blocks, excess.begin(),
+                               [&](std::size_t block) { return signal.excess[block]; });
         return excess;
     }
 

@@ -554,8 +554,9 @@ private:
             return true;
         }
         std::optional<Finding> more = on_more_axes(same->finding, finding);
-        if (more) { same->finding = *std::move(more); }
-        return more.has_value();
+        if (!more) { return false; }
+        same->finding = *std::move(more);
+        return true;
     }
 
     // Of a long recording an observation is large: the fits that follow make their own.
