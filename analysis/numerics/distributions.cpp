@@ -27,6 +27,10 @@ double students_t_upper_quantile(double degrees, double tail) {
     return quantile(complement(boost::math::students_t(degrees), tail));
 }
 
+double students_t_upper_tail(double degrees, double x) {
+    return cdf(complement(boost::math::students_t(degrees), x));
+}
+
 double gamma_quantile(double shape, double scale, double p) {
     return quantile(boost::math::gamma_distribution<>(shape, scale), p);
 }

@@ -17,6 +17,8 @@ double chi_squared_quantile(double degrees, double p);
 double chi_squared_upper_quantile(double degrees, double tail);
 
 double students_t_upper_quantile(double degrees, double tail);
+// The chance that Student's t exceeds x.
+double students_t_upper_tail(double degrees, double x);
 
 // The mean is shape * scale.
 double gamma_quantile(double shape, double scale, double p);

@@ -54,6 +54,16 @@ TEST(Distributions, StudentsQuantilesAreThePublishedOnes) {
     EXPECT_NEAR(students_t_upper_quantile(1e9, 0.025), 1.959964, 1e-6);
 }
 
+TEST(Distributions, StudentsTailIsTheOneThatItsQuantileHas) {
+    for (const double degrees : {1.0, 5.5, 126.0}) {
+        for (const double tail : {0.9, 0.3, 1e-3, 1e-9}) {
+            const double x = students_t_upper_quantile(degrees, tail);
+            EXPECT_NEAR(students_t_upper_tail(degrees, x) / tail, 1.0, 1e-9) << degrees << ' ' << tail;
+        }
+    }
+    EXPECT_EQ(students_t_upper_tail(3.0, 0.0), 0.5);
+}
+
 TEST(Distributions, GammaQuantilesAreThoseOfChiSquare) {
     // Chi-square of d degrees of freedom is gamma of shape d / 2 and scale 2: the table above.
     EXPECT_NEAR(gamma_upper_quantile(5.0, 2.0, 0.05), 18.307, half_a_thousandth);
