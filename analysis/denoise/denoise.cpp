@@ -332,6 +332,7 @@ std::vector<AxisKnowledge> learn_units(const Recording& still, std::optional<dou
     AnalysisOptions options;
     options.threads = 0;
     options.sensors = Sensors::gyro;
+    options.keep_temperature = true;  // the filter does not know the temperature
     const AnalysisReport report = analyze(still, options);
     std::vector<AxisKnowledge> axes;
     for (const ArrayAxis& axis : array_axes(still)) {

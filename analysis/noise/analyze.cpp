@@ -31,18 +31,53 @@ struct Work {
     SensorKind sensor = SensorKind::gyro;
     const Recording* recording = nullptr;
     const Column* column = nullptr;
-    Column without_outliers{};  // empty unless robust
-    AllanCurve whole{};         // overlapping, at the usual averaging factors
+    Column without_outliers{};     // empty unless robust
+    Column without_drift{};        // empty unless a drift with temperature was taken off
+    const Column* read = nullptr;  // before that: on the converter's steps, and clipped where it clips
+    AllanCurve whole{};            // overlapping, at the usual averaging factors
     AxisReport report{};
 };
 
+void mend_outliers(Work& work) {
+    work.without_outliers = *work.column;
+    work.report.outliers = replace_outliers(work.without_outliers, work.recording->segments);
+    work.column = &work.without_outliers;
+}
+
+// The axes of one sensor: they have the same rows.
+void find_drifts(std::list<Work>& axes, SensorKind sensor, const AnalysisOptions& options) {
+    std::vector<Work*> works;
+    std::vector<const Column*> columns;
+    for (Work& axis : axes) {
+        if (axis.sensor != sensor) { continue; }
+        works.push_back(&axis);
+        columns.push_back(axis.column);
+    }
+    if (works.empty()) { return; }
+    const Recording& recording = *works.front()->recording;
+    const auto drifts = temperature_drifts(recording, columns, options.temperature);
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        Work& work = *works[i];
+        work.report.temperature = drifts[i];
+        if (!drifts[i] || !drifts[i]->is_there || options.keep_temperature) { continue; }
+        work.report.temperature->is_taken_off = true;
+        work.without_drift = without_drift(recording, *work.column, *drifts[i], options.temperature);
+        work.column = &work.without_drift;
+    }
+}
+
+void prepare(std::list<Work>& axes, const AnalysisOptions& options) {
+    for (Work& axis : axes) {
+        if (options.robust) { mend_outliers(axis); }
+        axis.read = axis.column;
+    }
+    for (const SensorKind sensor : {SensorKind::gyro, SensorKind::accelerometer}) {
+        find_drifts(axes, sensor, options);
+    }
+}
+
 void find_curves(Work& work, const AnalysisOptions& options) {
     const Recording& recording = *work.recording;
-    if (options.robust) {
-        work.without_outliers = *work.column;
-        work.report.outliers = replace_outliers(work.without_outliers, recording.segments);
-        work.column = &work.without_outliers;
-    }
     AxisReport& axis = work.report;
     axis.axis = work.column->name.substr(1);
     axis.curve = allan_deviation(*work.column, recording.segments, recording.rate_hz, options);
@@ -69,7 +104,7 @@ void find_coefficients(Work& work, const AnalysisOptions& options) {
     axis.fit = fit_noise(work.whole, options.confidence);
     LikelihoodFitOptions fit;
     fit.confidence = options.confidence;
-    fit.step = converter_step(column);
+    fit.step = converter_step(*work.read);
     for (const SpectralLine& line : axis.lines) {
         fit.lines.push_back({{line.amplitude, line.f_hz}, line.amplitude_sd, line.f_sd_hz});
     }
@@ -177,7 +212,7 @@ std::list<Work> axes_of(const Recording& recording, const AnalysisOptions& optio
             report.accelerometer = AccelerometerReport{unit, {}, {}};
         }
         for (const Column& column : rows->columns) {
-            if (is_its(column)) { axes.push_back({sensor, rows, &column}); }
+            if (is_its(column)) { axes.push_back({.sensor = sensor, .recording = rows, .column = &column}); }
         }
     }
     return axes;
@@ -190,12 +225,29 @@ void for_each_axis(std::list<Work>& axes, unsigned threads, Do what) {
     parallel_for(all.size(), threads, [&](std::size_t i) { what(*all[i]); });
 }
 
-void warn_of_axes(SensorKind sensor, const std::list<Work>& axes, std::vector<std::string>& to) {
+// What it does to the noise: K with it and without.
+void warn_of_drift(const AxisReport& axis, const SensorUnit& unit, AxisWarnings& warnings) {
+    if (!axis.temperature || !axis.temperature->is_there) { return; }
+    const TemperatureDrift& drift = *axis.temperature;
+    const std::string detail = rounded(drift.slope_per_C * unit.per_column_unit) + " " + unit.name +
+                               "/degC, as K " + rounded(drift.walk_left_in * unit.per_column_unit) + " " +
+                               unit.name + "*sqrt(Hz)";
+    warnings.add(axis.axis,
+                 drift.is_taken_off
+                     ? "the bias follows the temperature, which would look like so much random walk: it was "
+                       "taken off before the noise was analysed (--keep-temperature leaves it in)"
+                     : "the bias follows the temperature and was left in: it looks like so much random walk",
+                 detail);
+}
+
+void warn_of_axes(SensorKind sensor, const SensorUnit& unit, const std::list<Work>& axes,
+                  std::vector<std::string>& to) {
     AxisWarnings warnings;
     for (const Work& axis : axes) {
         if (axis.sensor != sensor) { continue; }
         warn_of_misfit(axis.report, warnings);
-        if (is_clipped(*axis.column)) {
+        warn_of_drift(axis.report, unit, warnings);
+        if (is_clipped(*axis.read)) {
             warnings.add(axis.report.axis,
                          "the samples are clipped: more lie at their limit than next to it, and "
                          "the noise is larger than these coefficients say");
@@ -284,13 +336,16 @@ AnalysisReport analyze(const Recording& recording, const AnalysisOptions& option
     warn_of_rate(report, report.warnings);
     std::optional<Recording> complete;
     std::list<Work> axes = axes_of(recording, options, complete, report);
+    prepare(axes, options);
     for (Work& axis : axes) { find_curves(axis, options); }
     options.on_stage("spectrum");
     for_each_axis(axes, options.threads, [&](Work& axis) { find_spectrum(axis, options); });
     options.on_stage("fit");
     for_each_axis(axes, options.threads, [&](Work& axis) { find_coefficients(axis, options); });
     for (const SensorKind sensor : {SensorKind::gyro, SensorKind::accelerometer}) {
-        warn_of_axes(sensor, axes, report.warnings);
+        const bool is_gyro = sensor == SensorKind::gyro;
+        if (!is_gyro && !report.accelerometer) { continue; }
+        warn_of_axes(sensor, is_gyro ? report.unit : report.accelerometer->unit, axes, report.warnings);
     }
     const std::vector<std::string> refused =
         axes.empty() ? std::vector<std::string>{} : refused_factors(options, axes.front().report.curve);

@@ -15,6 +15,7 @@
 #include "analysis/noise/sensor_unit.hpp"
 #include "analysis/noise/slope_reading.hpp"
 #include "analysis/noise/static_bias.hpp"
+#include "analysis/noise/temperature_drift.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/spectrum/power_spectrum.hpp"
 #include "analysis/spectrum/spectral_lines.hpp"
@@ -28,8 +29,9 @@ struct AxisReport {
     NoiseFit fit;
     SlopeReading slopes;
     PowerSpectrum spectrum;
-    std::vector<SpectralLine> lines;  // strongest first
-    OutlierCount outliers;            // with AnalysisOptions::robust
+    std::vector<SpectralLine> lines;              // strongest first
+    OutlierCount outliers;                        // with AnalysisOptions::robust
+    std::optional<TemperatureDrift> temperature;  // where the recording has a temperature that varies
 };
 
 struct AccelerometerReport {
@@ -69,6 +71,10 @@ struct AnalysisReport {
 struct AnalysisOptions : AllanOptions {
     Sensors sensors = Sensors::all;
     bool robust = false;  // replace outliers first (outliers.hpp); a warning says how many
+    // Of a bias that follows the temperature (temperature_drift.hpp). Unless kept it is taken off the samples
+    // first, where it is there beyond chance; a warning says so. The mean stays.
+    bool keep_temperature = false;
+    TemperatureDriftOptions temperature{};
 };
 
 // What the deviation's kind, convention and factors select is the curve that is shown: coefficients come from

@@ -61,6 +61,7 @@ Result<AnalysisOptions> options_of(const AnalysisRequest& request) {
     }
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     options.robust = request.robust;
+    options.keep_temperature = request.keep_temperature;
     options.sensors = sensors_named(request.sensor);
     options.on_stage = request.on_stage;
     return options;

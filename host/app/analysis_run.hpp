@@ -31,6 +31,7 @@ struct AnalysisRequest {
     std::string sensor = "all";  // or "gyro", "accelerometer"
     double confidence = 0.683;
     bool robust = false;
+    bool keep_temperature = false;
     StageObserver on_stage{};  // of those of reading and analysing, then "json", "plot", "model", "report"
 };
 

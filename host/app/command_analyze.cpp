@@ -118,14 +118,17 @@ Action setup_analyze(CLI::App& app) {
     app.add_flag("--robust", request->robust,
                  "First replace single samples that lie more than 6 robust standard deviations off their "
                  "neighbours");
+    app.add_flag("--keep-temperature", request->keep_temperature,
+                 "Analyse the noise with the drift that follows temp_C left in. Otherwise it is taken off "
+                 "where it is there beyond chance (0.1 %)");
     app.add_option("--confidence", request->confidence, "Probability of the intervals")
         ->check(number_from_to(0.01, 0.9999))
         ->type_name("P")
         ->capture_default_str();
     app.add_flag("--timing", options->timing, "Print on standard error where the time went");
-    for (const char* of_samples :
-         {"--deviation", "--convention", "--m", "--robust", "--histogram", "--lsb-dps", "--lsb-g", "--sensor",
-          "--from", "--to", "--still", "--jsonl", "--columns", "--unit", "--acc-unit"}) {
+    for (const char* of_samples : {"--deviation", "--convention", "--m", "--robust", "--keep-temperature",
+                                   "--histogram", "--lsb-dps", "--lsb-g", "--sensor", "--from", "--to",
+                                   "--still", "--jsonl", "--columns", "--unit", "--acc-unit"}) {
         curve->excludes(app.get_option(of_samples));
     }
     return [options](Console& console) { return analyze_either(console, *options); };

@@ -150,6 +150,7 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     AnalysisOptions analysis;
     analysis.threads = 0;
     analysis.sensors = format.sensors;
+    analysis.keep_temperature = true;  // a filter that reads this does not know the temperature
     const AnalysisReport report = analyze(recording, analysis);
     const ExportSource source = export_source(recording, report);
     if (format.needs == ExportFormat::Needs::noise && source.gyro.empty()) {

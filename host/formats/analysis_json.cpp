@@ -68,12 +68,32 @@ Json expanded_json(const ExpandedNumber& number, double scale, const std::string
             {"unit", unit}};
 }
 
+Json temperature_json(const TemperatureDrift& drift, const SensorUnit& unit) {
+    const auto number = [&](double value, const char* per) {
+        return Json{{"value", value * unit.per_column_unit}, {"unit", unit.name + per}};
+    };
+    Json json;
+    json["state"] = drift.is_there ? "identified" : "not_identifiable";
+    json["coefficient"] = number(drift.slope_per_C, "/degC");
+    json["coefficient"]["sd"] = drift.sd_per_C * unit.per_column_unit;
+    json["chance"] = drift.chance;
+    json["false_alarm"] = drift.false_alarm;
+    json["taken_off"] = drift.is_taken_off;
+    json["from_C"] = drift.from_C;
+    json["to_C"] = drift.to_C;
+    json["reference_C"] = drift.mean_C;
+    json["K_left_in"] = number(drift.walk_left_in, "*sqrt(Hz)");
+    json["K_taken_off"] = number(drift.walk_without, "*sqrt(Hz)");
+    return json;
+}
+
 Json axis_json(const AxisReport& axis, const SensorUnit& unit) {
     Json json;
     // An accelerometer's mean is gravity and bias together.
     const char* mean = unit.sensor == SensorKind::gyro ? "bias" : "mean";
     json[mean] = expanded_json({axis.bias.value, axis.bias.expanded_uncertainty, axis.bias.coverage_factor},
                                unit.per_column_unit, unit.name);
+    if (axis.temperature) { json["temperature"] = temperature_json(*axis.temperature, unit); }
     json["allan"] = Json::array();
     for (const AllanPoint& point : axis.curve.points) { json["allan"].push_back(point_json(point, unit)); }
     put_noise_fit(json, axis.fit, unit);

@@ -1,11 +1,13 @@
 #include "host/formats/analysis_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "analysis/numerics/distributions.hpp"
 #include "host/base/counted.hpp"
 #include "host/formats/noise_text.hpp"
 #include "host/formats/stops_text.hpp"
@@ -55,6 +57,25 @@ TextRow mean_row(const SensorTable& sensor) {
     return row;
 }
 
+// Where an axis has one: the interval's end where it is not there beyond chance, as for the noise.
+std::vector<TextRow> temperature_rows(const SensorTable& sensor, double confidence) {
+    TextRow row{"bias over temperature", sensor.unit.name + "/degC", {}};
+    bool any = false;
+    for (const AxisReport& axis : sensor.axes) {
+        if (!axis.temperature) {
+            row.cells.emplace_back("-");
+            continue;
+        }
+        any = true;
+        const TemperatureDrift& drift = *axis.temperature;
+        const double value = drift.slope_per_C * sensor.unit.per_column_unit;
+        const double sd = drift.sd_per_C * sensor.unit.per_column_unit;
+        const double upper = std::abs(value) + normal_quantile(0.5 + confidence / 2.0) * sd;
+        row.cells.push_back(drift.is_there ? with_uncertainty(value, sd) : "< " + in_digits(upper, 2));
+    }
+    return any ? std::vector{row} : std::vector<TextRow>{};
+}
+
 TextRow lowest_row(const SensorTable& sensor) {
     TextRow lowest{"lowest deviation", sensor.unit.name, {}};
     for (const AxisReport& axis : sensor.axes) {
@@ -69,8 +90,10 @@ TextRow lowest_row(const SensorTable& sensor) {
     return lowest;
 }
 
-std::vector<TextRow> rows_of(const SensorTable& sensor, std::span<const FitOfColumn> fits) {
+std::vector<TextRow> rows_of(const SensorTable& sensor, std::span<const FitOfColumn> fits,
+                             double confidence) {
     std::vector<TextRow> rows = {mean_row(sensor)};
+    for (TextRow& row : temperature_rows(sensor, confidence)) { rows.push_back(std::move(row)); }
     for (TextRow& row : noise_rows(fits, sensor.unit)) { rows.push_back(std::move(row)); }
     rows.push_back(lowest_row(sensor));
     for (TextRow& row : line_rows(sensor)) { rows.push_back(std::move(row)); }
@@ -126,14 +149,14 @@ std::string signs_text(const AnalysisReport& report, const char* expanded) {
 }
 
 // One in the trade's units with the text below it, and one in SI.
-std::string tables_of(const SensorTable& sensor, const std::string& below) {
+std::string tables_of(const SensorTable& sensor, double confidence, const std::string& below) {
     std::vector<FitOfColumn> fits;
     std::vector<std::string> heads;
     for (const AxisReport& axis : sensor.axes) {
         fits.push_back({&axis.fit, &axis.slopes});
         heads.push_back(axis.axis);
     }
-    std::string text = '\n' + text_table(heads, rows_of(sensor, fits)) + '\n' + below;
+    std::string text = '\n' + text_table(heads, rows_of(sensor, fits, confidence)) + '\n' + below;
     const std::vector<TextRow> si = si_rows(fits, sensor.unit);
     if (!si.empty()) { text += '\n' + text_table(heads, si); }
     return text;
@@ -145,7 +168,7 @@ std::string analysis_text(const AnalysisReport& report) {
     std::string text = head_of(report);
     if (!report.axes.empty()) {
         if (report.accelerometer) { text += "\ngyro\n"; }
-        text += tables_of({report.axes, report.unit}, signs_text(report, "bias"));
+        text += tables_of({report.axes, report.unit}, report.confidence, signs_text(report, "bias"));
     }
     if (report.accelerometer) {
         const AccelerometerReport& of = *report.accelerometer;
@@ -154,8 +177,9 @@ std::string analysis_text(const AnalysisReport& report) {
             "  mean, gravity and tilt: ± expanded, 95.45 %, as far as this record's noise goes; the axes' "
             "own biases\n"
             "  and scale factors are in them\n";
-        text += "\naccelerometer\n" +
-                tables_of({of.axes, of.unit.is_counts() ? of.unit : SensorUnit::micro_g()}, signs);
+        text +=
+            "\naccelerometer\n" + tables_of({of.axes, of.unit.is_counts() ? of.unit : SensorUnit::micro_g()},
+                                            report.confidence, signs);
     }
     return text;
 }

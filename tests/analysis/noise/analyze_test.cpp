@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/analysis/noise/sensor_noise.hpp"
+#include "tests/analysis/noise/temperature_courses.hpp"
 #include "tests/analysis/noise/test_recording.hpp"
 
 namespace gyrolog {
@@ -195,6 +196,78 @@ TEST(Analyze, OfOutliersHasOneLineForAllAxes) {
 
 TEST(Analyze, OfNothingSaysSo) {
     EXPECT_THAT(analyze(Recording{}).warnings, Contains(HasSubstr("nothing to analyse")));
+}
+
+// Noise of a gyro at rest for 43 min, with so much drift on x, none on y, and the temperature of a warm-up.
+Recording warming_up(double slope_per_C) {
+    constexpr std::size_t samples = 25'600;
+    const std::vector<double> temperature_C = test::temperature_course(test::Course::warm_up, samples, 1);
+    std::vector<std::vector<double>> axes;
+    for (const std::uint64_t seed : {11U, 12U}) {
+        axes.push_back(test::sensor_noise({0.0, 0.01, 0.002, 0.0, 0.0}, samples, 10.0, seed));
+    }
+    for (std::size_t i = 0; i < samples; ++i) { axes[0][i] += slope_per_C * temperature_C[i]; }
+    return test::with_temperature(axes, 10.0, temperature_C);
+}
+
+TEST(Analyze, TakesOffTheDriftThatFollowsTheTemperatureAndSaysSo) {
+    const Recording quiet = warming_up(0.0);
+    const Recording drifting = warming_up(0.02);
+    const AnalysisReport report = analyze(drifting);
+    const AxisReport& x = report.axes.at(0);
+    ASSERT_TRUE(x.temperature);
+    EXPECT_TRUE(x.temperature->is_taken_off);
+    EXPECT_NEAR(x.temperature->slope_per_C, 0.02, 4.0 * x.temperature->sd_per_C);
+    EXPECT_THAT(report.warnings, Contains(HasSubstr("the bias follows the temperature")));
+    EXPECT_THAT(report.warnings, Contains(HasSubstr("--keep-temperature")));
+    // What is left is as without the drift: the curve within what the slope is uncertain by, K not there.
+    const AxisReport truth = analyze(quiet).axes.at(0);
+    EXPECT_EQ(x.fit[NoiseTerm::K].state, truth.fit[NoiseTerm::K].state);
+    EXPECT_NEAR(x.fit[NoiseTerm::N].value, truth.fit[NoiseTerm::N].value, truth.fit[NoiseTerm::N].sd);
+    ASSERT_EQ(x.curve.points.size(), truth.curve.points.size());
+    for (std::size_t i = 0; i < x.curve.points.size() && x.curve.points[i].tau_s < 100.0; ++i) {
+        EXPECT_NEAR(x.curve.points[i].deviation / truth.curve.points[i].deviation, 1.0, 0.05);
+    }
+    // The bias is that at the mean temperature: the mean of what was read.
+    const std::vector<double> read = drifting.columns[0].values();
+    double mean = 0.0;
+    for (const double value : read) { mean += value / static_cast<double>(read.size()); }
+    EXPECT_NEAR(x.bias.value, mean, 1e-9);
+}
+
+TEST(Analyze, KeepsTheDriftWhereItIsToldTo) {
+    AnalysisOptions keep;
+    keep.keep_temperature = true;
+    Recording recording = warming_up(0.02);
+    const AnalysisReport kept = analyze(recording, keep);
+    const AxisReport& x = kept.axes.at(0);
+    ASSERT_TRUE(x.temperature);
+    EXPECT_TRUE(x.temperature->is_there);
+    EXPECT_FALSE(x.temperature->is_taken_off);
+    EXPECT_THAT(kept.warnings, Contains(HasSubstr("was left in")));
+    recording.columns.pop_back();  // the temperature
+    const AnalysisReport none = analyze(recording);
+    EXPECT_FALSE(none.axes.at(0).temperature);
+    EXPECT_THAT(none.warnings, testing::Not(Contains(HasSubstr("temperature, "))));
+    expect_same(x, none.axes.at(0));
+    // Left in, most of the curve's upper end is the drift.
+    const AxisReport taken_off = analyze(warming_up(0.02)).axes.at(0);
+    const auto at_200_s = [](const AxisReport& axis) {
+        const auto& points = axis.curve.points;
+        return std::ranges::find_if(points, [](const AllanPoint& p) { return p.tau_s > 200.0; })->deviation;
+    };
+    EXPECT_GT(at_200_s(x), 3.0 * at_200_s(taken_off));
+}
+
+TEST(Analyze, ChangesNotABitWhereTheBiasDoesNotFollowTheTemperature) {
+    Recording recording = warming_up(0.02);
+    const AnalysisReport with = analyze(recording);
+    recording.columns.pop_back();
+    const AnalysisReport without = analyze(recording);
+    ASSERT_TRUE(with.axes.at(1).temperature);
+    EXPECT_FALSE(with.axes[1].temperature->is_there);
+    EXPECT_GT(with.axes[1].temperature->sd_per_C, 0.0);
+    expect_same(with.axes[1], without.axes.at(1));
 }
 
 }  // namespace

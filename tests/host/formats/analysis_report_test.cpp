@@ -51,6 +51,57 @@ TEST(AnalysisJson, CarriesThePublishedNbs14ValuesThroughTextAndUnits) {
     }
 }
 
+// x follows the temperature by so much, y does not; both have noise that no seed of a library changes.
+std::string warm_text(double dps_per_C) {
+    std::string text = "t_s,gx_dps,gy_dps,temp_C\n";
+    std::uint32_t state = 1;
+    const auto noise = [&] {  // Numerical Recipes' generator: evenly distributed
+        state = 1664525U * state + 1013904223U;
+        return (static_cast<double>(state) / 4294967296.0 - 0.5) * 0.1;
+    };
+    for (int i = 0; i < 4000; ++i) {
+        const double temperature_C = 30.0 - 6.0 * std::exp(-i / 900.0);
+        const double x_dps = dps_per_C * temperature_C + noise();
+        text += fmt::format("{},{:.6f},{:.6f},{:.4f}\n", i, x_dps, noise(), temperature_C);
+    }
+    return text;
+}
+
+TEST(AnalysisJson, SaysHowTheBiasFollowsTheTemperature) {
+    const Recording recording = parsed(warm_text(0.05));
+    const json report = report_of(recording);
+    const json& x = report["axes"]["x"]["temperature"];
+    EXPECT_EQ(x["state"], "identified");
+    EXPECT_EQ(x["taken_off"], true);
+    EXPECT_EQ(x["coefficient"]["unit"], "dps/degC");
+    const double sd = x["coefficient"]["sd"].get<double>();
+    EXPECT_GT(sd, 0.0);
+    EXPECT_LT(sd, 0.01);
+    EXPECT_NEAR(x["coefficient"]["value"].get<double>(), 0.05, 4.0 * sd);
+    EXPECT_LE(x["chance"].get<double>(), x["false_alarm"].get<double>());
+    EXPECT_EQ(x["false_alarm"], 0.001);
+    EXPECT_LT(x["from_C"].get<double>(), x["reference_C"].get<double>());
+    EXPECT_LT(x["reference_C"].get<double>(), x["to_C"].get<double>());
+    EXPECT_GT(x["K_left_in"]["value"].get<double>(), x["K_taken_off"]["value"].get<double>());
+    EXPECT_EQ(x["K_left_in"]["unit"], "dps*sqrt(Hz)");
+    const json& y = report["axes"]["y"]["temperature"];
+    EXPECT_EQ(y["state"], "not_identifiable");
+    EXPECT_EQ(y["taken_off"], false);
+    EXPECT_GT(y["chance"].get<double>(), 0.001);
+    AnalysisOptions keep;
+    keep.keep_temperature = true;
+    EXPECT_EQ(report_of(recording, keep)["axes"]["x"]["temperature"]["taken_off"], false);
+}
+
+TEST(AnalysisText, SaysHowTheBiasFollowsTheTemperature) {
+    const std::string text = analysis_text(analyze(parsed(warm_text(0.05))));
+    EXPECT_THAT(
+        text, testing::ContainsRegex("bias over temperature +dps/degC +0\\.0[45][0-9]* ± 0\\.00[0-9]+ +< "));
+    EXPECT_THAT(text, HasSubstr("warning: axis x (0.05"));
+    EXPECT_THAT(analysis_text(analyze(parsed(csv_of(test::nbs14_1000_point_frequency(), "t_s,gx_dps")))),
+                testing::Not(HasSubstr("temperature")));
+}
+
 TEST(AnalysisJson, HasTheFormOfItsContract) {
     const json report = report_of(parsed(csv_of(test::nbs14_1000_point_frequency(), "t_s,gz2_dps")));
     EXPECT_EQ(report["schema"], "gyrolog-analysis/1");
