@@ -22,12 +22,13 @@ void add_relative_sd(const NoiseFit& fit, NoiseTerm term, std::map<std::string, 
 struct EffectNames {
     const char* sigma;
     const char* amplitude;
+    const char* slope;  // of the bias over the temperature
     double per_column_unit;
 };
 
 EffectNames effect_names(SensorKind sensor) {
-    if (sensor == SensorKind::gyro) { return {"sigma_dps", "amplitude_dps", deg_per_rad}; }
-    return {"sigma_g", "amplitude_g", 1.0 / standard_gravity_m_s2};
+    if (sensor == SensorKind::gyro) { return {"sigma_dps", "amplitude_dps", "c1_dps_per_C", deg_per_rad}; }
+    return {"sigma_g", "amplitude_g", "c1_g_per_C", 1.0 / standard_gravity_m_s2};
 }
 
 // Noise beyond the five coefficients is an effect of the model. A line's phase is not reported: it is that of
@@ -51,6 +52,16 @@ void add_effects(const NoiseFit& fit, const std::string& axis, const EffectNames
     }
 }
 
+// What was taken off the samples is in no noise: the model has it as an effect.
+void add_drift(const AxisReport& axis, const EffectNames& names, std::vector<EffectModel>& effects) {
+    if (!axis.temperature || !axis.temperature->is_taken_off) { return; }
+    effects.push_back({"temp_linear",
+                       {axis.axis},
+                       {{names.slope, axis.temperature->slope_per_C * names.per_column_unit},
+                        {"reference_C", axis.temperature->mean_C}},
+                       {}});
+}
+
 // What the models of a gyro and of an accelerometer have in common, in the columns' unit.
 struct FittedSensor {
     std::array<AxisModel, 3> axes;
@@ -72,6 +83,7 @@ FittedSensor fitted_sensor(const std::vector<AxisReport>& reports, SensorKind se
         if (sensor == SensorKind::gyro) { model.bias_rad_s = found->bias.value; }
         for (const NoiseTerm term : all_noise_terms) { add_relative_sd(found->fit, term, model.sd_rel); }
         add_effects(found->fit, axis_names[axis], effect_names(sensor), fitted.effects);
+        add_drift(*found, effect_names(sensor), fitted.effects);
         const char* prefix = sensor == SensorKind::gyro ? "g" : "a";
         const Column* column = recording.find(std::string(prefix) + axis_names[axis]);
         if (column != nullptr && fitted.converter.step_rad_s == 0.0) {
@@ -121,6 +133,13 @@ SensorModel fitted_model(const AnalysisReport& report, const Recording& recordin
     }
     if (const Column* column = recording.find("temp"); column != nullptr && column->unit == "degC") {
         model.temp_noise_C = neighbour_scatter(*column, recording.segments);
+    }
+    // Without a recording to follow, the simulated temperature stays about the one at which the bias is so.
+    for (const AxisReport& axis : report.axes) {
+        if (!axis.temperature || !axis.temperature->is_taken_off) { continue; }
+        model.temperature = TemperatureModel{};
+        model.temperature->reference_C = axis.temperature->mean_C;
+        break;
     }
     return model;
 }

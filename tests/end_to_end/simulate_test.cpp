@@ -75,6 +75,50 @@ TEST(Simulate, MakesARecordingInWhichTheAnalysisFindsTheModelsNoise) {
     }
 }
 
+TEST(Simulate, MakesADriftWithTheTemperatureThatTheAnalysisTakesOff) {
+    const TemporaryFolder folder;
+    SensorModel model = static_model();
+    model.temperature = TemperatureModel{};
+    model.temperature->bias_rad_s_per_C = {0.06 * rad_per_deg, -0.03 * rad_per_deg, 0.0};
+    model.temp_noise_C = 0.03;
+    const std::string recording = folder.path("run.csv");
+    ASSERT_EQ(run_gyrolog({"simulate", write(model, folder), "-o", recording, "--duration", "3h"}).exit_code,
+              0);
+    const ProgramResult taken_off = run_gyrolog(
+        {"analyze", recording, "--json", folder.path("a.json"), "--model", folder.path("m.json")});
+    ASSERT_EQ(taken_off.exit_code, 0) << taken_off.err;
+    EXPECT_THAT(taken_off.out, HasSubstr("bias over temperature"));
+    EXPECT_THAT(taken_off.out, HasSubstr("dps/degC"));
+    const ProgramResult kept =
+        run_gyrolog({"analyze", recording, "--keep-temperature", "--json", folder.path("k.json")});
+    ASSERT_EQ(kept.exit_code, 0) << kept.err;
+    const json axes = json::parse(read_whole_file(folder.path("a.json")))["axes"];
+    const json with_drift = json::parse(read_whole_file(folder.path("k.json")))["axes"];
+    const auto expect_slope = [&](const char* axis, double truth) {
+        const json& found = axes[axis]["temperature"];
+        const json& slope = found["coefficient"];
+        EXPECT_EQ(slope["unit"], "dps/degC");
+        EXPECT_NEAR(slope["value"].get<double>(), truth, 4.0 * slope["sd"].get<double>()) << axis;
+        EXPECT_EQ(found["state"], truth == 0.0 ? "not_identifiable" : "identified") << axis << found;
+        EXPECT_EQ(found["taken_off"], truth != 0.0);
+        EXPECT_EQ(with_drift[axis]["temperature"]["coefficient"], slope);
+        EXPECT_EQ(with_drift[axis]["temperature"]["taken_off"], false);
+    };
+    expect_slope("x", 0.06);
+    expect_slope("y", -0.03);
+    expect_slope("z", 0.0);
+    EXPECT_EQ(with_drift["z"]["allan"], axes["z"]["allan"]);
+    const json& flicker = axes["x"]["coefficients"]["B"];
+    ASSERT_TRUE(flicker.contains("value")) << flicker;
+    EXPECT_NEAR(flicker["value"].get<double>(), 0.004, 4.0 * flicker["sd"].get<double>());
+    const auto last_decade = [](const json& of) {
+        return of["allan"][of["allan"].size() * 3 / 4]["value"].get<double>();
+    };
+    EXPECT_GT(last_decade(with_drift["x"]), 2.0 * last_decade(axes["x"]));
+    const json written = json::parse(read_whole_file(folder.path("m.json")));
+    EXPECT_EQ(written["effects"][0]["effect"], "temp_linear");
+}
+
 TEST(Simulate, ASeedIsAUnitToTheLastByte) {
     const TemporaryFolder folder;
     const std::string model = write(typical_mpu9250(), folder);

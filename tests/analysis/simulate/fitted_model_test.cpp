@@ -101,5 +101,33 @@ TEST(FittedModel, HasTheScatterOfTheStampsAndOfTheThermometer) {
     EXPECT_EQ(fitted_model(analyze(recording), recording).timestamp_jitter_s, 0.0);
 }
 
+TEST(FittedModel, HasTheDriftThatWasTakenOffAndItsTemperature) {
+    constexpr std::size_t samples = 20'000;
+    Recording recording = white_recording(samples, 0.01, 0.1);
+    std::vector<double> temp(samples);
+    auto& x = std::get<std::vector<double>>(recording.columns[0].data);
+    for (std::size_t i = 0; i < samples; ++i) {
+        temp[i] = 35.0 + 5.0 * std::sin(9.0 * static_cast<double>(i) / samples);
+        x[i] += 0.01 * temp[i];
+    }
+    recording.columns.push_back({"temp", "degC", temp, 1.0, 0.0, "C"});
+    const SensorModel model = fitted_model(analyze(recording), recording);
+    ASSERT_EQ(model.effects.size(), 1U);
+    EXPECT_EQ(model.effects[0].effect, "temp_linear");
+    EXPECT_EQ(model.effects[0].axes, std::vector<std::string>{"x"});
+    EXPECT_NEAR(model.effects[0].params.at("c1_dps_per_C"), 0.01 * deg_per_rad, 0.01);
+    const double mean_C = model.effects[0].params.at("reference_C");
+    EXPECT_NEAR(mean_C, 36.06, 0.1);  // 35 + 5 (1 - cos 9) / 9
+    ASSERT_TRUE(model.temperature);
+    EXPECT_EQ(model.temperature->reference_C, mean_C);
+    EXPECT_NEAR(model.axes[0].bias_rad_s, 0.1 + 0.01 * mean_C, 1e-3);
+    EXPECT_EQ(simulation_refusal(model), std::nullopt);
+    AnalysisOptions keep;
+    keep.keep_temperature = true;
+    const SensorModel kept = fitted_model(analyze(recording, keep), recording);
+    EXPECT_FALSE(kept.temperature);
+    for (const EffectModel& effect : kept.effects) { EXPECT_NE(effect.effect, "temp_linear"); }
+}
+
 }  // namespace
 }  // namespace gyrolog
