@@ -245,6 +245,21 @@ void add_keys(Panel& panel, const AllanFigure& allan, bool has_band) {
     }
 }
 
+// Marks of one name that lie together have one letter.
+void share_letters(std::vector<Callout>& marks) {
+    constexpr double together_decades = 0.3;
+    const auto decades = [](double a, double b) { return std::abs(std::log10(a / b)); };
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+            const bool is_near = decades(marks[i].x, marks[k].x) < together_decades &&
+                                 decades(marks[i].y, marks[k].y) < together_decades;
+            if (marks[i].text.empty() || marks[i].text != marks[k].text || !is_near) { continue; }
+            marks[i].text.clear();
+            marks[k].word_colour = colours::ink;
+        }
+    }
+}
+
 void add_guides(Panel& panel) {
     const auto is_marked = [&](const char* name) {
         return std::any_of(panel.callouts.begin(), panel.callouts.end(),
@@ -292,6 +307,7 @@ Panel allan_panel(const AllanFigure& allan) {
             panel.curves.push_back(drafting.model());
         }
     }
+    share_letters(panel.callouts);
     add_keys(panel, allan, has_band);
     add_guides(panel);
 
@@ -322,15 +338,14 @@ Figure figure_of(const AllanFigure& allan) {
     figure.title = allan.title;
     figure.source = allan.source;
     figure.facts = allan.facts;
-    figure.width_px = allan.width_px;
-    figure.height_px = allan.height_px;
-    figure.scale = allan.scale;
+    figure.width_px = allan.paper.width_px();
+    figure.height_px = allan.paper.pixels(allan.height_mm);
+    figure.scale = allan.paper.scale();
     figure.panels.push_back(allan_panel(allan));
     if (has_spectrum(allan)) {
         figure.panels.push_back(spectrum_panel(allan));
-        figure.panels.back().height_share =
-            static_cast<double>(allan.spectrum_height_px) / static_cast<double>(allan.height_px);
-        figure.height_px += allan.spectrum_height_px;
+        figure.panels.back().height_share = allan.spectrum_height_mm / allan.height_mm;
+        figure.height_px += allan.paper.pixels(allan.spectrum_height_mm);
     }
     return figure;
 }

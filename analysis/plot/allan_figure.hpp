@@ -12,6 +12,7 @@
 
 #include "analysis/allan/allan_curve.hpp"
 #include "analysis/plot/figure.hpp"
+#include "analysis/plot/paper_size.hpp"
 #include "analysis/spectrum/power_spectrum.hpp"
 #include "analysis/spectrum/spectral_lines.hpp"
 
@@ -71,10 +72,9 @@ struct AllanFigure {
     DeviationUnit unit = DeviationUnit::rad_per_s_as_deg_per_s();
     std::vector<AllanTrace> traces;
     bool slope_lines = true;
-    int width_px = 1600;
-    int height_px = 1100;
-    int spectrum_height_px = 640;  // added where a trace has a spectrum
-    double scale = 1.0;
+    PaperSize paper{};
+    double height_mm = 125.0;
+    double spectrum_height_mm = 78.0;  // added where a trace has a spectrum
 };
 
 // The figure as panels and curves: to draw it with others, or to change what is not to taste.

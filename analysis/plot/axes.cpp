@@ -4,24 +4,25 @@
 #include <cmath>
 
 #include "analysis/plot/number_text.hpp"
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
 namespace {
 
 // At scale 1.
-constexpr double label_text_px = 21.0;
-constexpr double title_text_px = 23.0;
+constexpr double title_text_px = 20.0;
 constexpr double tick_px = 8.0;
 constexpr double minor_tick_px = 4.0;
 constexpr double label_gap_px = 7.0;
-constexpr double title_gap_px = 20.0;
+constexpr double caption_gap_px = 12.0;  // a label at the plot's upper end reaches above it
+constexpr double guide_line_px = letter_px + label_gap_px;  // words of guides, between caption and plot
+constexpr double title_gap_px = 9.0;
 constexpr double labels_apart_px = 14.0;
-constexpr double edge_px = 4.0;
+constexpr double edge_px = 3.0;
 constexpr double fine_grid_apart_px = 13.0;  // on average; a denser fine grid only greys the paper
-constexpr double guide_text_px = 19.0;
 
-// Height a line of letters takes, from capitals' top to below the descenders.
-constexpr double line_share = 1.05;
+// From one line of a title to the next.
+constexpr double title_line_px = 24.0;
 
 }  // namespace
 
@@ -35,7 +36,7 @@ Axis AxesDrawing::axis(const Scale& scale, const AxisSpec& spec, bool is_upright
         for (const AxisName& name : spec.names) { axis.ticks.ticks.push_back({name.value, name.text}); }
         return axis;
     }
-    const double size_px = label_text_px * scale_;
+    const double size_px = letter_px * scale_;
     const auto extent_px = [&](const std::string& label) {
         return is_upright ? size_px : typeface_.measure(label, size_px).width_px;
     };
@@ -47,30 +48,61 @@ Axis AxesDrawing::axis(const Scale& scale, const AxisSpec& spec, bool is_upright
 double AxesDrawing::label_width_px(const Axis& axis) const {
     double widest_px = 0.0;
     for (const Tick& tick : axis.ticks.ticks) {
-        widest_px = std::max(widest_px, typeface_.measure(tick.label, label_text_px * scale_).width_px);
+        widest_px = std::max(widest_px, typeface_.measure(tick.label, letter_px * scale_).width_px);
     }
     return widest_px;
 }
 
+std::vector<std::string> AxesDrawing::title_lines(const std::string& title, double size_px,
+                                                  double room_px) const {
+    const auto width_px = [&](const std::string& line) { return typeface_.measure(line, size_px).width_px; };
+    std::vector<std::string> lines{title};
+    double narrowest_px = width_px(title);
+    if (title.empty() || narrowest_px <= room_px) { return lines; }
+    for (std::size_t at = title.find(' '); at != std::string::npos; at = title.find(' ', at + 1)) {
+        const std::vector<std::string> two{title.substr(0, at), title.substr(at + 1)};
+        const double wider_px = std::max(width_px(two[0]), width_px(two[1]));
+        if (wider_px >= narrowest_px) { continue; }
+        narrowest_px = wider_px;
+        lines = two;
+    }
+    for (std::string& line : lines) { line = typeface_.shortened(line, size_px, room_px, Ellipsis::end); }
+    return lines;
+}
+
+double AxesDrawing::title_room_px(const std::string& title, double room_px) const {
+    if (title.empty()) { return 2.0 * edge_px * scale_; }
+    const auto lines = static_cast<double>(title_lines(title, title_text_px * scale_, room_px).size());
+    return (title_gap_px + lines * title_line_px + edge_px) * scale_;
+}
+
+double AxesDrawing::caption_room_px(double room_px) const {
+    const double guides_px = panel_.guides.empty() ? 0.0 : guide_line_px;
+    if (panel_.caption.empty()) { return std::max(guides_px, 0.6 * letter_px) * scale_; }
+    const auto lines = static_cast<double>(title_lines(panel_.caption, letter_px * scale_, room_px).size());
+    return (guides_px + letter_px + caption_gap_px + (lines - 1.0) * title_line_px) * scale_;
+}
+
 Margins AxesDrawing::margins(const Box& area) const {
-    const double beyond_labels_px = (title_gap_px + title_text_px * line_share + edge_px) * scale_;
     const double up_to_labels_px = (tick_px + label_gap_px) * scale_;
-    const bool has_words_above = !panel_.guides.empty() || !panel_.caption.empty();
-    const double above_px = has_words_above ? guide_text_px + label_gap_px : 0.6 * label_text_px;
-    Margins margins{120.0 * scale_, 120.0 * scale_, above_px * scale_,
-                    up_to_labels_px + label_text_px * scale_ + beyond_labels_px};
+    Margins margins{120.0 * scale_, 120.0 * scale_, 0.0, up_to_labels_px + letter_px * scale_};
     for (int round = 0; round < 2; ++round) {
         const Axes axes = lay_out(area, margins);
+        const Box& plot = axes.plot;
         double half_x_label_px = 0.0;
         for (const Tick& tick : axes.x.ticks.ticks) {
             if (tick.label.empty()) { continue; }
-            const double half_px = typeface_.measure(tick.label, label_text_px * scale_).width_px / 2.0;
+            const double half_px = typeface_.measure(tick.label, letter_px * scale_).width_px / 2.0;
             half_x_label_px =
-                std::max(half_x_label_px, axes.x.scale.pixel(tick.value) + half_px - axes.plot.right);
+                std::max(half_x_label_px, axes.x.scale.pixel(tick.value) + half_px - plot.right);
         }
-        margins.left_px = up_to_labels_px + label_width_px(axes.y) + beyond_labels_px;
-        margins.right_px = axes.right ? up_to_labels_px + label_width_px(*axes.right) + beyond_labels_px
+        margins.left_px =
+            up_to_labels_px + label_width_px(axes.y) + title_room_px(axes.y.title, plot.height());
+        margins.right_px = axes.right ? up_to_labels_px + label_width_px(*axes.right) +
+                                            title_room_px(axes.right->title, plot.height())
                                       : half_x_label_px + 2.0 * edge_px * scale_;
+        margins.top_px = caption_room_px(area.width());
+        margins.bottom_px = up_to_labels_px + letter_px * scale_ + title_room_px(axes.x.title, plot.width());
     }
     return margins;
 }
@@ -83,7 +115,7 @@ Axes AxesDrawing::lay_out(const Box& area, const Margins& margins) const {
                    std::max(std::round(area.bottom - margins.bottom_px), top + 1.0)};
     const Scale x{panel_.x.kind, x_range_, plot.left, plot.right};
     const Scale y{panel_.y.kind, y_range_, plot.bottom, plot.top};
-    Axes axes{plot, axis(x, panel_.x, false), axis(y, panel_.y, true), {}};
+    Axes axes{area, plot, axis(x, panel_.x, false), axis(y, panel_.y, true), {}};
     if (panel_.right) {
         Scale right = y;
         right.range = {y.range.lo * panel_.right->factor, y.range.hi * panel_.right->factor};
@@ -143,29 +175,45 @@ void AxesDrawing::draw_ticks(Canvas& canvas, const Axes& axes) const {
     }
 }
 
+// As wide as the panel: with numbers and names it is longer than a narrow plot.
+void AxesDrawing::draw_caption(Canvas& canvas, const Axes& axes) const {
+    const double size_px = letter_px * scale_;
+    const auto lines = title_lines(panel_.caption, size_px, axes.area.width());
+    const double guides_px = panel_.guides.empty() ? 0.0 : guide_line_px;
+    double y = axes.plot.top - (guides_px + caption_gap_px) * scale_;
+    for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+        canvas.text(typeface_, *line, {axes.area.left, y},
+                    {size_px, colours::muted_ink, Across::left, Along::baseline});
+        y -= title_line_px * scale_;
+    }
+}
+
 void AxesDrawing::draw_titles(Canvas& canvas, const Axes& axes) const {
     const double size_px = title_text_px * scale_;
+    const double line_px = title_line_px * scale_;
     const Box& plot = axes.plot;
     const double away_px = (tick_px + label_gap_px + title_gap_px) * scale_;
-    const auto fitted = [&](const std::string& title, double room_px) {
-        return typeface_.shortened(title, size_px, room_px, Ellipsis::end);
-    };
-    canvas.text(typeface_, fitted(axes.x.title, plot.width()),
-                {plot.centre().x, plot.bottom + away_px + label_text_px * scale_},
-                {size_px, colours::ink, Across::centre, Along::top});
-    canvas.text(typeface_, fitted(axes.y.title, plot.height()),
-                {plot.left - away_px - label_width_px(axes.y), plot.centre().y},
-                {size_px, colours::ink, Across::centre, Along::baseline, true});
-    if (!panel_.caption.empty()) {
-        const double caption_px = guide_text_px * scale_;
-        canvas.text(typeface_, typeface_.shortened(panel_.caption, caption_px, plot.width(), Ellipsis::end),
-                    {plot.left, plot.top - label_gap_px * scale_},
-                    {caption_px, colours::muted_ink, Across::left, Along::baseline});
+    double y = plot.bottom + away_px + letter_px * scale_;
+    for (const std::string& line : title_lines(axes.x.title, size_px, plot.width())) {
+        canvas.text(typeface_, line, {plot.centre().x, y},
+                    {size_px, colours::ink, Across::centre, Along::top});
+        y += line_px;
     }
-    if (axes.right) {
-        canvas.text(typeface_, fitted(axes.right->title, plot.height()),
-                    {plot.right + away_px + label_width_px(*axes.right), plot.centre().y},
+    const auto left = title_lines(axes.y.title, size_px, plot.height());
+    double x =
+        plot.left - away_px - label_width_px(axes.y) - (static_cast<double>(left.size()) - 1.0) * line_px;
+    for (const std::string& line : left) {
+        canvas.text(typeface_, line, {x, plot.centre().y},
+                    {size_px, colours::ink, Across::centre, Along::baseline, true});
+        x += line_px;
+    }
+    if (!panel_.caption.empty()) { draw_caption(canvas, axes); }
+    if (!axes.right) { return; }
+    x = plot.right + away_px + label_width_px(*axes.right);
+    for (const std::string& line : title_lines(axes.right->title, size_px, plot.height())) {
+        canvas.text(typeface_, line, {x, plot.centre().y},
                     {size_px, colours::ink, Across::centre, Along::top, true});
+        x += line_px;
     }
 }
 
@@ -176,15 +224,16 @@ std::vector<Box> AxesDrawing::draw_guides(Canvas& canvas, const Axes& axes) cons
         if (!(x > axes.plot.left && x < axes.plot.right)) { continue; }
         canvas.line({{x, axes.plot.top}, {x, axes.plot.bottom}},
                     Stroke{colours::guide, 1.0, {5.0, 4.0}}.scaled(scale_));
-        const double half_px = typeface_.measure(guide.text, guide_text_px * scale_).width_px / 2.0;
+        const double half_px = typeface_.measure(guide.text, letter_px * scale_).width_px / 2.0;
         const double bottom = axes.plot.top - label_gap_px * scale_;
-        const Box box{x - half_px, bottom - guide_text_px * scale_, x + half_px, bottom};
+        const double middle = std::clamp(x, axes.area.left + half_px, axes.area.right - half_px);
+        const Box box{middle - half_px, bottom - letter_px * scale_, middle + half_px, bottom};
         const bool is_free = std::none_of(words.begin(), words.end(), [&](const Box& word) {
             return word.grown(label_gap_px * scale_ / 2.0).overlaps(box);
         });
         if (!is_free) { continue; }
-        canvas.text(typeface_, guide.text, {x, bottom},
-                    {guide_text_px * scale_, colours::muted_ink, Across::centre, Along::baseline});
+        canvas.text(typeface_, guide.text, {middle, bottom},
+                    {letter_px * scale_, colours::muted_ink, Across::centre, Along::baseline});
         words.push_back(box);
     }
     return words;
@@ -193,7 +242,7 @@ std::vector<Box> AxesDrawing::draw_guides(Canvas& canvas, const Axes& axes) cons
 std::vector<Box> AxesDrawing::draw_frame(Canvas& canvas, const Axes& axes) const {
     draw_ticks(canvas, axes);
     draw_titles(canvas, axes);
-    const double size_px = label_text_px * scale_;
+    const double size_px = letter_px * scale_;
     const double away_px = (tick_px + label_gap_px) * scale_;
     std::vector<Box> boxes;
     const auto put = [&](const Axis& axis, Point at, Across across, Along along) {

@@ -25,6 +25,7 @@ struct Axis {
 };
 
 struct Axes {
+    Box area;
     Box plot;
     Axis x;
     Axis y;
@@ -35,9 +36,9 @@ class AxesDrawing {
 public:
     AxesDrawing(const Panel& panel, Range x_range, Range y_range, const Typeface& typeface, double scale);
 
-    // The margins that axes filling this area would need. Ticks depend on the plot's size and the size on the
-    // ticks' labels, so this is settled in rounds; two are enough because labels of one axis differ little in
-    // width.
+    // The margins that axes filling this area would need: none for a title that is empty. Ticks depend on the
+    // plot's size and the size on the ticks' labels, so this is settled in rounds; two are enough because
+    // labels of one axis differ little in width.
     Margins margins(const Box& area) const;
 
     Axes lay_out(const Box& area, const Margins& margins) const;
@@ -50,8 +51,13 @@ public:
 private:
     Axis axis(const Scale& scale, const AxisSpec& spec, bool is_upright) const;
     double label_width_px(const Axis& axis) const;
+    // One line, or two where one is longer than the room; what even they do not hold is shortened.
+    std::vector<std::string> title_lines(const std::string& title, double size_px, double room_px) const;
+    double title_room_px(const std::string& title, double room_px) const;  // beyond the labels
+    double caption_room_px(double room_px) const;
     void draw_ticks(Canvas& canvas, const Axes& axes) const;
     void draw_titles(Canvas& canvas, const Axes& axes) const;
+    void draw_caption(Canvas& canvas, const Axes& axes) const;
 
     const Panel& panel_;
     Range x_range_;

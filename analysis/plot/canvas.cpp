@@ -5,10 +5,14 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include <png.h>
+#include <zlib.h>
 
 #include <opencv2/imgproc.hpp>
+
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
 namespace {
@@ -96,11 +100,38 @@ void lay_over(cv::Mat& picture, const TextMask& mask, Colour colour) {
     }
 }
 
+// PNG's signature and its IHDR, which must come first (PNG, third edition, 5.2 and 5.6).
+constexpr std::ptrdiff_t bytes_before_first_chunk = 8 + 4 + 4 + 13 + 4;
+
+void append_big_endian(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
+    for (const unsigned shift : {24U, 16U, 8U, 0U}) {
+        bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+    }
+}
+
+// pHYs (PNG, third edition, 11.3.4.3): pixels in a metre. libpng's simple interface does not write it.
+std::vector<std::uint8_t> physical_size_chunk(double dpi) {
+    constexpr double inches_per_m = 1000.0 / mm_per_inch;
+    constexpr std::uint32_t data_bytes = 4 + 4 + 1;
+    constexpr std::uint8_t unit_is_metre = 1;
+    constexpr std::size_t bytes_before_type = 4;
+    const auto pixels_per_m = static_cast<std::uint32_t>(std::lround(dpi * inches_per_m));
+    std::vector<std::uint8_t> chunk;
+    append_big_endian(chunk, data_bytes);
+    for (const char letter : std::string_view("pHYs")) { chunk.push_back(static_cast<std::uint8_t>(letter)); }
+    append_big_endian(chunk, pixels_per_m);
+    append_big_endian(chunk, pixels_per_m);
+    chunk.push_back(unit_is_metre);
+    const auto checked = static_cast<uInt>(chunk.size() - bytes_before_type);
+    append_big_endian(chunk, static_cast<std::uint32_t>(crc32(0, chunk.data() + bytes_before_type, checked)));
+    return chunk;
+}
+
 }  // namespace
 
-Canvas::Canvas(int width_px, int height_px)
+Canvas::Canvas(int width_px, int height_px, double dpi)
     : fine_(height_px * fineness, width_px * fineness, CV_8UC3, scalar(colours::paper)),
-      drawing_{width_px, height_px, {}} {
+      drawing_{width_px, height_px, dpi, {}} {
     drawing_.marks.emplace_back(
         DrawnArea{corners_of({0.0, 0.0, double(width_px), double(height_px)}), colours::paper});
 }
@@ -206,7 +237,7 @@ cv::Mat Canvas::picture() const {
 
 // Not by OpenCV: its imgcodecs brings a hundred libraries, and with them 40 MB and 0.1 s to every command,
 // captures included.
-std::vector<std::uint8_t> encode_png(const cv::Mat& picture) {
+std::vector<std::uint8_t> encode_png(const cv::Mat& picture, double dpi) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     image.width = static_cast<png_uint_32>(picture.cols);
@@ -219,6 +250,8 @@ std::vector<std::uint8_t> encode_png(const cv::Mat& picture) {
         throw std::runtime_error(std::string("a figure could not be encoded: ") + image.message);
     }
     bytes.resize(size);
+    const std::vector<std::uint8_t> chunk = physical_size_chunk(dpi);
+    bytes.insert(bytes.begin() + bytes_before_first_chunk, chunk.begin(), chunk.end());
     return bytes;
 }
 

@@ -31,7 +31,7 @@ struct TextStyle {
 
 class Canvas {
 public:
-    Canvas(int width_px, int height_px);
+    Canvas(int width_px, int height_px, double dpi);
 
     void fill(const Box& box, Colour colour, double opacity = 1.0);
     void fill(const Polyline& polygon, Colour colour, double opacity = 1.0);
@@ -55,6 +55,7 @@ private:
     Drawing drawing_;
 };
 
-std::vector<std::uint8_t> encode_png(const cv::Mat& picture);
+// The file says how large it is to be printed.
+std::vector<std::uint8_t> encode_png(const cv::Mat& picture, double dpi);
 
 }  // namespace gyrolog

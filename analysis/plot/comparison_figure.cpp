@@ -8,12 +8,46 @@
 namespace gyrolog {
 namespace {
 
-constexpr int comparison_heading_px = 130;
-constexpr int panel_row_px = 350;
+constexpr int comparison_heading_px = 150;  // and the key
+constexpr int panel_row_px = 262;
+constexpr int compared_columns_most = 3;
 
 // In grey the one is darker, and it is drawn over the other.
 constexpr Colour recording_colour = colours::blue;
 constexpr Colour other_colour = colours::orange;
+
+const Stroke recording_line{recording_colour, 2.2, {}};
+const Stroke other_line{mixed(other_colour, colours::ink, 0.25), 1.8, {9.0, 5.0}};
+constexpr double other_opacity = 0.35;
+
+// Of the points of the recording that lie outside.
+Curve marks_look() {
+    Curve marks;
+    marks.stroke = {colours::vermillion, 0.0, {}};
+    marks.marker = Marker::circle;
+    marks.marker_size_px = 7.0;
+    marks.markers_apart_px = 0.0;
+    return marks;
+}
+
+// What the panels show, each once: the other with its band first.
+std::vector<Curve> key_of(const Comparison& comparison) {
+    std::vector<Curve> key(2);
+    key[0].stroke = other_line;
+    key[0].band_opacity = other_opacity;
+    key[0].lo = key[0].hi = {0.0};
+    key[0].legend = {comparison.simulations == 0
+                         ? "other, 68 %"
+                         : "simulated, " + rounded_number(100.0 * comparison.band_probability, 3) + " %"};
+    key[1].stroke = recording_line;
+    key[1].legend = {"recording"};
+    const auto has_outside = [](const AxisComparison& axis) { return axis.allan.points_outside() > 0; };
+    if (std::ranges::any_of(comparison.axes, has_outside)) {
+        key.push_back(marks_look());
+        key.back().legend = {"recording, outside"};
+    }
+    return key;
+}
 
 class ComparedAxisPanels {
 public:
@@ -21,9 +55,7 @@ public:
         : comparison_(comparison),
           axis_(axis),
           unit_(comparison.unit.sensor == SensorKind::gyro ? "°/s" : comparison.unit.name),
-          quantity_(comparison.unit.sensor == SensorKind::gyro ? "rate" : "specific force"),
-          is_first_(&axis == comparison.axes.data()),
-          is_first_outside_(&axis == std::find_if(comparison.axes.data(), &axis + 1, has_outside)) {}
+          quantity_(comparison.unit.sensor == SensorKind::gyro ? "rate" : "specific force") {}
 
     void add_to(Figure& figure) const {
         const bool simulated = comparison_.simulations > 0;
@@ -34,7 +66,6 @@ public:
         figure.panels.push_back(histograms());
         figure.panels.push_back(
             curves(axis_.allan, "Allan deviation", "averaging time τ (s)", "σ(τ) (" + unit_ + ")"));
-        if (is_first_) { add_legend(figure.panels.back()); }
         figure.panels.push_back(curves(axis_.spectrum, "spectrum (root of the density)", "frequency (Hz)",
                                        "√S ((" + unit_ + ")/√Hz)"));
         figure.panels.push_back(ratios());
@@ -46,14 +77,6 @@ private:
     std::vector<double> on_paper(std::vector<double> values) const {
         for (double& value : values) { value = on_paper(value); }
         return values;
-    }
-
-    static bool has_outside(const AxisComparison& axis) { return axis.allan.points_outside() > 0; }
-
-    // The legend's word for the other curve, and what its band is.
-    std::vector<std::string> other_legend() const {
-        if (comparison_.simulations == 0) { return {"other, 68 %"}; }
-        return {"simulated, " + rounded_number(100.0 * comparison_.band_probability, 3) + " %"};
     }
 
     Panel series(const BlockAverages& averages, Colour colour, const std::string& caption) const {
@@ -118,31 +141,17 @@ private:
         other.y = on_paper(compared.other);
         other.lo = on_paper(compared.lo);
         other.hi = on_paper(compared.hi);
-        other.stroke = {mixed(other_colour, colours::ink, 0.25), 2.0, {9.0, 5.0}};
-        other.band_opacity = 0.35;
+        other.stroke = other_line;
+        other.band_opacity = other_opacity;
         Curve recording;
         recording.x = compared.at;
         recording.y = on_paper(compared.recording);
         recording.lo = on_paper(compared.recording_lo);
         recording.hi = on_paper(compared.recording_hi);
-        recording.stroke = {recording_colour, 2.2, {}};
+        recording.stroke = recording_line;
         panel.curves.push_back(std::move(other));
         panel.curves.push_back(std::move(recording));
         return panel;
-    }
-
-    // With room above the curves, where the legend is to lie.
-    void add_legend(Panel& panel) const {
-        panel.curves[0].legend = other_legend();
-        panel.curves[1].legend = {"recording"};
-        RangeFinder finder(ScaleKind::logarithmic);
-        for (const Curve& curve : panel.curves) {
-            for (const std::vector<double>* values : {&curve.y, &curve.lo, &curve.hi}) {
-                for (const double value : *values) { finder.add(value); }
-            }
-        }
-        const Range shown = finder.padded(0.05, 1.0);
-        panel.y.range = Range{shown.lo, shown.hi * std::pow(shown.hi / shown.lo, 0.6)};
     }
 
     Panel ratios() const {
@@ -154,7 +163,7 @@ private:
         panel.y = {"ratio (dB)", ScaleKind::linear, {}};
         Curve band;
         Curve recording;
-        Curve outside;
+        Curve outside = marks_look();
         for (std::size_t i = 0; i < compared.at.size(); ++i) {
             const auto over_other_dB = [&](double value) {
                 return 20.0 * std::log10(value / compared.other[i]);
@@ -177,14 +186,9 @@ private:
                 outside.y.push_back(compared.ratio_dB(i));
             }
         }
-        band.stroke = {mixed(other_colour, colours::ink, 0.25), 1.5, {9.0, 5.0}};
-        band.band_opacity = 0.35;
-        recording.stroke = {recording_colour, 2.2, {}};
-        outside.stroke = {colours::vermillion, 0.0, {}};
-        outside.marker = Marker::circle;
-        outside.marker_size_px = 7.0;
-        outside.markers_apart_px = 0.0;
-        if (is_first_outside_) { outside.legend = {"outside"}; }
+        band.stroke = other_line;
+        band.band_opacity = other_opacity;
+        recording.stroke = recording_line;
         panel.curves = {std::move(band), std::move(recording)};
         if (!outside.x.empty()) { panel.curves.push_back(std::move(outside)); }
         return panel;
@@ -194,8 +198,6 @@ private:
     const AxisComparison& axis_;
     std::string unit_;
     std::string quantity_;
-    bool is_first_;
-    bool is_first_outside_;  // of those with points outside
 };
 
 }  // namespace
@@ -206,15 +208,16 @@ Figure figure_of(const ComparisonFigure& request) {
     figure.title = comparison.simulations > 0 ? "The sensor and its simulation" : "Two recordings";
     figure.source = comparison.recording_name + "  |  " + comparison.other_name;
     figure.facts = request.facts;
-    figure.columns = 3;
-    figure.scale = request.scale;
+    figure.columns = request.paper.columns_up_to(compared_columns_most);
+    figure.scale = request.paper.scale();
     for (const AxisComparison& axis : comparison.axes) {
         ComparedAxisPanels(comparison, axis).add_to(figure);
     }
-    const auto rows = 2 * static_cast<int>(comparison.axes.size());
-    figure.width_px = request.width_px;
-    figure.height_px =
-        static_cast<int>(std::lround((comparison_heading_px + rows * panel_row_px) * request.scale));
+    const auto columns = static_cast<std::size_t>(figure.columns);
+    const auto rows = static_cast<int>((figure.panels.size() + columns - 1) / columns);
+    figure.key = key_of(comparison);
+    figure.width_px = request.paper.width_px();
+    figure.height_px = request.paper.scaled_pixels(comparison_heading_px + rows * panel_row_px);
     return figure;
 }
 

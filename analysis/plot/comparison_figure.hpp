@@ -6,14 +6,14 @@
 
 #include "analysis/compare/comparison.hpp"
 #include "analysis/plot/figure.hpp"
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
 
 struct ComparisonFigure {
     const Comparison& comparison;
     std::vector<std::string> facts;
-    int width_px = 1600;
-    double scale = 1.0;
+    PaperSize paper{};
 };
 
 Figure figure_of(const ComparisonFigure& comparison);

@@ -92,8 +92,8 @@ Figure figure_of(const CourseFigure& course) {
     figure.title = course.title;
     figure.source = course.source;
     figure.facts = course.facts;
-    figure.width_px = course.width_px;
-    figure.scale = course.scale;
+    figure.width_px = course.paper.width_px();
+    figure.scale = course.paper.scale();
     const std::size_t parts = course.traces.empty() ? 0 : course.traces.front().means.size();
     const TimeAxis time = time_axis(course, parts);
     figure.panels.push_back(time_panel(course, time));
@@ -103,7 +103,7 @@ Figure figure_of(const CourseFigure& course) {
         figure.panels.push_back(over_temperature_panel(course));
         height_px += temperature_panel_px + course_panel_px;
     }
-    figure.height_px = static_cast<int>(std::lround(height_px * course.scale));
+    figure.height_px = course.paper.scaled_pixels(height_px);
     return figure;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/plot/figure.hpp"
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
 
@@ -23,8 +24,7 @@ struct CourseFigure {
     double duration_s = 0.0;
     std::vector<CourseTrace> traces;
     std::vector<double> temperature_degC;  // of the same parts; empty: not known
-    int width_px = 1600;
-    double scale = 1.0;
+    PaperSize paper{};
 };
 
 Figure figure_of(const CourseFigure& course);

@@ -10,8 +10,8 @@
 namespace gyrolog {
 namespace {
 
-constexpr int denoised_heading_px = 130;
-constexpr int denoised_row_px = 420;
+constexpr int denoised_heading_px = 110;
+constexpr int denoised_row_px = 320;
 constexpr double shown_at_rest_s = 10.0;
 constexpr double shown_in_motion_s = 5.0;
 constexpr double shown_at_start_s = 3.0;
@@ -287,11 +287,13 @@ Figure figure_of(const DenoiseFigure& denoise) {
     figure.title = "Denoising";
     figure.source = denoise.recording.name;
     figure.facts = denoise.facts;
-    figure.columns = 2;
+    figure.columns = denoise.paper.columns_up_to(2);
     for (const AxisDenoising& axis : denoise.axes) { DenoisedAxisPanels(denoise, axis).add_to(figure); }
-    figure.width_px = denoise.width_px;
-    figure.height_px =
-        denoised_heading_px + denoised_row_px * static_cast<int>((figure.panels.size() + 1) / 2);
+    figure.width_px = denoise.paper.width_px();
+    figure.scale = denoise.paper.scale();
+    const auto columns = static_cast<std::size_t>(figure.columns);
+    const auto rows = static_cast<int>((figure.panels.size() + columns - 1) / columns);
+    figure.height_px = denoise.paper.scaled_pixels(denoised_heading_px + denoised_row_px * rows);
     return figure;
 }
 

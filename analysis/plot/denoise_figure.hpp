@@ -9,6 +9,7 @@
 
 #include "analysis/denoise/denoise.hpp"
 #include "analysis/plot/figure.hpp"
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
 
@@ -20,7 +21,7 @@ struct DenoiseFigure {
     std::string unit = "°/s";
     double per_column_unit = 1.0;
     std::string quantity = "rate";  // that the unit is of
-    int width_px = 1800;
+    PaperSize paper{};
 };
 
 Figure figure_of(const DenoiseFigure& denoise);

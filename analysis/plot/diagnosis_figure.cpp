@@ -13,12 +13,15 @@
 namespace gyrolog {
 namespace {
 
-constexpr double diagnosis_heading_px = 130.0;
-constexpr double diagnosis_fact_line_px = 30.0;
-constexpr double domain_row_px = 350.0;
-constexpr double lone_panel_px = 640.0;
-constexpr std::size_t columns_most = 3;
+constexpr double diagnosis_heading_px = 90.0;
+constexpr double diagnosis_fact_line_px = 27.0;
+constexpr double diagnosis_key_px = 86.0;  // in two lines
+constexpr double domain_row_px = 246.0;
+constexpr double lone_panel_px = 520.0;
+constexpr int diagnosed_columns_most = 3;
 constexpr std::size_t rows_most = 6;
+constexpr std::size_t rows_least = 3;
+constexpr double page_height_mm = 250.0;  // of the text on A4; with many causes the figure is higher
 
 // From light to dark in grey, too: band before, band after, recording.
 constexpr Colour before_colour = colours::orange;
@@ -33,10 +36,6 @@ constexpr double after_opacity = 0.50;
 
 constexpr double least_decibels = 1.0;
 constexpr double hours_from_s = 7200.0;
-// A panel without its axis, and its legend.
-constexpr double below_plot_px = 100.0;
-constexpr double legend_line_px = 29.0;
-constexpr double around_legend_px = 48.0;
 
 enum class Part { recording, before, after, outside_before, outside_after };
 
@@ -71,7 +70,7 @@ public:
         return false;
     }
 
-    // A curve without points that looks like the part, for a legend elsewhere.
+    // A curve without points that looks like the part.
     Curve key(Part part) const {
         Curve curve;
         switch (part) {
@@ -93,38 +92,28 @@ public:
         return curve;
     }
 
-    // `named`: what the panel's legend says, for which there is room above the curves.
-    Panel panel(const std::vector<Part>& named, double height_px) const {
+    Panel panel() const {
         Panel panel;
         panel.caption = caption();
         panel.x = {x_name_, domain_.log_x ? ScaleKind::logarithmic : ScaleKind::linear, {}};
-        panel.y = {domain_.log_y ? "over the model (dB)" : domain_.y_name, ScaleKind::linear,
-                   range(legend_share(named.size(), height_px))};
+        panel.y = {domain_.log_y ? "over the model (dB)" : domain_.y_name, ScaleKind::linear, range()};
         add_band(panel, domain_.before_lo, domain_.before_hi, before_edge, before_opacity);
-        name(panel.curves[0], Part::before, named);
         if (has(Part::after)) {
             add_band(panel, domain_.after_lo, domain_.after_hi, after_edge, after_opacity);
-            name(panel.curves[2], Part::after, named);
         }
         Curve recording;
         recording.x = x_;
         recording.y = shown(domain_.recording);
         recording.stroke = recording_line;
-        name(recording, Part::recording, named);
         panel.curves.push_back(std::move(recording));
-        for (const Part part : {Part::outside_before, Part::outside_after}) {
-            if (!has(part)) { continue; }
-            panel.curves.push_back(marks(part));
-            name(panel.curves.back(), part, named);
+        // The smaller ones over the larger ones.
+        for (const Part part : {Part::outside_after, Part::outside_before}) {
+            if (has(part)) { panel.curves.push_back(marks(part)); }
         }
         return panel;
     }
 
 private:
-    void name(Curve& curve, Part part, const std::vector<Part>& named) const {
-        if (std::ranges::count(named, part) > 0) { curve.legend = {words_for(part)}; }
-    }
-
     std::string words_for(Part part) const {
         switch (part) {
             case Part::recording:
@@ -203,13 +192,7 @@ private:
         return marks;
     }
 
-    // Of the plot's height.
-    static double legend_share(std::size_t lines, double height_px) {
-        if (lines == 0) { return 0.0; }
-        return (legend_line_px * static_cast<double>(lines) + around_legend_px) / (height_px - below_plot_px);
-    }
-
-    Range range(double free_above) const {
+    Range range() const {
         RangeFinder finder(ScaleKind::linear);
         if (domain_.log_y) {
             finder.add(-least_decibels);
@@ -219,9 +202,7 @@ private:
                                                   &domain_.after_lo, &domain_.after_hi}) {
             for (const double value : shown(*values)) { finder.add(value); }
         }
-        Range range = finder.padded(0.06, 0.0);
-        range.hi += (range.hi - range.lo) * free_above / (1.0 - free_above);
-        return range;
+        return finder.padded(0.06, 0.0);
     }
 
     const GapDomain& domain_;
@@ -269,10 +250,10 @@ std::size_t axes_in(const Diagnosis& diagnosis) {
 }
 
 // The rows with the most to see, but whole ones before those that lack an axis.
-std::vector<Row> shown_rows(const Diagnosis& diagnosis) {
+std::vector<Row> shown_rows(const Diagnosis& diagnosis, std::size_t most) {
     std::vector<Row> rows = rows_of(diagnosis);
     std::ranges::stable_sort(rows, std::ranges::greater(), &Row::rank);
-    if (rows.size() > rows_most) { rows.resize(rows_most); }
+    if (rows.size() > most) { rows.resize(most); }
     const std::size_t axes = axes_in(diagnosis);
     std::stable_partition(rows.begin(), rows.end(), [&](const Row& row) { return row.is_whole(axes); });
     return rows;
@@ -281,67 +262,78 @@ std::vector<Row> shown_rows(const Diagnosis& diagnosis) {
 constexpr std::array all_parts = {Part::recording, Part::before, Part::after, Part::outside_before,
                                   Part::outside_after};
 
-// Without bars, beside which the legend stands, each part is named once: two in the first panel, the others
-// in the next one that has them. A lone panel has room for all.
-class LegendParts {
-public:
-    explicit LegendParts(std::size_t panels) : most_(panels == 1 ? left_.size() : 2) {}
-
-    std::vector<Part> take(const DomainPanel& panel) {
-        std::vector<Part> taken;
-        for (const Part part : left_) {
-            if (taken.size() < most_ && panel.has(part)) { taken.push_back(part); }
-        }
-        std::erase_if(left_, [&](Part part) { return std::ranges::count(taken, part) > 0; });
-        return taken;
+// What the panels show, each once.
+std::vector<Curve> key_of(const std::vector<DomainPanel>& panels) {
+    std::vector<Curve> key;
+    for (const Part part : all_parts) {
+        const auto has = [&](const DomainPanel& panel) { return panel.has(part); };
+        const auto first = std::ranges::find_if(panels, has);
+        if (first != panels.end()) { key.push_back(first->key(part)); }
     }
+    return key;
+}
 
-private:
-    std::vector<Part> left_{all_parts.begin(), all_parts.end()};
-    std::size_t most_;
+// A title that all panels of a row have stands at the first one.
+void share_titles(std::vector<Panel>& panels, std::size_t columns) {
+    for (std::size_t first = 0; first < panels.size(); first += columns) {
+        for (std::size_t i = first + 1; i < std::min(first + columns, panels.size()); ++i) {
+            if (panels[i].y.title == panels[first].y.title) { panels[i].y.title.clear(); }
+        }
+    }
+}
+
+// What is drawn below the bars.
+struct DrawnRows {
+    std::vector<const GapDomain*> domains;
+    std::size_t columns = 1;
 };
+
+DrawnRows drawn_rows(const Diagnosis& diagnosis, const PaperSize& paper, double left_px) {
+    const auto held = static_cast<std::size_t>(std::max(left_px, 0.0) / domain_row_px);
+    const std::vector<Row> rows = shown_rows(diagnosis, std::clamp(held, rows_least, rows_most));
+    DrawnRows drawn;
+    for (const Row& row : rows) {
+        drawn.domains.insert(drawn.domains.end(), row.domains.begin(), row.domains.end());
+    }
+    const auto most = static_cast<std::size_t>(paper.columns_up_to(diagnosed_columns_most));
+    const std::size_t axes = axes_in(diagnosis);
+    const bool by_axis = axes > 1 && axes <= most && rows.front().domains.size() == axes;
+    drawn.columns = by_axis ? axes : std::clamp(drawn.domains.size(), std::size_t{1}, most);
+    return drawn;
+}
 
 }  // namespace
 
 Figure figure_of(const DiagnosisFigure& request) {
     const Diagnosis& diagnosis = request.diagnosis;
-    const std::vector<Row> shown = shown_rows(diagnosis);
-    std::vector<const GapDomain*> domains;
-    for (const Row& row : shown) { domains.insert(domains.end(), row.domains.begin(), row.domains.end()); }
-    const std::size_t axes = axes_in(diagnosis);
-    const bool by_axis = axes > 1 && shown.front().domains.size() == axes;
-    const std::size_t columns = by_axis ? axes : std::clamp(domains.size(), std::size_t{1}, columns_most);
     Figure figure;
     figure.title = request.title;
     figure.source = diagnosis.recording_name + "  |  " + diagnosis.model_name;
     figure.facts = request.facts;
-    figure.columns = static_cast<int>(columns);
-    figure.scale = request.scale;
-    std::vector<DomainPanel> panels;
-    panels.reserve(domains.size());
-    for (const GapDomain* domain : domains) { panels.emplace_back(*domain, diagnosis.band_probability); }
-    double height_px =
-        diagnosis_heading_px + diagnosis_fact_line_px * static_cast<double>(request.facts.size());
-    const std::optional<Panel> bars = share_bars(diagnosis);
-    if (bars) {
+    figure.scale = request.paper.scale();
+    double height_px = diagnosis_heading_px + diagnosis_key_px +
+                       diagnosis_fact_line_px * static_cast<double>(request.facts.size());
+    if (const std::optional<Panel> bars = share_bars(diagnosis)) {
         figure.panels.push_back(*bars);
-        for (const Part part : all_parts) {
-            const auto has = [&](const DomainPanel& panel) { return panel.has(part); };
-            const auto first = std::ranges::find_if(panels, has);
-            if (first != panels.end()) { figure.panels.back().curves.push_back(first->key(part)); }
-        }
         height_px += bars->height_share;
     }
-    const double panel_px = domains.size() == 1 ? lone_panel_px : domain_row_px;
-    LegendParts legend(domains.size());
-    for (const DomainPanel& panel : panels) {
-        figure.panels.push_back(panel.panel(bars ? std::vector<Part>{} : legend.take(panel), panel_px));
-        figure.panels.back().height_share = panel_px;
+    const double page_px = page_height_mm / mm_per_inch * dpi_of_scale_1;
+    const DrawnRows rows = drawn_rows(diagnosis, request.paper, page_px - height_px);
+    figure.columns = static_cast<int>(rows.columns);
+
+    std::vector<DomainPanel> drawn;
+    std::vector<Panel> panels;
+    for (const GapDomain* domain : rows.domains) {
+        drawn.emplace_back(*domain, diagnosis.band_probability);
+        panels.push_back(drawn.back().panel());
+        panels.back().height_share = rows.domains.size() == 1 ? lone_panel_px : domain_row_px;
     }
-    const std::size_t rows = (std::max(domains.size(), std::size_t{1}) + columns - 1) / columns;
-    height_px += panel_px * static_cast<double>(rows);
-    figure.width_px = request.width_px;
-    figure.height_px = static_cast<int>(std::lround(height_px * request.scale));
+    share_titles(panels, rows.columns);
+    for (std::size_t i = 0; i < panels.size(); i += rows.columns) { height_px += panels[i].height_share; }
+    figure.panels.insert(figure.panels.end(), panels.begin(), panels.end());
+    figure.key = key_of(drawn);
+    figure.width_px = request.paper.width_px();
+    figure.height_px = request.paper.scaled_pixels(std::max(height_px, lone_panel_px));
     return figure;
 }
 

@@ -35,6 +35,7 @@ struct DrawnText {
 struct Drawing {
     int width_px = 0;
     int height_px = 0;
+    double dpi = 0.0;  // pixels in an inch of paper
     std::vector<std::variant<DrawnArea, DrawnLine, DrawnText>> marks;
 };
 

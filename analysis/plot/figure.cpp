@@ -6,16 +6,17 @@
 #include <limits>
 
 #include "analysis/plot/canvas.hpp"
+#include "analysis/plot/legend.hpp"
 #include "analysis/plot/panel.hpp"
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
 namespace {
 
 // At scale 1.
-constexpr double figure_edge_px = 26.0;
-constexpr double title_px = 30.0;
-constexpr double fact_px = 19.0;
-constexpr double fact_line_px = 28.0;
+constexpr double figure_edge_px = 14.0;
+constexpr double title_px = 26.0;
+constexpr double fact_line_px = 27.0;
 constexpr double after_heading_px = 14.0;
 constexpr double between_panels_px = 14.0;
 constexpr int largest_px = 16384;
@@ -58,8 +59,8 @@ std::string problem_with(const Figure& figure) {
         sum += row.share;
     }
     const double rows = sum / least_share;
-    const double least_width_px = 480.0 * static_cast<double>(columns_of(figure)) * figure.scale;
-    const double least_height_px = (130.0 + 230.0 * rows) * figure.scale;
+    const double least_width_px = least_panel_px * static_cast<double>(columns_of(figure)) * figure.scale;
+    const double least_height_px = (110.0 + 170.0 * rows) * figure.scale;
     const bool fits = figure.width_px >= least_width_px && figure.height_px >= least_height_px &&
                       figure.width_px <= largest_px && figure.height_px <= largest_px;
     for (const Panel& panel : figure.panels) {
@@ -76,32 +77,114 @@ std::string problem_with(const Figure& figure) {
            size_text(largest_px, largest_px) + " is possible";
 }
 
-std::vector<Box> panel_areas(const Figure& figure, double top) {
+// Where the panels lie from top to bottom.
+struct Span {
+    double top;
+    double bottom;
+};
+
+std::vector<Box> panel_areas(const Figure& figure, Span span, const std::vector<double>& widths_px) {
     const double edge = figure_edge_px * figure.scale;
     const double gap_px = between_panels_px * figure.scale;
     const std::vector<PanelRow> rows = rows_of(figure);
     double shares = 0.0;
     for (const PanelRow& row : rows) { shares += row.share; }
-    const auto columns = static_cast<double>(columns_of(figure));
     const double share_px =
-        (figure.height_px - edge - top - gap_px * (static_cast<double>(rows.size()) - 1.0)) / shares;
-    const double whole_px = figure.width_px - 2.0 * edge;
-    const double column_px = (whole_px - gap_px * (columns - 1.0)) / columns;
+        (span.bottom - span.top - gap_px * (static_cast<double>(rows.size()) - 1.0)) / shares;
     std::vector<Box> areas;
+    double top = span.top;
     for (const PanelRow& row : rows) {
-        const double width_px = row.is_spanned ? whole_px : column_px;
+        double left = edge;
         for (std::size_t column = 0; column < row.panels.size(); ++column) {
-            const double left = edge + static_cast<double>(column) * (width_px + gap_px);
-            areas.push_back({left, top, left + width_px, top + share_px * row.share});
+            const double right = row.is_spanned ? figure.width_px - edge : left + widths_px[column];
+            areas.push_back({left, top, right, top + share_px * row.share});
+            left = right + gap_px;
         }
         top += share_px * row.share + gap_px;
     }
     return areas;
 }
 
+// Of the panels that do not span their row: at the sides the widest of each column, above and below the
+// widest of each row.
+std::vector<Margins> shared_margins(const Figure& figure, std::vector<Margins> margins) {
+    std::vector<Margins> columns(columns_of(figure));
+    for (const PanelRow& row : rows_of(figure)) {
+        if (row.is_spanned) { continue; }
+        Margins all;
+        for (std::size_t column = 0; column < row.panels.size(); ++column) {
+            const Margins& own = margins[row.panels[column]];
+            columns[column].left_px = std::max(columns[column].left_px, own.left_px);
+            columns[column].right_px = std::max(columns[column].right_px, own.right_px);
+            all.top_px = std::max(all.top_px, own.top_px);
+            all.bottom_px = std::max(all.bottom_px, own.bottom_px);
+        }
+        for (const std::size_t panel : row.panels) {
+            margins[panel].top_px = all.top_px;
+            margins[panel].bottom_px = all.bottom_px;
+        }
+    }
+    for (const PanelRow& row : rows_of(figure)) {
+        if (row.is_spanned) { continue; }
+        for (std::size_t column = 0; column < row.panels.size(); ++column) {
+            margins[row.panels[column]].left_px = columns[column].left_px;
+            margins[row.panels[column]].right_px = columns[column].right_px;
+        }
+    }
+    return margins;
+}
+
+// So wide that within these margins all plots of a row are equally wide.
+std::vector<double> column_widths_px(const Figure& figure, const std::vector<Margins>& margins) {
+    std::vector<double> widths_px(columns_of(figure), 0.0);
+    for (const PanelRow& row : rows_of(figure)) {
+        if (row.is_spanned) { continue; }
+        for (std::size_t column = 0; column < row.panels.size(); ++column) {
+            const Margins& own = margins[row.panels[column]];
+            widths_px[column] = own.left_px + own.right_px;
+        }
+    }
+    const auto count = static_cast<double>(widths_px.size());
+    double plots_px = figure.width_px - 2.0 * figure_edge_px * figure.scale -
+                      (count - 1.0) * between_panels_px * figure.scale;
+    for (const double beside_px : widths_px) { plots_px -= beside_px; }
+    for (double& width_px : widths_px) { width_px += plots_px / count; }
+    return widths_px;
+}
+
+std::vector<PanelDrawing> drawings_of(const Figure& figure, const Typeface& typeface) {
+    std::vector<PanelDrawing> drawings;
+    drawings.reserve(figure.panels.size());
+    for (const Panel& panel : figure.panels) { drawings.emplace_back(panel, typeface, figure.scale); }
+    return drawings;
+}
+
+std::vector<Margins> margins_in(const std::vector<Box>& areas, const std::vector<PanelDrawing>& drawings) {
+    std::vector<Margins> margins;
+    for (std::size_t i = 0; i < drawings.size(); ++i) { margins.push_back(drawings[i].margins(areas[i])); }
+    return margins;
+}
+
+// What the margins need depends on the areas, and the areas on the margins: after two rounds they agree.
+std::vector<PanelPlace> draw_panels(Canvas& canvas, const Figure& figure, const Typeface& typeface,
+                                    Span span) {
+    const std::vector<PanelDrawing> drawings = drawings_of(figure, typeface);
+    std::vector<Margins> margins(drawings.size());
+    std::vector<Box> areas = panel_areas(figure, span, column_widths_px(figure, margins));
+    for (int round = 0; round < 2; ++round) {
+        margins = shared_margins(figure, margins_in(areas, drawings));
+        areas = panel_areas(figure, span, column_widths_px(figure, margins));
+    }
+    std::vector<PanelPlace> places;
+    for (std::size_t i = 0; i < drawings.size(); ++i) {
+        places.push_back(drawings[i].draw(canvas, areas[i], margins[i]));
+    }
+    return places;
+}
+
 // Source and facts in as few lines as hold them. The source gets what the facts leave of the first line.
 std::vector<std::string> fact_lines(const Figure& figure, const Typeface& typeface, double width_px) {
-    const double size_px = fact_px * figure.scale;
+    const double size_px = letter_px * figure.scale;
     const auto width_of = [&](const std::string& text) { return typeface.measure(text, size_px).width_px; };
     const std::string separator = "  ·  ";
     std::string facts;
@@ -139,10 +222,25 @@ double draw_heading(Canvas& canvas, const Figure& figure, const Typeface& regula
     }
     for (const std::string& line : fact_lines(figure, regular, width_px)) {
         canvas.text(regular, line, {left, y},
-                    {fact_px * figure.scale, colours::muted_ink, Across::left, Along::top});
+                    {letter_px * figure.scale, colours::muted_ink, Across::left, Along::top});
         y += fact_line_px * figure.scale;
     }
     return y;
+}
+
+// In the middle at the lower edge.
+std::optional<Box> draw_key(Canvas& canvas, const Figure& figure, const Typeface& typeface) {
+    if (figure.key.empty()) { return std::nullopt; }
+    const double edge_px = figure_edge_px * figure.scale;
+    Panel panel;
+    panel.curves = figure.key;
+    const Legend legend = Legend::in_lines(panel, typeface, figure.scale, figure.width_px - 2.0 * edge_px);
+    const Size size = legend.size();
+    const double left = (figure.width_px - size.width_px) / 2.0;
+    const double bottom = figure.height_px - edge_px;
+    const Box box{left, bottom - size.height_px, left + size.width_px, bottom};
+    legend.draw(canvas, box);
+    return box;
 }
 
 }  // namespace
@@ -156,28 +254,13 @@ Rendering render(const Figure& figure) {
     const auto bold = Typeface::open(figure.font_directory + "/DejaVuSans-Bold.ttf", rendering.problem);
     if (!bold) { return rendering; }
 
-    Canvas canvas(figure.width_px, figure.height_px);
+    Canvas canvas(figure.width_px, figure.height_px, figure.scale * dpi_of_scale_1);
     const double top = draw_heading(canvas, figure, *regular, *bold) + after_heading_px * figure.scale;
-    const std::vector<Box> areas = panel_areas(figure, top);
-    std::vector<PanelDrawing> drawings;
-    std::vector<Margins> own;
-    Margins widest;
-    drawings.reserve(figure.panels.size());
-    for (std::size_t i = 0; i < areas.size(); ++i) {
-        drawings.emplace_back(figure.panels[i], *regular, figure.scale);
-        own.push_back(drawings.back().margins(areas[i]));
-        if (figure.panels[i].spans_row) { continue; }
-        const Margins& margins = own.back();
-        widest.left_px = std::max(widest.left_px, margins.left_px);
-        widest.right_px = std::max(widest.right_px, margins.right_px);
-        widest.top_px = std::max(widest.top_px, margins.top_px);
-        widest.bottom_px = std::max(widest.bottom_px, margins.bottom_px);
-    }
-    for (std::size_t i = 0; i < drawings.size(); ++i) {
-        const Margins& margins = figure.panels[i].spans_row ? own[i] : widest;
-        rendering.panels.push_back(drawings[i].draw(canvas, areas[i], margins));
-    }
-    rendering.png = encode_png(canvas.picture());
+    rendering.key = draw_key(canvas, figure, *regular);
+    const double bottom = rendering.key ? rendering.key->top - between_panels_px * figure.scale
+                                        : figure.height_px - figure_edge_px * figure.scale;
+    rendering.panels = draw_panels(canvas, figure, *regular, {top, bottom});
+    rendering.png = encode_png(canvas.picture(), canvas.drawing().dpi);
     rendering.drawing = canvas.drawing();
     return rendering;
 }

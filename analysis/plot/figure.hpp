@@ -1,7 +1,7 @@
 // A figure of one or more panels of curves, drawn without a display. Plain numbers in, a PNG out, and
 // what encode_vector() makes an SVG or a PDF of; nobody who includes this sees OpenCV, FreeType or cairo.
 //
-// Panels of a row are equally wide, those of a column have the same left and right edges, and a row is as
+// Plots of a row are equally wide, those of a column have the same left and right edges, and a row is as
 // high as the largest share in it. A panel that spans its row has edges of its own.
 //
 // Values a scale cannot show (NaN, infinite, zero or less on a logarithmic scale) are left out and break
@@ -42,13 +42,15 @@ struct Curve {
     std::vector<std::string> legend;  // the row's cells, the first is the name; empty: not in the legend
 };
 
-// A marked point with a word beside it. The word is left out where there is no room; the marker never is.
+// A marked point with a word beside it. The word may be empty, and is left out where there is no room; the
+// marker never is.
 struct Callout {
     double x = 0.0;
     double y = 0.0;
     std::string text;
     Colour colour = colours::ink;
     Marker marker = Marker::circle;
+    std::optional<Colour> word_colour{};  // absent: the marker's
     bool is_level = false;  // the word stands to the right of the point, on its level, or not at all
 };
 
@@ -102,10 +104,13 @@ struct Figure {
     std::string source;  // where the data came from; shortened in its middle when the line is too long
     std::vector<std::string> facts;  // follow the source, broken into lines between facts
     std::vector<Panel> panels;       // row by row from the top
+    std::vector<Curve> key;          // curves without points: one legend of all panels, below them
     int columns = 1;
     int width_px = 1600;
     int height_px = 1100;
-    double scale = 1.0;  // of letters and strokes; 2 with twice the pixels gives the same picture, finer
+    // Of letters and strokes; 2 with twice the pixels gives the same picture, finer. On paper, letters are of
+    // one size: the scale says how many pixels an inch has (paper_size.hpp).
+    double scale = 1.0;
     std::string font_directory{Typeface::debian_directory};
 };
 
@@ -123,6 +128,7 @@ struct Rendering {
     std::vector<std::uint8_t> png;
     Drawing drawing;  // the same, for encode_vector()
     std::vector<PanelPlace> panels;
+    std::optional<Box> key;
     std::string problem;  // what went wrong and the mend; then there is no PNG
 
     bool ok() const { return problem.empty(); }

@@ -105,18 +105,18 @@ Figure figure_of(const HistogramFigure& histograms) {
     figure.title = histograms.title;
     figure.source = histograms.source;
     figure.facts = histograms.facts;
-    figure.scale = histograms.scale;
+    figure.scale = histograms.paper.scale();
     const bool are_many = histograms.traces.size() > most_in_one_column;
-    figure.columns = are_many ? 3 : 1;
+    figure.columns = are_many ? histograms.paper.columns_up_to(3) : 1;
     for (std::size_t i = 0; i < histograms.traces.size(); ++i) {
         figure.panels.push_back(
             panel_of(histograms.traces[i], histograms, colours::cycle.at(i % (are_many ? 3 : 6)), are_many));
     }
     const auto columns = static_cast<std::size_t>(figure.columns);
     const auto rows = static_cast<int>((figure.panels.size() + columns - 1) / columns);
-    figure.width_px = histograms.width_px;
-    figure.height_px = static_cast<int>(std::lround(
-        (histogram_heading_px + rows * (are_many ? small_panel_px : wide_panel_px)) * histograms.scale));
+    figure.width_px = histograms.paper.width_px();
+    figure.height_px = histograms.paper.scaled_pixels(histogram_heading_px +
+                                                      rows * (are_many ? small_panel_px : wide_panel_px));
     return figure;
 }
 

@@ -7,6 +7,7 @@
 
 #include "analysis/amplitude/amplitude_histogram.hpp"
 #include "analysis/plot/figure.hpp"
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
 
@@ -25,8 +26,7 @@ struct HistogramFigure {
     double per_unit_of_data = 1.0;
     std::string mean_name = "bias";
     std::vector<HistogramTrace> traces;
-    int width_px = 1600;
-    double scale = 1.0;
+    PaperSize paper{};
 };
 
 // A panel for each trace, in one column, or in three where there are more than four. The count axis is

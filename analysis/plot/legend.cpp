@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "analysis/plot/paper_size.hpp"
+
 namespace gyrolog {
 namespace {
 
 // At scale 1.
-constexpr double text_px = 19.0;
 constexpr double row_px = 29.0;
 constexpr double padding_px = 14.0;
 constexpr double sample_px = 50.0;
@@ -17,14 +18,15 @@ constexpr double name_width_max_px = 320.0;
 
 }  // namespace
 
-Legend::Legend(const Panel& panel, const Typeface& typeface, double scale)
+Legend::Legend(const Panel& panel, const Typeface& typeface, double scale, std::optional<double> line_px)
     : typeface_(typeface), scale_(scale), header_(panel.legend_header), notes_(panel.notes) {
-    const bool has_columns = header_.size() > 1;
+    const bool side_by_side = header_.size() > 1 || line_px;
     for (const Curve& curve : panel.curves) {
         if (curve.legend.empty()) { continue; }
         std::vector<std::string> cells = curve.legend;
-        cells[0] = typeface.shortened(cells[0], text_px * scale, name_width_max_px * scale, Ellipsis::middle);
-        if (has_columns && cells.size() == 1) {
+        cells[0] =
+            typeface.shortened(cells[0], letter_px * scale, name_width_max_px * scale, Ellipsis::middle);
+        if (side_by_side && cells.size() == 1) {
             keys_.push_back({&curve, cells[0], 0.0, 0});
         } else {
             rows_.push_back({&curve, std::move(cells)});
@@ -38,7 +40,7 @@ Legend::Legend(const Panel& panel, const Typeface& typeface, double scale)
     for (std::size_t i = 0; i < column_px_.size(); ++i) {
         size_.width_px += column_px_[i] + (i == 0 ? 0.0 : between_columns_px * scale_);
     }
-    arrange_keys();
+    arrange_keys(line_px.value_or(size_.width_px));
     const double table_lines = static_cast<double>(rows_.size() + (header_.empty() ? 0 : 1));
     const double key_lines = keys_.empty() ? 0.0 : keys_.back().line + 1.0;
     const auto note_lines = static_cast<double>(notes_.size());
@@ -49,7 +51,7 @@ Legend::Legend(const Panel& panel, const Typeface& typeface, double scale)
 }
 
 double Legend::width_px(const std::string& text) const {
-    return typeface_.measure(text, text_px * scale_).width_px;
+    return typeface_.measure(text, letter_px * scale_).width_px;
 }
 
 void Legend::widen_columns(const std::vector<std::string>& cells) {
@@ -59,14 +61,14 @@ void Legend::widen_columns(const std::vector<std::string>& cells) {
     }
 }
 
-// Fills lines as wide as the table; a key wider than that widens the legend.
-void Legend::arrange_keys() {
+// A key that is wider than the line widens the legend.
+void Legend::arrange_keys(double line_px) {
     double left_px = padding_px * scale_;
     int line = 0;
     for (Key& key : keys_) {
         const double key_px = (sample_px + after_sample_px) * scale_ + width_px(key.name);
         const bool is_first = left_px == padding_px * scale_;
-        if (!is_first && left_px + key_px + padding_px * scale_ > size_.width_px) {
+        if (!is_first && left_px + key_px + padding_px * scale_ > line_px) {
             left_px = padding_px * scale_;
             ++line;
         }
@@ -97,7 +99,7 @@ void Legend::draw_cells(Canvas& canvas, Point left_middle, const std::vector<std
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const bool is_name = i == 0;
         canvas.text(typeface_, cells[i], {is_name ? x : x + column_px_[i], left_middle.y},
-                    {text_px * scale_, colour, is_name ? Across::left : Across::right, Along::middle});
+                    {letter_px * scale_, colour, is_name ? Across::left : Across::right, Along::middle});
         x += column_px_[i] + between_columns_px * scale_;
     }
 }
@@ -119,12 +121,13 @@ void Legend::draw(Canvas& canvas, const Box& box) const {
     for (const Key& key : keys_) {
         const Point here{box.left + key.left_px, at.y + key.line * row_px * scale_};
         draw_sample(canvas, here, *key.curve);
-        draw_cells(canvas, here, {key.name}, colours::ink);
+        canvas.text(typeface_, key.name, {here.x + (sample_px + after_sample_px) * scale_, here.y},
+                    {letter_px * scale_, colours::ink, Across::left, Along::middle});
     }
     if (!keys_.empty()) { at.y += (keys_.back().line + 1) * row_px * scale_; }
     for (const std::string& note : notes_) {
         canvas.text(typeface_, note, {box.left + padding_px * scale_, at.y},
-                    {text_px * scale_, colours::ink, Across::left, Along::middle});
+                    {letter_px * scale_, colours::ink, Across::left, Along::middle});
         at.y += row_px * scale_;
     }
 }

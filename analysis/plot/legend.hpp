@@ -3,6 +3,7 @@
 // notes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,20 @@ namespace gyrolog {
 class Legend {
 public:
     // Takes the panel's curves that have legend cells. Panel and typeface must outlive it.
-    Legend(const Panel& panel, const Typeface& typeface, double scale);
+    Legend(const Panel& panel, const Typeface& typeface, double scale)
+        : Legend(panel, typeface, scale, std::nullopt) {}
+    // All names side by side, on lines of that width.
+    static Legend in_lines(const Panel& panel, const Typeface& typeface, double scale, double line_px) {
+        return {panel, typeface, scale, line_px};
+    }
 
     bool empty() const { return rows_.empty() && keys_.empty() && notes_.empty(); }
     Size size() const { return size_; }
     void draw(Canvas& canvas, const Box& box) const;
 
 private:
+    Legend(const Panel& panel, const Typeface& typeface, double scale, std::optional<double> line_px);
+
     struct Row {
         const Curve* curve;
         std::vector<std::string> cells;
@@ -34,7 +42,7 @@ private:
     };
 
     void widen_columns(const std::vector<std::string>& cells);
-    void arrange_keys();
+    void arrange_keys(double line_px);
     double width_px(const std::string& text) const;
     void draw_sample(Canvas& canvas, Point left_middle, const Curve& curve) const;
     void draw_cells(Canvas& canvas, Point left_middle, const std::vector<std::string>& cells,

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "analysis/plot/paper_size.hpp"
+
 namespace gyrolog {
 namespace {
 
 // At scale 1.
-constexpr double word_text_px = 19.0;
 constexpr double callout_marker_px = 12.0;
 constexpr double clear_px = 14.0;
 constexpr double lone_bar_px = 8.0;
@@ -191,18 +192,19 @@ std::vector<PanelDrawing::Word> PanelDrawing::place_words(const Axes& axes,
                                                           const std::vector<Trace>& traces) const {
     std::vector<Word> words;
     Obstacles obstacles = obstacles_for_words(axes, traces);
-    const double size_px = word_text_px * scale_;
+    const double size_px = letter_px * scale_;
     const double padding_px = 0.25 * size_px;
     for (const Callout& callout : panel_.callouts) {
         const Point p = pixel_of(axes, callout.x, callout.y);
-        if (!is_shown(axes, p)) { continue; }
+        if (!is_shown(axes, p) || callout.text.empty()) { continue; }
         const Size size{typeface_.measure(callout.text, size_px).width_px + padding_px, size_px + padding_px};
         const double away_px = callout_marker_px * scale_;
         const auto box = callout.is_level ? place_level(p, away_px, size, axes.plot, obstacles)
                                           : place_beside(p, away_px, size, axes.plot, obstacles);
         if (!box) { continue; }
         obstacles.add(*box);
-        words.push_back({callout.text, box->grown(-padding_px / 2.0), callout.colour});
+        words.push_back(
+            {callout.text, box->grown(-padding_px / 2.0), callout.word_colour.value_or(callout.colour)});
     }
     return words;
 }
@@ -238,7 +240,8 @@ PanelDrawing::Arrangement PanelDrawing::arrange_with_legend(const Box& area, con
     if (legend.empty() || !arranged.shows_data()) { return arranged; }
     const Size size = legend.size();
     const Margins own = axes_.margins(area);
-    if (stands_beside(area, own, legend)) {
+    const bool has_room_beside = margins.right_px >= own.right_px + size.width_px;
+    if (has_room_beside && stands_beside(area, own, legend)) {
         const double left = area.right - margins.right_px + own.right_px + legend_gap_px * scale_;
         const double top = arranged.axes.plot.top;
         arranged.legend = Box{left, top, left + size.width_px, top + size.height_px};
@@ -308,12 +311,12 @@ PanelPlace PanelDrawing::draw(Canvas& canvas, const Box& area, const Margins& ma
     place.labels = axes_.draw_frame(canvas, axes);
     for (const Word& word : arranged.words) {
         canvas.text(typeface_, word.text, {word.box.left, word.box.centre().y},
-                    {word_text_px * scale_, word.colour, Across::left, Along::middle});
+                    {letter_px * scale_, word.colour, Across::left, Along::middle});
         place.words.push_back(word.box);
     }
     if (!arranged.shows_data()) {
         canvas.text(typeface_, "no data", axes.plot.centre(),
-                    {1.6 * word_text_px * scale_, colours::muted_ink, Across::centre, Along::middle});
+                    {1.6 * letter_px * scale_, colours::muted_ink, Across::centre, Along::middle});
     }
     if (arranged.legend) { legend.draw(canvas, *arranged.legend); }
     return place;

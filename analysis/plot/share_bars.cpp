@@ -12,14 +12,13 @@ namespace gyrolog {
 namespace {
 
 // At scale 1.
-constexpr double bar_px = 36.0;
-constexpr double around_bars_px = 130.0;
-constexpr double panel_min_px = 290.0;  // room for the figure's legend beside the bars
+constexpr double bar_px = 29.0;
+constexpr double around_bars_px = 100.0;
 
 constexpr std::size_t bars_most = 12;
 constexpr double half_bar = 0.34;  // of the distance of two bars
 constexpr double half_cap = 0.17;
-constexpr double room_for_words = 0.65;  // of the longest bar, behind it: 35 letters beside a legend
+constexpr double room_for_words = 0.65;  // of the longest bar, behind it: 35 letters
 constexpr std::size_t steps_most = 8;
 constexpr double step_least = 0.25;
 
@@ -140,7 +139,7 @@ std::optional<Panel> share_bars(const Diagnosis& diagnosis) {
         const auto at = static_cast<double>(bars.size() - 1 - i);
         panel.curves.push_back(rectangle(bar, at));
         if (bar.has_interval()) { add_interval(panel, bar.share, at); }
-        panel.callouts.push_back({bar.end(), at, words_of(bar), colours::ink, Marker::none, true});
+        panel.callouts.push_back({bar.end(), at, words_of(bar), colours::ink, Marker::none, {}, true});
         longest = std::max(longest, bar.end());
         least = std::min({least, bar.share.lo, bar.share.value});
     }
@@ -152,9 +151,8 @@ std::optional<Panel> share_bars(const Diagnosis& diagnosis) {
     panel.x.range = Range{least, longest * (1.0 + room_for_words)};
     panel.x.names = percent_ticks(*panel.x.range, longest);
     panel.x.title = "share of the gap's square (%), with its 95 % interval; shares may overlap";
-    panel.legend_place = LegendPlace::beside;
     panel.spans_row = true;
-    panel.height_share = std::max(around_bars_px + bar_px * count, panel_min_px);
+    panel.height_share = around_bars_px + bar_px * count;
     return panel;
 }
 

@@ -11,13 +11,14 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 
+#include "analysis/plot/paper_size.hpp"
+
 namespace gyrolog {
 namespace {
 
-constexpr double points_per_inch = 72.0;
-constexpr double pixels_per_inch = 200.0;
-constexpr double points_per_pixel = points_per_inch / pixels_per_inch;
 constexpr double of_255 = 1.0 / 255.0;
+
+double points_per_pixel(const Drawing& drawing) { return points_per_inch / drawing.dpi; }
 
 using File = std::vector<std::uint8_t>;
 
@@ -39,8 +40,8 @@ cairo_status_t append(void* file, const unsigned char* bytes, unsigned size) {
 }
 
 Surface surface_on(File& file, const Drawing& drawing, VectorFormat format) {
-    const double width_pt = drawing.width_px * points_per_pixel;
-    const double height_pt = drawing.height_px * points_per_pixel;
+    const double width_pt = drawing.width_px * points_per_pixel(drawing);
+    const double height_pt = drawing.height_px * points_per_pixel(drawing);
     if (format == VectorFormat::pdf) {
         return Surface(cairo_pdf_surface_create_for_stream(append, &file, width_pt, height_pt));
     }
@@ -134,7 +135,7 @@ std::vector<std::uint8_t> encode_vector(const Drawing& drawing, VectorFormat for
     const Surface surface = surface_on(file, drawing, format);
     {
         const Context context(cairo_create(surface.get()));
-        cairo_scale(context.get(), points_per_pixel, points_per_pixel);
+        cairo_scale(context.get(), points_per_pixel(drawing), points_per_pixel(drawing));
         Pen pen(context.get());
         for (const auto& mark : drawing.marks) { std::visit(pen, mark); }
         cairo_show_page(context.get());

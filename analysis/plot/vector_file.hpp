@@ -10,8 +10,8 @@ namespace gyrolog {
 
 enum class VectorFormat { svg, pdf };
 
-// A figure of 1600 pixels is 203 mm (8 inches) wide, and the letters at its axes have 7 to 8 points. In a PDF
-// the text is text, in a font that the file holds; in an SVG letters are shapes, which look alike everywhere.
+// As large as the drawing's pixels to the inch make it. In a PDF the text is text, in a font that the file
+// holds; in an SVG letters are shapes, which look alike everywhere.
 std::vector<std::uint8_t> encode_vector(const Drawing& drawing, VectorFormat format);
 
 }  // namespace gyrolog

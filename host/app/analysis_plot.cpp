@@ -140,13 +140,18 @@ std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, Noise
     return PlottedCoefficient{coefficient.value, coefficient.sd};
 }
 
-Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const std::string& path) {
-    return write_figure(render(analysis_figure(report, sensor)), path);
+Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const PaperSize& paper,
+                           const std::string& path) {
+    AllanFigure figure = analysis_figure(report, sensor);
+    figure.paper = paper;
+    return write_figure(render(figure), path);
 }
 
 Status write_histogram_plot(const AnalysisReport& report, const Recording& recording, SensorKind sensor,
-                            const std::string& path) {
-    return write_figure(render(samples_figure(report, recording, sensor)), path);
+                            const PaperSize& paper, const std::string& path) {
+    HistogramFigure figure = samples_figure(report, recording, sensor);
+    figure.paper = paper;
+    return write_figure(render(figure), path);
 }
 
 }  // namespace gyrolog

@@ -16,12 +16,13 @@ namespace gyrolog {
 AllanFigure analysis_figure(const AnalysisReport& report, SensorKind sensor);
 HistogramFigure samples_figure(const AnalysisReport& report, const Recording& recording, SensorKind sensor);
 
-// Draws these curves and spectra into a PNG file.
-Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const std::string& path);
+// Draws these curves and spectra into a file.
+Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, const PaperSize& paper,
+                           const std::string& path);
 
 // Draws how the samples of its axes lie around their bias, an accelerometer's around their mean.
 Status write_histogram_plot(const AnalysisReport& report, const Recording& recording, SensorKind sensor,
-                            const std::string& path);
+                            const PaperSize& paper, const std::string& path);
 
 // For a curve's marks: none where the fit did not identify it.
 std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, NoiseTerm term);

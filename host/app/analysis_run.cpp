@@ -135,10 +135,10 @@ Status write_results(Console& console, const char* command, const AnalysisReques
     results.text(request.json_path, [&] { return analysis_json(report, facts); });
     request.on_stage("plot");
     write_figures(results, report, request.plot_path, [&](SensorKind sensor, const std::string& path) {
-        return write_analysis_plot(report, sensor, path);
+        return write_analysis_plot(report, sensor, request.paper, path);
     });
     write_figures(results, report, request.histogram_path, [&](SensorKind sensor, const std::string& path) {
-        return write_histogram_plot(report, recording, sensor, path);
+        return write_histogram_plot(report, recording, sensor, request.paper, path);
     });
     request.on_stage("model");
     if (!request.model_path.empty() && report.accelerometer && report.accelerometer->unit.is_counts()) {

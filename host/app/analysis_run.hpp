@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/plot/paper_size.hpp"
 #include "analysis/recording/stage_observer.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
@@ -19,6 +20,7 @@ struct AnalysisRequest {
     std::string json_path;  // "-" is standard output; empty: not wanted
     std::string plot_path;
     std::string histogram_path;
+    PaperSize paper{};  // of these two
     std::string model_path;
     std::string deviation = "overlapping";
     std::string convention = "sp1065";

@@ -29,7 +29,7 @@ ExitCode analyze_curve(Console& console, const AnalyzeOptions& options) {
     const AnalysisRequest& request = options.request;
     return analyze_curve_to_files(console, "analyze",
                                   {options.curve_path, request.json_path, request.plot_path,
-                                   request.model_path, request.rate_hz, request.confidence});
+                                   request.model_path, request.rate_hz, request.confidence, request.paper});
 }
 
 ExitCode with_timing(Console& console, AnalyzeOptions& options,
@@ -86,6 +86,7 @@ Action setup_analyze(CLI::App& app) {
     app.add_option("--histogram", request->histogram_path, "Draw how the samples lie about the bias")
         ->type_name(figure_file_type)
         ->check(figure_file());
+    add_paper_options(app, request->paper);
     app.add_option("--model", request->model_path, "Write the noise model for simulations")
         ->type_name("FILE");
     std::vector<std::string> deviations;

@@ -39,6 +39,7 @@ struct CompareRequest {
     std::string other_path;
     std::string json_path;  // "-" is standard output; empty: not wanted
     std::string plot_path;
+    PaperSize paper{};
     std::string duration;  // of the recording's beginning; empty: all
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
@@ -133,11 +134,12 @@ Result<Comparison> with_recording(const CompareRequest& request) {
     return comparison;
 }
 
-Status write_plot(const Comparison& comparison, const std::string& path) {
+Status write_plot(const Comparison& comparison, const PaperSize& paper, const std::string& path) {
     const Rendering rendering = render(
         ComparisonFigure{comparison,
                          {fmt::format("{:.6g} Hz", comparison.rate_hz),
-                          format_duration(comparison.duration_s), counted(comparison.samples, "sample")}});
+                          format_duration(comparison.duration_s), counted(comparison.samples, "sample")},
+                         paper});
     return write_figure(rendering, path);
 }
 
@@ -151,7 +153,7 @@ Status write_results(Console& console, const CompareRequest& request, const Comp
         }
     }
     results.text(request.json_path, [&] { return comparison_json(comparison); });
-    results.file(request.plot_path, [&] { return write_plot(comparison, request.plot_path); });
+    results.file(request.plot_path, [&] { return write_plot(comparison, request.paper, request.plot_path); });
     return results.finish();
 }
 
@@ -199,6 +201,7 @@ Action setup_compare(CLI::App& app) {
     app.add_option("--plot", request->plot_path, "Draw both side by side")
         ->type_name(figure_file_type)
         ->check(figure_file());
+    add_paper_options(app, request->paper);
     app.add_option("--json", request->json_path, "Write the comparison as JSON (- for standard output)")
         ->type_name("FILE");
     add_recordings(

@@ -43,6 +43,7 @@ struct Request {
     std::string align = "clock";
     std::string json_path;  // "-" is standard output; empty: not wanted
     std::string plot_path;
+    PaperSize paper{};
 };
 
 Result<TimeSpan> parse_span(const std::string& text) {
@@ -112,6 +113,7 @@ public:
         const ShownUnit unit = shown_unit(*array_axes(recording_).front().units.front(), sensor());
         DenoiseFigure figure{recording_, report_.axes, still_, {}, unit.on_figure, unit.per_column_unit};
         figure.quantity = unit.quantity;
+        figure.paper = request_.paper;
         figure.facts = {fmt::format("{:.6g} Hz", recording_.rate_hz), format_duration(report_.duration_s),
                         fmt::format("{} units", array_axes(recording_).front().units.size()),
                         design_text(report_.axes.front().signals.front().design)};
@@ -461,6 +463,7 @@ Action setup_denoise(CLI::App& app) {
     app.add_option("--plot", request->plot_path, "Draw before and after")
         ->type_name(figure_file_type)
         ->check(figure_file());
+    add_paper_options(app, request->paper);
     return [request](Console& console) { return denoise_command(console, *request); };
 }
 

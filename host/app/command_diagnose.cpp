@@ -61,7 +61,7 @@ ExitCode diagnose_either(Console& console, DiagnoseOptions& options) {
     if (!options.curve_path.empty()) {
         return diagnose_curve_to_files(
             console, {options.curve_path, request.model_path, request.json_path, request.plot_path,
-                      request.model_out_path, request.horizon_s});
+                      request.model_out_path, request.paper, request.horizon_s});
     }
     if (request.model_path.empty() && !options.is_plain) {
         return wrong(
@@ -100,6 +100,7 @@ Action setup_diagnose(CLI::App& app) {
                    "Draw the shares of the causes, and where recording and model part before and after them")
         ->type_name(figure_file_type)
         ->check(figure_file());
+    add_paper_options(app, request.paper);
     app.add_option(
            "--model-out", request.model_out_path,
            "Write the model with the causes added: a simulator's file as the same kind of file, changed, "

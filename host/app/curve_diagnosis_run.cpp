@@ -160,7 +160,7 @@ Status write_results(Console& console, const CurveDiagnosisRequest& request, con
         const Diagnosis diagnosis = as_diagnosis(report);
         std::vector<std::string> facts{
             fmt::format("bands: reading error of {:.3g} %, 95 %", 100.0 * report.options.reading_error)};
-        return write_diagnosis_plot(diagnosis, "curve", std::move(facts), request.plot_path);
+        return write_diagnosis_plot(diagnosis, "curve", std::move(facts), request.paper, request.plot_path);
     });
     std::vector<std::string> told;
     results.file(request.model_out_path, [&]() -> Status {

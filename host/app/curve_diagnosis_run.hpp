@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "analysis/plot/paper_size.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 
@@ -14,6 +15,7 @@ struct CurveDiagnosisRequest {
     std::string json_path;   // "-" is standard output; empty: not wanted
     std::string plot_path;
     std::string model_out_path;  // the model with its coefficients as the curve has them
+    PaperSize paper{};           // of the plot
     double horizon_s = 3600.0;   // of a simulator's file that it is: noise is nearest up to this
 };
 

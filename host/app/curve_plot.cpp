@@ -28,8 +28,9 @@ AllanTrace trace_of(const PrintedCurveReport& curve) {
 
 }  // namespace
 
-Status write_curve_plot(const CurveReport& report, const std::string& path) {
+Status write_curve_plot(const CurveReport& report, const PaperSize& paper, const std::string& path) {
     AllanFigure figure;
+    figure.paper = paper;
     if (report.unit.sensor == SensorKind::accelerometer) {
         figure.title += " of the accelerometer";
         figure.unit = DeviationUnit::m_per_s2_as_micro_g();

@@ -27,7 +27,8 @@ Status write_results(Console& console, const char* command, const CurveRequest& 
     ResultOutput results(console);
     if (request.json_path != "-") { results.show(curve_text(report)); }
     results.text(request.json_path, [&] { return curve_json(report); });
-    results.file(request.plot_path, [&] { return write_curve_plot(report, request.plot_path); });
+    results.file(request.plot_path,
+                 [&] { return write_curve_plot(report, request.paper, request.plot_path); });
     results.file(request.model_path, [&]() -> Status {
         GYROLOG_TRY(const ModelOfCurves result, model_of_curves(report, request.rate_hz));
         warn(console, command, result.warnings);

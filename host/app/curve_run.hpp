@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "analysis/plot/paper_size.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 
@@ -16,6 +17,7 @@ struct CurveRequest {
     std::string model_path;
     std::optional<double> rate_hz;  // of the model
     double confidence = 0.683;
+    PaperSize paper{};  // of the plot
 };
 
 // Prints the report for people on `out`, unless the JSON goes there.

@@ -90,12 +90,14 @@ DiagnosisFigure titled_figure(const Diagnosis& diagnosis, std::string_view of,
         facts.insert(facts.begin(), std::move(title));
         title = short_verdict_sentence(diagnosis, of);
     }
-    return DiagnosisFigure{diagnosis, std::move(title), std::move(facts)};
+    return DiagnosisFigure{diagnosis, std::move(title), std::move(facts), {}};
 }
 
 Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string_view of, std::vector<std::string> facts,
-                            const std::string& path) {
-    return write_figure(render(titled_figure(diagnosis, of, std::move(facts))), path);
+                            const PaperSize& paper, const std::string& path) {
+    DiagnosisFigure figure = titled_figure(diagnosis, of, std::move(facts));
+    figure.paper = paper;
+    return write_figure(render(figure), path);
 }
 
 void tell_notices(Console& console, const std::vector<std::string>& notices) {

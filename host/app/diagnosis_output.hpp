@@ -36,7 +36,7 @@ Result<std::string> corrected_text(const CorrectedOutput& output, const SensorMo
 DiagnosisFigure titled_figure(const Diagnosis& diagnosis, std::string_view of,
                               std::vector<std::string> facts);
 Status write_diagnosis_plot(const Diagnosis& diagnosis, std::string_view of, std::vector<std::string> facts,
-                            const std::string& path);
+                            const PaperSize& paper, const std::string& path);
 
 void tell_notices(Console& console, const std::vector<std::string>& notices);
 void tell_warnings(Console& console, const std::vector<std::string>& warnings);

@@ -6,12 +6,16 @@
 #include <CLI/CLI.hpp>
 
 #include "analysis/plot/figure.hpp"
+#include "analysis/plot/paper_size.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
 
 // What stands for the name of such a file in a command's help.
 inline constexpr const char* figure_file_type = "FILE.png|svg|pdf";
+
+// --plot-width and --plot-dpi, of a command that has --plot. `paper` outlives the parsing.
+void add_paper_options(CLI::App& app, PaperSize& paper);
 
 // A name that ends in .png, .svg or .pdf.
 CLI::Validator figure_file();

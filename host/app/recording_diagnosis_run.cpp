@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/diagnose/accelerometer_diagnosis.hpp"
 #include "analysis/diagnose/diagnosis.hpp"
@@ -157,7 +158,8 @@ Status write_results(Console& console, const RecordingDiagnosisRequest& request,
         const bool is_second = &diagnosis != &diagnoses.front();
         const std::string path = is_second ? path_of_accelerometer(request.plot_path) : request.plot_path;
         results.file(path, [&, path] {
-            return write_diagnosis_plot(diagnosis, "recording", diagnosis_facts(diagnosis), path);
+            return write_diagnosis_plot(diagnosis, "recording", diagnosis_facts(diagnosis), request.paper,
+                                        path);
         });
     }
     results.file(request.model_out_path, [&]() -> Status {
@@ -257,7 +259,11 @@ std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis) {
     }
     if (!diagnosis.passes.empty()) { facts.push_back(passes_text(diagnosis)); }
     for (const Cause& cause : diagnosis.causes) {
-        facts.push_back(fmt::format("{}: {}", axes_text(cause.finding.where.axes), cause_words(cause)));
+        for (const CauseSize& size : cause_sizes(cause)) {
+            if (size.values.empty()) { continue; }
+            facts.push_back(fmt::format("{}{}{}: {}", cause.finding.effect, size.axes.empty() ? "" : " on ",
+                                        size.axes, fmt::join(size.values, ", ")));
+        }
     }
     return facts;
 }

@@ -9,6 +9,7 @@
 
 #include "analysis/diagnose/report.hpp"
 #include "analysis/noise/sensor_unit.hpp"
+#include "analysis/plot/paper_size.hpp"
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 #include "host/app/part_choice.hpp"
@@ -24,6 +25,7 @@ struct RecordingDiagnosisRequest {
     std::string holdout_path;              // a second recording, on which the gap is measured; empty: none
     std::string json_path;                 // "-" is standard output; empty: not wanted
     std::string plot_path;
+    PaperSize paper{};           // of the plot
     std::string model_out_path;  // the model with the causes added
     double horizon_s = 3600.0;   // of a simulator's file that it is: noise is nearest up to this
     bool is_verbose = false;
@@ -44,7 +46,7 @@ struct RecordingDiagnosisRequest {
 Result<Diagnosis> diagnose_recording(Console& console, const RecordingDiagnosisRequest& request,
                                      SensorKind sensor = SensorKind::gyro);
 
-// How it was looked at, and the causes in words: below the title of the figure.
+// How it was looked at, and how large the causes are: below the title of the figure.
 std::vector<std::string> diagnosis_facts(const Diagnosis& diagnosis);
 
 // Prints the report for people on `out`, unless the JSON goes there.

@@ -17,11 +17,10 @@
 namespace gyrolog {
 namespace {
 
-// Twice what the page's column has on a screen, for paper.
-constexpr int width_px = 1600;
-constexpr double letters_scale = 1.35;
-constexpr int deviation_height_px = 1150;
-constexpr int spectrum_height_px = 900;
+// The page's column on A4, and in pixels twice what it has on a screen.
+constexpr PaperSize page_column{176.0, 230.9};
+constexpr double deviation_height_mm = 126.5;
+constexpr double spectrum_height_mm = 99.0;
 constexpr std::size_t course_parts_most = 100;
 constexpr std::size_t samples_of_part_least = 10;
 
@@ -42,21 +41,20 @@ Figure on_page(Figure figure) {
 }
 
 // A panel of a figure by itself.
-Figure panel_alone(const Figure& of, std::size_t panel, int height_px) {
+Figure panel_alone(const Figure& of, std::size_t panel, double height_mm) {
     Figure figure = of;
     figure.panels = {of.panels.at(panel)};
-    figure.height_px = height_px;
+    figure.height_px = page_column.pixels(height_mm);
     return figure;
 }
 
 Status draw_analysis(ReportPage& page) {
     AllanFigure allan = analysis_figure(page.analysis, SensorKind::gyro);
-    allan.width_px = width_px;
-    allan.scale = letters_scale;
+    allan.paper = page_column;
     const Figure both = on_page(figure_of(allan));
-    GYROLOG_TRY(page.deviation_png, drawn("Allan deviation", panel_alone(both, 0, deviation_height_px)));
+    GYROLOG_TRY(page.deviation_png, drawn("Allan deviation", panel_alone(both, 0, deviation_height_mm)));
     if (both.panels.size() > 1) {
-        GYROLOG_TRY(page.spectrum_png, drawn("spectrum", panel_alone(both, 1, spectrum_height_px)));
+        GYROLOG_TRY(page.spectrum_png, drawn("spectrum", panel_alone(both, 1, spectrum_height_mm)));
     }
     return {};
 }
@@ -67,8 +65,7 @@ std::size_t parts_of(const Recording& recording) {
 
 CourseFigure course_figure(const AnalysisReport& analysis, const Recording& recording) {
     CourseFigure course;
-    course.width_px = width_px;
-    course.scale = letters_scale;
+    course.paper = page_column;
     course.duration_s = analysis.duration_s;
     if (analysis.unit.name == "lsb") {
         course.unit_name = "lsb";
@@ -94,13 +91,13 @@ CourseFigure course_figure(const AnalysisReport& analysis, const Recording& reco
 Status draw_figures(ReportPage& page, const Recording& recording) {
     if (Status fine = draw_analysis(page); !fine.ok()) { return fine; }
     HistogramFigure samples = samples_figure(page.analysis, recording, SensorKind::gyro);
-    samples.width_px = width_px;
-    samples.scale = letters_scale;
+    samples.paper = page_column;
     GYROLOG_TRY(page.samples_png, drawn("histogram", on_page(figure_of(samples))));
     GYROLOG_TRY(page.course_png,
                 drawn("course of the bias", on_page(figure_of(course_figure(page.analysis, recording)))));
     if (page.diagnosis == nullptr) { return {}; }
     DiagnosisFigure diagnosis = titled_figure(*page.diagnosis, "recording", diagnosis_facts(*page.diagnosis));
+    diagnosis.paper = page_column;
     GYROLOG_TRY(page.diagnosis_png, drawn("diagnosis", on_page(figure_of(diagnosis))));
     return {};
 }

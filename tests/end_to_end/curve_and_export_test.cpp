@@ -1,6 +1,7 @@
 // Curves from print and exports through the whole program: files, exit codes, messages.
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -132,6 +133,28 @@ TEST(Analyze, WritesAFigureInTheFormOfItsEnding) {
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_TRUE(read_whole_file(folder.path(name)).starts_with(head)) << name;
     }
+}
+
+// Of a PNG: big-endian, behind the name of its first piece.
+std::uint32_t width_px_in(const std::string& png) {
+    std::uint32_t width = 0;
+    for (const char byte : png.substr(16, 4)) { width = width << 8U | static_cast<unsigned char>(byte); }
+    return width;
+}
+
+TEST(Analyze, DrawsAFigureOfTheWidthOnPaperThatWasAskedFor) {
+    const TemporaryFolder folder;
+    const std::string recording = write_recording(folder);
+    const auto drawn = [&](const char* name, std::vector<std::string> how) {
+        std::vector<std::string> command{"analyze", recording, "--plot", folder.path(name)};
+        command.insert(command.end(), how.begin(), how.end());
+        const ProgramResult result = run_gyrolog(command);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return read_whole_file(folder.path(name));
+    };
+    EXPECT_EQ(width_px_in(drawn("a.png", {})), 2126U) << "180 mm, 300 to the inch";
+    EXPECT_EQ(width_px_in(drawn("b.png", {"--plot-width", "120", "--plot-dpi", "150"})), 709U);
+    EXPECT_THAT(drawn("c.svg", {"--plot-width", "254"}).substr(0, 300), HasSubstr("width=\"720pt\""));
 }
 
 TEST(Analyze, RefusesAFigureOfAnotherForm) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/noise/noise_model.hpp"
+#include "tests/analysis/plot/lettering.hpp"
 #include "tests/analysis/plot/picture.hpp"
 
 namespace gyrolog {
@@ -49,9 +50,8 @@ AllanFigure small_figure(std::vector<AllanTrace> traces) {
     figure.source = "run7.pcapng";
     figure.facts = {"1 kHz", "12 h"};
     figure.traces = std::move(traces);
-    figure.width_px = 800;
-    figure.height_px = 550;
-    figure.scale = 0.5;
+    figure.paper = small_paper;
+    figure.height_mm = 163.4;
     return figure;
 }
 
@@ -189,6 +189,20 @@ TEST(AllanFigure, RendersWhateverAnAnalysisMayReturn) {
         const Rendering rendering = render(figure);
         EXPECT_TRUE(rendering.ok()) << rendering.problem;
         EXPECT_EQ(Picture(rendering).width_px(), 800);
+    }
+}
+
+// As it is printed: 180 mm wide.
+TEST(AllanFigure, HasLettersThatCanBeReadAndCoverNothing) {
+    AllanFigure figure = small_figure({trace_of("x", 0.01, 1e4, 40, 0.4), trace_of("y", 0.01, 1e4, 40, 1.0),
+                                       trace_of("z", 0.01, 1e4, 40, 2.2)});
+    for (const double width_mm : {180.0, 240.0}) {
+        figure.paper = {width_mm, 300.0};
+        figure.height_mm = AllanFigure().height_mm;
+        const Rendering rendering = render(figure);
+        ASSERT_TRUE(rendering.ok()) << rendering.problem;
+        EXPECT_EQ(Picture(rendering).width_px(), std::lround(width_mm / 25.4 * 300.0));
+        EXPECT_THAT(faults_of_letters(rendering.drawing), testing::IsEmpty());
     }
 }
 

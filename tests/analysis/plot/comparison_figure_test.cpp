@@ -2,9 +2,11 @@
 
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "analysis/noise/noise_model.hpp"
+#include "tests/analysis/plot/lettering.hpp"
 #include "tests/analysis/plot/picture.hpp"
 
 namespace gyrolog {
@@ -65,8 +67,15 @@ TEST(ComparisonFigure, HasTwoRowsOfThreePanelsForEachAxis) {
     const Figure figure = figure_of(ComparisonFigure{comparison, {"100 Hz"}});
     EXPECT_EQ(figure.columns, 3);
     EXPECT_EQ(figure.panels.size(), 18U);
-    EXPECT_EQ(figure.width_px, 1600);
+    EXPECT_EQ(figure.width_px, 2126) << "180 mm, 300 to the inch";
     EXPECT_EQ(figure.source, "night.csv  |  model.json");
+}
+
+TEST(ComparisonFigure, HasLettersThatCanBeReadAndCoverNothing) {
+    const Comparison comparison = comparison_of({"x", "y", "z"}, true);
+    const Rendering rendering = render(ComparisonFigure{comparison, {"100 Hz"}});
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    EXPECT_THAT(faults_of_letters(rendering.drawing), testing::IsEmpty());
 }
 
 TEST(ComparisonFigure, DrawsBothTimeSeriesOnTheSameScale) {
@@ -92,12 +101,22 @@ TEST(ComparisonFigure, MarksWhatLiesOutsideInDecibels) {
     EXPECT_EQ(figure_of(ComparisonFigure{inside, {}}).panels.at(5).curves.size(), 2U);
 }
 
-TEST(ComparisonFigure, NamesTheMarksOnceOnTheFirstAxisThatHasThem) {
+TEST(ComparisonFigure, HasOneKeyOfAllPanels) {
     Comparison comparison = comparison_of({"x", "y", "z"}, true);
+    const auto names = [&] {
+        std::vector<std::string> found;
+        for (const Curve& curve : figure_of(ComparisonFigure{comparison, {}}).key) {
+            found.push_back(curve.legend.at(0));
+        }
+        return found;
+    };
     comparison.axes[0].allan.outside.clear();
-    const Figure figure = figure_of(ComparisonFigure{comparison, {}});
-    EXPECT_EQ(figure.panels.at(11).curves.at(2).legend, std::vector<std::string>{"outside"});
-    EXPECT_TRUE(figure.panels.at(17).curves.at(2).legend.empty());
+    EXPECT_EQ(names(), (std::vector<std::string>{"simulated, 95.1 %", "recording", "recording, outside"}));
+    for (AxisComparison& axis : comparison.axes) { axis.allan.outside.clear(); }
+    EXPECT_EQ(names().size(), 2U);
+    for (const Panel& panel : figure_of(ComparisonFigure{comparison, {}}).panels) {
+        for (const Curve& curve : panel.curves) { EXPECT_TRUE(curve.legend.empty()); }
+    }
 }
 
 // So a point between them that cannot be shown, which would break a line, changes no pixel.
@@ -131,8 +150,7 @@ TEST(ComparisonFigure, ShowsBothCurvesBandsAndALegendInTheirColours) {
     for (const bool with_model : {true, false}) {
         const Comparison comparison = comparison_of({"x"}, with_model);
         ComparisonFigure figure{comparison, {"100 Hz", "1 h"}};
-        figure.width_px = 800;
-        figure.scale = 0.5;
+        figure.paper = small_paper;
         const Rendering rendering = render(figure);
         ASSERT_TRUE(rendering.ok()) << rendering.problem;
         const Picture picture(rendering);
@@ -140,7 +158,7 @@ TEST(ComparisonFigure, ShowsBothCurvesBandsAndALegendInTheirColours) {
         EXPECT_GT(picture.count(colours::blue, 30), 300);
         EXPECT_GT(picture.count(colours::orange, 80), 100);
         EXPECT_GT(picture.count(colours::vermillion, 30), 20);
-        EXPECT_TRUE(rendering.panels.at(3).legend.has_value());
+        EXPECT_TRUE(rendering.key.has_value());
     }
 }
 

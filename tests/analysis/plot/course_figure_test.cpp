@@ -15,8 +15,7 @@ CourseFigure of_two_axes() {
     course.duration_s = 40.0;
     course.per_unit_of_data = 10.0;
     course.traces = {{"x", {1.0, 2.0, 3.0, 4.0}}, {"y", {-1.0, -2.0, -3.0, -4.0}}};
-    course.width_px = 800;
-    course.scale = 0.5;
+    course.paper = small_paper;
     return course;
 }
 

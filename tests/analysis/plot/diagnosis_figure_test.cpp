@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/analysis/plot/lettering.hpp"
 #include "tests/analysis/plot/picture.hpp"
 
 namespace gyrolog {
@@ -118,9 +120,9 @@ std::vector<std::string> names_of(const Panel& panel) {
     return names;
 }
 
-std::vector<std::string> legends_of(const Panel& panel) {
+std::vector<std::string> names_in(const std::vector<Curve>& curves) {
     std::vector<std::string> names;
-    for (const Curve& curve : panel.curves) {
+    for (const Curve& curve : curves) {
         if (!curve.legend.empty()) { names.push_back(curve.legend.front()); }
     }
     return names;
@@ -188,11 +190,10 @@ TEST(DiagnosisFigure, HasABarForEveryShareOnTop) {
                                   "21 %", "11 (8 to 15) %", "7 %, what two simulations differ by"}));
     EXPECT_EQ(bars.curves[0].x, (std::vector<double>{0.0, 0.62}));
     EXPECT_EQ(bars.curves[1].x, (std::vector<double>{0.55, 0.68}));
-    EXPECT_EQ(legends_of(bars), (std::vector<std::string>{"recording", "model, 95 %", "with the causes, 95 %",
-                                                          "outside the model", "outside with the causes"}));
-    for (std::size_t i = 1; i < figure.panels.size(); ++i) {
-        EXPECT_TRUE(legends_of(figure.panels[i]).empty());
-    }
+    EXPECT_EQ(names_in(figure.key),
+              (std::vector<std::string>{"recording", "model, 95 %", "with the causes, 95 %",
+                                        "outside the model", "outside with the causes"}));
+    for (const Panel& panel : figure.panels) { EXPECT_TRUE(names_in(panel.curves).empty()); }
 }
 
 TEST(DiagnosisFigure, WithoutAGapHasNoBars) {
@@ -210,7 +211,7 @@ TEST(DiagnosisFigure, DrawsBarsThatDifferInGreyTooWithTheirNumbers) {
     ASSERT_TRUE(rendering.ok()) << rendering.problem;
     const Picture picture(rendering);
     const PanelPlace& bars = rendering.panels[0];
-    EXPECT_TRUE(bars.legend.has_value());
+    EXPECT_TRUE(rendering.key.has_value());
     EXPECT_EQ(bars.words.size(), 5U) << "every bar has room for its words";
     for (std::size_t i = 0; i < bars.words.size(); ++i) {
         EXPECT_NEAR(bars.words[i].centre().y, bars.y.pixel(4.0 - static_cast<double>(i)), 1.0) << i;
@@ -259,27 +260,56 @@ TEST(DiagnosisFigure, MarksWhatLiesOutsideBeforeAndAfter) {
     const Panel panel = figure_of(DiagnosisFigure{diagnosis, "known", {}}).panels.at(0);
     ASSERT_EQ(panel.curves.size(), 7U);
     const auto outside = std::ranges::count(diagnosis.domains[0].outside_before, true);
-    EXPECT_EQ(panel.curves[5].x.size(), static_cast<std::size_t>(outside));
-    EXPECT_EQ(panel.curves[6].x.size(), 1U);
+    EXPECT_EQ(panel.curves[6].x.size(), static_cast<std::size_t>(outside));
+    EXPECT_EQ(panel.curves[5].x.size(), 1U);
+    EXPECT_GT(panel.curves[5].marker_size_px, panel.curves[6].marker_size_px) << "which would hide it";
     EXPECT_NE(panel.curves[5].marker, panel.curves[6].marker);
     EXPECT_EQ(panel.curves[5].stroke.width_px, 0.0);
 }
 
 TEST(DiagnosisFigure, WithoutCausesHasOneBandAndNoSecondNumber) {
     const Diagnosis diagnosis = diagnosis_with({uncorrected(allan_domain(0))});
-    const Panel panel = figure_of(DiagnosisFigure{diagnosis, "unexplained", {}}).panels.at(0);
-    EXPECT_EQ(panel.caption, "x, gap 4.1: Allan deviation");
-    EXPECT_EQ(legends_of(panel), (std::vector<std::string>{"model, 95 %", "recording", "outside the model"}));
+    const Figure figure = figure_of(DiagnosisFigure{diagnosis, "unexplained", {}});
+    EXPECT_EQ(figure.panels.at(0).caption, "x, gap 4.1: Allan deviation");
+    EXPECT_EQ(names_in(figure.key),
+              (std::vector<std::string>{"recording", "model, 95 %", "outside the model"}));
 }
 
-TEST(DiagnosisFigure, NamesEveryPartOnce) {
+TEST(DiagnosisFigure, NamesEveryPartOnceInTheKey) {
     const Diagnosis diagnosis = diagnosis_with({allan_domain(0), time_domain(0)});
+    EXPECT_EQ(names_in(figure_of(DiagnosisFigure{diagnosis, "known", {}}).key).size(), 5U);
+}
+
+TEST(DiagnosisFigure, OfOneRowHasItsTitleOnce) {
+    const Diagnosis diagnosis =
+        diagnosis_with({allan_domain(0), time_domain(0), allan_domain(1), time_domain(1)});
     const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
-    EXPECT_EQ(legends_of(figure.panels[0]), (std::vector<std::string>{"model, 95 %", "recording"}));
-    EXPECT_EQ(legends_of(figure.panels[1]),
-              (std::vector<std::string>{"with the causes, 95 %", "outside the model"}));
-    const Diagnosis lone = diagnosis_with({time_domain(0)});
-    EXPECT_EQ(legends_of(figure_of(DiagnosisFigure{lone, "known", {}}).panels[0]).size(), 5U);
+    EXPECT_EQ(figure.panels.at(0).y.title, "over the model (dB)");
+    EXPECT_EQ(figure.panels.at(1).y.title, "");
+    const Rendering rendering = render(figure);
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    EXPECT_NEAR(rendering.panels.at(0).plot.width(), rendering.panels.at(1).plot.width(), 1.0);
+}
+
+// 180 mm wide, and not higher than a page.
+TEST(DiagnosisFigure, FitsAPageWithLettersThatCanBeReadAndCoverNothing) {
+    Diagnosis diagnosis = partly_explained();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const char* name :
+             {"gains, latency and clock", "rhythm of the noise", "noise by rate", "bursts"}) {
+            diagnosis.domains.push_back(time_domain(axis));
+            diagnosis.domains.back().name = name;
+            diagnosis.domains.back().y_name = "excess (its sd)";
+            diagnosis.domains.back().x_name = "change of the rate (deg/s^2)";
+        }
+    }
+    const Figure figure = figure_of(DiagnosisFigure{diagnosis, "partly explained", {"200 simulations"}});
+    EXPECT_EQ(figure.width_px, 2126);
+    EXPECT_LE(figure.height_px, PaperSize().pixels(250.0));
+    EXPECT_GE(figure.panels.size(), 1U + 3U * 4U);
+    const Rendering rendering = render(figure);
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    EXPECT_THAT(faults_of_letters(rendering.drawing), testing::IsEmpty());
 }
 
 TEST(DiagnosisFigure, DrawsBandsAndMarksThatDifferInGreyToo) {
@@ -295,7 +325,7 @@ TEST(DiagnosisFigure, DrawsBandsAndMarksThatDifferInGreyToo) {
     const auto grey = [](Colour c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue; };
     EXPECT_GT(grey(before) - grey(after), 40.0);
     EXPECT_GT(grey(after) - grey(colours::ink), 40.0);
-    for (const PanelPlace& place : rendering.panels) { EXPECT_TRUE(place.legend.has_value()); }
+    EXPECT_TRUE(rendering.key.has_value());
 }
 
 TEST(DiagnosisFigure, OfNothingToShowIsStillAPicture) {

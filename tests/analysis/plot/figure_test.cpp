@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/analysis/plot/lettering.hpp"
 #include "tests/analysis/plot/picture.hpp"
 
 namespace gyrolog {
@@ -73,6 +74,25 @@ TEST(Figure, DecodesToTheSizeAskedForAndIsNotBlank) {
     EXPECT_EQ(picture.height_px(), 603);
     EXPECT_GT(picture.count(colours::ink, 10), 500);
     EXPECT_GT(picture.count(colours::blue, 10), 300);
+}
+
+// Of a PNG's pHYs: pixels in a metre, both ways, and the unit.
+TEST(Figure, SaysInItsFileHowLargeItIsToBePrinted) {
+    Figure figure = figure_with({curve_of({1, 10, 100}, {3, 1, 2})}, ScaleKind::logarithmic);
+    const PaperSize paper{180.0, 300.0};
+    figure.width_px = paper.width_px();
+    figure.height_px = paper.pixels(100.0);
+    figure.scale = paper.scale();
+    const Rendering rendering = render(figure);
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    const std::string png(rendering.png.begin(), rendering.png.end());
+    const std::size_t at = png.find("pHYs");
+    ASSERT_EQ(at, 37U) << "behind the signature, IHDR and its own length";
+    using namespace std::string_literals;
+    EXPECT_EQ(png.substr(at + 4, 9), "\0\0\x2e\x23\0\0\x2e\x23\1"s)
+        << "300 to the inch are 11811 to the metre";
+    EXPECT_EQ(Picture(rendering).width_px(), 2126);
+    EXPECT_EQ(Picture(rendering).height_px(), 1181);
 }
 
 TEST(Figure, IsTheSameBytesEveryTime) {
@@ -289,6 +309,18 @@ TEST(Figure, APanelThatSpansItsRowHasItForItself) {
     EXPECT_GT(right.left, left.right);
 }
 
+TEST(Figure, ACaptionStandsAboveTheWordsOfGuidesAndBesideNoOtherPanels) {
+    Figure figure = figure_with({curve_of({1, 2}, {1, 2})}, ScaleKind::linear);
+    figure.panels[0].caption = "x: white noise that is left, by the bandwidth of the rate";
+    figure.panels[0].guides = {{1.2, "1.2 Hz"}, {1.99, "1.99 Hz"}};
+    figure.panels.resize(2, figure.panels[0]);
+    figure.columns = 2;
+    const Rendering rendering = render(figure);
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    EXPECT_EQ(rendering.panels[0].words.size(), 2U);
+    EXPECT_THAT(faults_of_letters(rendering.drawing), testing::IsEmpty());
+}
+
 TEST(Figure, AnAxisHasWordsInPlaceOfNumbers) {
     Figure figure = figure_with({curve_of({1, 2}, {1, 2})}, ScaleKind::linear);
     figure.panels[0].y.names = {{1.0, "one"}, {1.5, "one and a half"}};
@@ -319,7 +351,7 @@ TEST(Figure, RefusesWhatCannotBeDrawnAndSaysWhy) {
 
     figure = figure_with({}, ScaleKind::linear);
     figure.width_px = 100;
-    EXPECT_THAT(render(figure).problem, HasSubstr("240 x 180 to 16384 x 16384"));
+    EXPECT_THAT(render(figure).problem, HasSubstr("180 x 140 to 16384 x 16384"));
     figure.width_px = 20'000;
     EXPECT_FALSE(render(figure).ok());
     figure = figure_with({}, ScaleKind::linear);

@@ -36,8 +36,7 @@ HistogramTrace trace_of(const std::string& name, double step = 0.5) {
 HistogramFigure small_figure(std::vector<HistogramTrace> traces) {
     HistogramFigure histograms;
     histograms.traces = std::move(traces);
-    histograms.width_px = 800;
-    histograms.scale = 0.5;
+    histograms.paper = small_paper;
     return histograms;
 }
 
@@ -73,7 +72,8 @@ TEST(HistogramFigure, FillsTheStepsAndNotWhatIsBetweenThem) {
     const PanelPlace& panel = rendering.panels.at(0);
     const Picture picture(rendering);
     const Colour fill = mixed(colours::paper, colours::blue, 0.25);
-    const double y = panel.y.pixel(0.6 * static_cast<double>(histograms.traces[0].histogram.counts[1]));
+    // Below the Gaussian, which crosses the second bin.
+    const double y = panel.y.pixel(0.4 * static_cast<double>(histograms.traces[0].histogram.counts[1]));
     // Just right of the second bin's left edge, and just left of its right one.
     EXPECT_TRUE(picture.has(fill, {panel.x.pixel(-4.9), y}, 12));
     EXPECT_TRUE(picture.has(fill, {panel.x.pixel(-4.1), y}, 12));

@@ -1,4 +1,4 @@
-// A rendered PNG, decoded again to look at its pixels.
+// A rendered PNG, decoded again to look at its pixels; and a size for one that is soon drawn.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,12 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "analysis/plot/figure.hpp"
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
+
+// 800 pixels, of scale 0.5.
+inline constexpr PaperSize small_paper{237.67, 85.5};
 
 class Picture {
 public:

@@ -34,10 +34,9 @@ AllanTrace white_trace(const std::string& name, double height = 1.0) {
 AllanFigure figure_with(std::vector<AllanTrace> traces) {
     AllanFigure figure;
     figure.traces = std::move(traces);
-    figure.width_px = 800;
-    figure.height_px = 550;
-    figure.spectrum_height_px = 320;
-    figure.scale = 0.5;
+    figure.paper = small_paper;
+    figure.height_mm = 163.4;
+    figure.spectrum_height_mm = 95.1;
     return figure;
 }
 
@@ -57,7 +56,7 @@ TEST(SpectrumPanel, IsBelowTheAllanCurvesInTheSameColours) {
     const AllanFigure allan = figure_with({white_trace("x"), white_trace("y", 2.0)});
     const Figure figure = figure_of(allan);
     ASSERT_EQ(figure.panels.size(), 2U);
-    EXPECT_EQ(figure.height_px, allan.height_px + allan.spectrum_height_px);
+    EXPECT_EQ(figure.height_px, 550 + 320);
     EXPECT_EQ(figure.panels[1].curves[0].stroke.colour, colours::blue);
     EXPECT_EQ(figure.panels[1].curves[2].stroke.colour, colours::vermillion);
     for (const Curve& curve : figure.panels[1].curves) { EXPECT_TRUE(curve.legend.empty()); }

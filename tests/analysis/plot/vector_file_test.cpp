@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/plot/figure.hpp"
+#include "analysis/plot/paper_size.hpp"
 
 namespace gyrolog {
 namespace {
@@ -26,6 +27,10 @@ Figure figure() {
     Figure figure;
     figure.title = "A figure <of> paper & ink";
     figure.panels = {panel};
+    const PaperSize paper;
+    figure.width_px = paper.width_px();
+    figure.height_px = paper.pixels(100.0);
+    figure.scale = paper.scale();
     return figure;
 }
 
@@ -42,9 +47,10 @@ bool holds(const std::string& file, std::string_view what) { return file.find(wh
 TEST(VectorFile, SvgHasThePhysicalSizeAndTheColours) {
     const std::string svg = written(figure(), VectorFormat::svg);
     EXPECT_TRUE(holds(svg, "<svg "));
-    EXPECT_TRUE(holds(svg, "width=\"576pt\" height=\"396pt\"")) << "1600 x 1100 pixels, 200 an inch";
+    EXPECT_TRUE(holds(svg, "width=\"510.24pt\" height=\"283.44pt\""))
+        << "180 x 100 mm: " << svg.substr(0, 200);
     EXPECT_TRUE(holds(svg, "rgb(0%,44.705882%,69.803922%)")) << "the curve's blue";
-    EXPECT_TRUE(holds(svg, "stroke-dasharray:8,4")) << "the dash";
+    EXPECT_TRUE(holds(svg, "stroke-dasharray:14.03")) << "the dash, 8 pixels at scale 1";
     EXPECT_TRUE(holds(svg, "<use ")) << "letters";
     EXPECT_FALSE(holds(svg, "<image")) << "pixels, where lines should be";
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
@@ -53,7 +59,7 @@ TEST(VectorFile, SvgHasThePhysicalSizeAndTheColours) {
 TEST(VectorFile, PdfHoldsItsFont) {
     const std::string pdf = written(figure(), VectorFormat::pdf);
     EXPECT_TRUE(pdf.starts_with("%PDF-"));
-    EXPECT_TRUE(holds(pdf, "/MediaBox [ 0 0 576 396 ]"));
+    EXPECT_TRUE(holds(pdf, "/MediaBox [ 0 0 510.24 283.44 ]"));
     // Bold and regular; each in one piece of what a PDF calls simple and one of what it calls composite.
     std::size_t fonts = 0;
     for (std::size_t at = pdf.find("/FontDescriptor\n"); at != std::string::npos;
