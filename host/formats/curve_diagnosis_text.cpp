@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "host/formats/cause_table.hpp"
 #include "host/formats/curve_diagnosis_report.hpp"
 #include "host/formats/curve_effect.hpp"
 #include "host/formats/diagnosis_text.hpp"
@@ -88,7 +89,10 @@ std::string curve_text(const DiagnosedCurve& curve, const RateUnit& unit) {
 }  // namespace
 
 std::string curve_diagnosis_text(const CurveDiagnosisReport& report) {
-    std::string text = verdict_sentence(as_diagnosis(report), "curve") + "\n\n";
+    const Diagnosis diagnosis = as_diagnosis(report);
+    std::string text = verdict_sentence(diagnosis, "curve") + "\n\n";
+    const DiagnosisSentences sentences = diagnosis_sentences(diagnosis);
+    if (!sentences.causes.empty()) { text += cause_table(sentences.causes) + "\n"; }
     text += wrapped_text(
         "",
         fmt::format("{} against {}; reading error taken as {:.3g} %. The floor is what the complete noise "

@@ -98,6 +98,8 @@ std::string outside_text(const std::vector<bool>& outside, std::size_t points) {
 // Of many places only those with something to see are listed.
 constexpr std::size_t listed_whole_most = 6;
 
+constexpr std::size_t terminal_width = 80;
+
 bool is_listed(const Diagnosis& diagnosis, const GapDomain& domain) {
     return diagnosis.domains.size() <= listed_whole_most || domain.stands_out;
 }
@@ -127,10 +129,13 @@ std::string domains_text(const Diagnosis& diagnosis) {
         rows.push_back(std::move(row));
     }
     if (rows.empty()) { return fmt::format("\nwhere: nothing stands out in any of {} comparisons\n", quiet); }
-    std::string text = fmt::format(
-        "\nwhere (1 is the floor: what two simulations differ by; {:.3g} % of simulated points are inside)\n",
-        100.0 * diagnosis.band_probability);
-    text += text_table(heads, rows);
+    std::string text =
+        "\n" +
+        wrapped_text(
+            "", fmt::format("where (1 is the floor: what two simulations differ by; {:.3g} % of simulated "
+                            "points are inside)",
+                            100.0 * diagnosis.band_probability));
+    text += text_table(heads, rows, terminal_width);
     if (quiet > 0) { text += fmt::format("  nothing stands out in {} other comparisons\n", quiet); }
     return text;
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "host/base/printable.hpp"
+#include "host/formats/cause_table.hpp"
 #include "host/formats/diagnosis_details.hpp"
 #include "host/formats/effect_words.hpp"
 #include "host/formats/place_text.hpp"
@@ -89,6 +90,14 @@ std::string share_text(const Share& share) {
                        percent_text(share.hi));
 }
 
+// For a column that is headed by what it is a share of.
+std::string short_share_text(const Share& share) {
+    if (percent_text(share.lo) == percent_text(share.hi)) { return percent_text(share.value); }
+    const auto number = [](double of) { return std::round(100.0 * of) + 0.0; };
+    return fmt::format("{} ({:.0f} to {:.0f})", percent_text(share.value), number(share.lo),
+                       number(share.hi));
+}
+
 std::string times_floor(double value, const Gap& gap) {
     const double times = value / gap.floor;
     return times < 100.0 ? fmt::format("{:.2g}", times) : fmt::format("{:.0f}", times);
@@ -99,23 +108,23 @@ std::string with_full_stop(std::string sentence) {
     return sentence;
 }
 
-// Whether there is a gap, how large it is, and where.
+// How large the gap is, where, and whether chance makes one.
 std::string gap_sentence(const Diagnosis& diagnosis) {
     const Gap& gap = diagnosis.gap_before;
-    std::string text = fmt::format("Of recordings that do come from the model, {} would differ as much ({}).",
-                                   odds_text(diagnosis.p_none), probability_text(diagnosis.p_none));
+    std::string text;
     // A second recording was measured of a model without a gap, too.
     if (diagnosis.verdict != Verdict::none || !diagnosis.held_out.empty()) {
-        text += fmt::format(
-            " {} is {} times as far from a simulation as two simulations are from each other ({} to {}).",
+        text = fmt::format(
+            "{} is {} times as far from a simulation as two simulations are from each other ({} to {}). ",
             diagnosis.held_out.empty() ? "The recording" : diagnosis.held_out, times_floor(gap.value, gap),
             times_floor(gap.lo, gap), times_floor(gap.hi, gap));
     }
     if (diagnosis.verdict != Verdict::none) {
         const std::string place = place_text(diagnosis.where);
-        if (!place.empty()) { text += fmt::format(" It differs most here: {}.", place); }
+        if (!place.empty()) { text += fmt::format("It differs most here: {}. ", place); }
     }
-    return text;
+    return text + fmt::format("Of recordings that do come from the model, {} would differ as much ({}).",
+                              odds_text(diagnosis.p_none), probability_text(diagnosis.p_none));
 }
 
 // On which data the shares were measured.
@@ -142,8 +151,8 @@ std::string tie_clause(const Cause& cause) {
 }
 
 DiagnosisSentences::OfCause sentences_of(const Cause& cause) {
-    return {cause_name(cause), share_text(cause.share), percent_text(cause.score),
-            with_full_stop(cause_words(cause)) + tie_clause(cause)};
+    return {cause.finding.effect, cause_sizes(cause), short_share_text(cause.share),
+            percent_text(cause.score), with_full_stop(cause_words(cause)) + tie_clause(cause)};
 }
 
 std::string explained_sentence(const Diagnosis& diagnosis) {
@@ -153,18 +162,21 @@ std::string explained_sentence(const Diagnosis& diagnosis) {
 
 std::string explained_section(const DiagnosisSentences& sentences) {
     std::string text = wrapped_text("", "explained: " + sentences.explained);
-    for (std::size_t i = 0; i < sentences.causes.size(); ++i) {
-        const DiagnosisSentences::OfCause& cause = sentences.causes[i];
-        text += wrapped_text(fmt::format("  {}. ", i + 1),
-                             fmt::format("{}: {}, probability {}. {}", cause.name, cause.share,
-                                         cause.probability, cause.words));
-    }
+    if (!sentences.causes.empty()) { text += cause_table(sentences.causes); }
     if (sentences.causes.size() > 1) {
         text += wrapped_text("  ",
                              "Each share is what returns when that cause alone is taken out again: shares "
                              "may overlap.");
     }
     return "\n" + text;
+}
+
+std::string words_section(const DiagnosisSentences& sentences) {
+    std::string text = sentences.causes.empty() ? "" : "\nwhat the causes are\n";
+    for (std::size_t i = 0; i < sentences.causes.size(); ++i) {
+        text += wrapped_text(fmt::format("  {}. ", i + 1), sentences.causes[i].words);
+    }
+    return text;
 }
 
 std::string better_shape_sentence(const BetterShape& better) {
@@ -359,16 +371,17 @@ std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer
 
 std::string diagnosis_text(const Diagnosis& diagnosis, Wording wording) {
     const DiagnosisSentences sentences = diagnosis_sentences(diagnosis);
-    std::string text = verdict_sentence(diagnosis) + "\n" + unnamed_sentence(diagnosis) + "\n" +
-                       wrapped_text("", sentences.heading);
-    text += "\ngap\n" + wrapped_text("  ", sentences.gap);
+    std::string text = verdict_sentence(diagnosis) + "\n" + unnamed_sentence(diagnosis);
+    text += "\n" + wrapped_text("", "gap: " + sentences.gap);
     if (diagnosis.verdict != Verdict::none) {
         text += explained_section(sentences);
         text += "\n" + wrapped_text("", "left: " + sentences.left);
         for (const std::string& item : sentences.left_items) { text += wrapped_text("  - ", item); }
     }
+    text += sentences_text("what to record next", diagnosis.next_recordings);
     text += sentences_text("what was asked", asked_sentences(diagnosis));
-    text += sentences_text("recordings that would tell more", diagnosis.next_recordings);
+    text += words_section(sentences);
+    text += "\n" + wrapped_text("", "compared: " + sentences.heading);
     if (wording == Wording::whole) { text += diagnosis_details(diagnosis); }
     text += sentences_text("warnings", diagnosis.warnings);
     return text;

@@ -1,6 +1,7 @@
 // A diagnosis for people, in the order in which one asks: the verdict in one line; whether there is a gap,
-// and by what odds; how much of it is explained, by what, how surely, a line for each cause; what is left,
-// and where; which recording would tell more. The details follow where they are wanted.
+// and by what odds; how much of it is explained, and by what, a row of a table for each cause; what is left,
+// and where; what to record next. Then what the causes are, in words, and what was compared. The details
+// follow where they are wanted.
 #pragma once
 
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "analysis/diagnose/report.hpp"
+#include "host/formats/effect_words.hpp"
 
 namespace gyrolog {
 
@@ -23,8 +25,9 @@ std::string passes_text(const Diagnosis& diagnosis);
 // What the text says, sentence by sentence, for other forms of it.
 struct DiagnosisSentences {
     struct OfCause {
-        std::string name;         // "temp_lag on x"
-        std::string share;        // "62 % of the gap (55 % to 68 %)"
+        std::string effect;
+        std::vector<CauseSize> sizes;
+        std::string share;        // of the gap: "62 % (55 to 68)"
         std::string probability;  // "91 %"
         std::string words;        // what it is, and what cannot be told from it
     };

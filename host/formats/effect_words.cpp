@@ -8,6 +8,7 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/simulate/accelerometer_effect.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -312,6 +313,63 @@ std::string cause_words(const Cause& cause) {
         std::ranges::all_of(params_in(noun), [&](const auto& name) { return has_value(finding, name); });
     return fmt::format("The model has {} that the recording lacks",
                        is_known ? filled_words(noun, finding) : without_value(noun));
+}
+
+namespace {
+
+// In the order of the words; those that an entry has.
+std::vector<std::string> named_params(const Finding& finding) {
+    const EffectSignature* signature = signature_of(finding.effect);
+    std::vector<std::string> names;
+    for (const std::string& words : {signature == nullptr ? std::string() : std::string(signature->words),
+                                     noun_of(finding), std::string("{factor}")}) {
+        for (const std::string& name : params_in(words)) {
+            if (has_value(finding, name) && std::ranges::count(names, name) == 0) { names.push_back(name); }
+        }
+    }
+    return names;
+}
+
+bool has_unit(std::string_view name, const EffectParam* param) {
+    return units_of(name, param).front().name != "";
+}
+
+std::vector<std::string> values_of(const Finding& finding, std::size_t entry) {
+    std::vector<std::string> with_sd;
+    std::vector<std::string> without_sd;
+    for (const std::string& name : named_params(finding)) {
+        const auto value = value_in(finding, entry, name);
+        if (!value) { continue; }
+        const EffectParam* param = find_param(finding, name);
+        const std::string own_name = name_in(finding.entries[entry], name);
+        const std::string text = (has_unit(own_name, param) ? "" : name + " ") +
+                                 quantity_text(own_name, value->value, value->sd, param);
+        (value->sd > 0.0 ? with_sd : without_sd).push_back(text);
+    }
+    return with_sd.empty() ? without_sd : with_sd;
+}
+
+}  // namespace
+
+std::vector<CauseSize> cause_sizes(const Cause& cause) {
+    const Finding& finding = cause.finding;
+    std::vector<CauseSize> sizes;
+    for (std::size_t entry = 0; entry < finding.entries.size(); ++entry) {
+        CauseSize size{axes_of(finding.entries[entry]), values_of(finding, entry)};
+        const auto same = std::ranges::find(sizes, size.values, &CauseSize::values);
+        if (same == sizes.end()) {
+            sizes.push_back(std::move(size));
+        } else if (!size.axes.empty()) {
+            same->axes += (same->axes.empty() ? "" : ", ") + size.axes;
+        }
+    }
+    if (sizes.empty()) { sizes.emplace_back(); }
+    if (sizes.size() == 1) {
+        std::vector<std::string> axes;
+        for (const std::size_t axis : finding.where.axes) { axes.emplace_back(axis_names.at(axis)); }
+        sizes.front().axes = fmt::format("{}", fmt::join(axes, ", "));
+    }
+    return sizes;
 }
 
 std::string axes_text(const std::vector<std::size_t>& axes) {

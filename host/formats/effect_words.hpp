@@ -26,6 +26,14 @@ std::string effect_words(const Finding& finding);
 // These, or of what the model has too much: "The model has a line at 31 Hz that the recording lacks".
 std::string cause_words(const Cause& cause);
 
+// How large a cause is on axes that have the same of it: the values that its words name, one by one, each
+// with its uncertainty where any of them has one. A value without a unit has its parameter's name before it.
+struct CauseSize {
+    std::string axes;  // "x, y"
+    std::vector<std::string> values;
+};
+std::vector<CauseSize> cause_sizes(const Cause& cause);
+
 // "x", "x and y", "x, y and z"; `axes` by number.
 std::string axes_text(const std::vector<std::size_t>& axes);
 

@@ -9,6 +9,6 @@ namespace gyrolog {
 
 // `text` broken at spaces so that no line is longer than `width_max` characters unless a word is; the first
 // line begins with `first`, which is taken to be as wide as the spaces before the others. Ends in a newline.
-std::string wrapped_text(std::string_view first, std::string_view text, std::size_t width_max = 100);
+std::string wrapped_text(std::string_view first, std::string_view text, std::size_t width_max = 80);
 
 }  // namespace gyrolog

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "host/formats/diagnosis_text.hpp"
 #include "host/report/sections.hpp"
@@ -27,9 +28,18 @@ Html gaps_of(const Diagnosis& diagnosis) {
 Html causes_of(const DiagnosisSentences& sentences) {
     Html section = element("h3", Html::text("Causes")) + paragraph("Explained: " + sentences.explained + ".");
     if (sentences.causes.empty()) { return section; }
-    HtmlTable causes{cells_of({"cause", "share", "probability", "what it is"}), {}, "causes"};
+    HtmlTable causes{
+        cells_of({"cause", "axes", "size", "share of the gap", "probability", "what it is"}), {}, "causes"};
     for (const DiagnosisSentences::OfCause& cause : sentences.causes) {
-        causes.rows.push_back(cells_of({cause.name, cause.share, cause.probability, cause.words}));
+        for (const CauseSize& size : cause.sizes) {
+            const std::string sizes = fmt::format("{}", fmt::join(size.values, "; "));
+            if (&size == &cause.sizes.front()) {
+                causes.rows.push_back(
+                    cells_of({cause.effect, size.axes, sizes, cause.share, cause.probability, cause.words}));
+            } else {
+                causes.rows.push_back(cells_of({"", size.axes, sizes, "", "", ""}));
+            }
+        }
     }
     section += table(causes);
     if (sentences.causes.size() > 1) {

@@ -12,6 +12,7 @@
 #include "analysis/simulate/effect.hpp"
 #include "host/formats/curve_csv.hpp"
 #include "host/formats/curve_effect.hpp"
+#include "tests/host/formats/diagnosis_cases.hpp"
 #include "tests/support/needs.hpp"
 
 namespace gyrolog {
@@ -87,7 +88,7 @@ TEST(CurveDiagnosisReport, SaysWhatIsNotSeenInWords) {
     const AllanCurve curve = exact_curve(sensor);
     const std::vector<ModelledTerm> terms = curve_of_model(model, 0).terms;
     report.curves.push_back({"sensor_x", 0, curve, terms, diagnose_curve(curve, terms)});
-    EXPECT_THAT(curve_diagnosis_text(report), HasSubstr("No B seen, where the model has"));
+    EXPECT_THAT(test::joined(curve_diagnosis_text(report)), HasSubstr("No B seen, where the model has"));
     ASSERT_EQ(report.curves[0].diagnosis.causes.size(), 1U);
     correct(model, 0, report.curves[0].diagnosis.causes[0]);
     EXPECT_EQ(model.axes[0].noise.B_rad_per_s, 0.0);
@@ -155,8 +156,9 @@ TEST(CurveDiagnosisReport, NamesFactorAndMissingTermUnderTheEffectsNames) {
 }
 
 TEST(CurveDiagnosisReport, SaysWhereTheModelErrsAndWhatDoesIt) {
-    const std::string text = curve_diagnosis_text(quiet_report());
+    const std::string text = test::joined(curve_diagnosis_text(quiet_report()));
     EXPECT_THAT(text, StartsWith("known: "));
+    EXPECT_THAT(text, HasSubstr("share of gap"));
     EXPECT_THAT(text, HasSubstr("the model is too quiet by up to"));
     EXPECT_THAT(text, HasSubstr("The sensor's N is 1.4"));
     EXPECT_THAT(text, HasSubstr("The model lacks Gauss-Markov 0.0"));

@@ -1,6 +1,8 @@
 // Diagnoses as there may be, for tests of what is written of them.
 #pragma once
 
+#include <string>
+
 #include "analysis/diagnose/report.hpp"
 
 namespace gyrolog::test {
@@ -121,6 +123,19 @@ inline Diagnosis none() {
         domain.outside_after.clear();
     }
     return diagnosis;
+}
+
+// A text on one line.
+inline std::string joined(const std::string& text) {
+    std::string line;
+    for (const char c : text) {
+        if (c != '\n' && c != ' ') {
+            line += c;
+        } else if (!line.ends_with(' ')) {
+            line += ' ';
+        }
+    }
+    return line;
 }
 
 // Two axes, of which the second has more of the effect.

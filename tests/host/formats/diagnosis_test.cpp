@@ -9,6 +9,7 @@
 #include "host/formats/diagnosis_json.hpp"
 #include "host/formats/diagnosis_text.hpp"
 #include "host/formats/place_text.hpp"
+#include "host/formats/text_width.hpp"
 #include "tests/host/formats/diagnosis_cases.hpp"
 
 namespace gyrolog {
@@ -17,6 +18,7 @@ namespace {
 using nlohmann::json;
 using test::allan_domain;
 using test::different_axes;
+using test::joined;
 using test::known;
 using test::none;
 using test::partly;
@@ -62,27 +64,17 @@ TEST(DiagnosisText, OfManyCausesNamesTheFirstInItsFirstLine) {
     EXPECT_EQ(verdict_sentence(many), "known: temp_lag on x, tone on y and z and 2 more explain the gap");
 }
 
-std::string joined(const std::string& text) {
-    std::string line;
-    for (const char c : text) {
-        if (c != '\n' && c != ' ') {
-            line += c;
-        } else if (!line.ends_with(' ')) {
-            line += ' ';
-        }
-    }
-    return line;
-}
-
 // What one asks first comes first.
 TEST(DiagnosisText, SaysItInTheOrderInWhichOneAsks) {
     Diagnosis diagnosis = partly();
     diagnosis.untestable = {{"latency", "the recording has no reference rate"}};
     const std::string text = diagnosis_text(diagnosis);
     std::size_t before = 0;
-    for (const char* part : {"partly: ", "\ngap\n", "\nexplained: ", "\n  1. temp_lag on x: ", "\nleft: ",
-                             "\nrecordings that would tell more\n", "\nparameters of the causes\n",
-                             "\nwhere (1 is the floor", "\nnot tested\n", "\nwarnings\n"}) {
+    for (const char* part :
+         {"partly: ", "\ngap: ", "\nexplained: ", "cause     axes  size", "\n  1. temp_lag  x     ",
+          "\nleft: ", "\nwhat to record next\n", "\nwhat the causes are\n  1. The output follows",
+          "\ncompared: night.csv", "\nparameters of the causes\n", "\nwhere (1 is the floor",
+          "\nnot tested\n", "\nwarnings\n"}) {
         const std::size_t at = text.find(part, before);
         ASSERT_NE(at, std::string::npos) << part << "\n" << text;
         before = at;
@@ -99,7 +91,7 @@ TEST(DiagnosisText, IsBriefWithoutDetailsAndWithoutTheMethodsWords) {
     }
     // All else is as it was.
     for (const char* part :
-         {"partly: ", "\ngap\n", "\nexplained: ", "temp_lag on x", "\nleft: ", "\nwarnings\n"}) {
+         {"partly: ", "\ngap: ", "\nexplained: ", "temp_lag on x", "\nleft: ", "\nwarnings\n"}) {
         EXPECT_THAT(brief, HasSubstr(part));
     }
 }
@@ -107,27 +99,67 @@ TEST(DiagnosisText, IsBriefWithoutDetailsAndWithoutTheMethodsWords) {
 TEST(DiagnosisText, SaysWhetherThereIsAGapAndHowFarItIs) {
     const std::string text = joined(diagnosis_text(known()));
     EXPECT_THAT(text, HasSubstr("1 of 5000 would differ as much (p = 0.0002)"));
-    EXPECT_THAT(text, HasSubstr("The recording is 4.1 times as far from a simulation as two simulations are "
-                                "from each other (3.6 to 4.7). It differs most here: x axis, averaging times "
-                                "60 s to 15 min."));
+    EXPECT_THAT(text,
+                HasSubstr("gap: The recording is 4.1 times as far from a simulation as two simulations are "
+                          "from each other (3.6 to 4.7). It differs most here: x axis, averaging times "
+                          "60 s to 15 min."));
 }
 
-TEST(DiagnosisText, HasALineForEachCauseWithItsShareAndProbability) {
-    const std::string text = joined(diagnosis_text(partly()));
+TEST(DiagnosisText, HasATableOfTheCausesWithSizeShareAndProbability) {
+    const std::string text = diagnosis_text(partly());
     EXPECT_THAT(text,
-                HasSubstr("explained: 83 % of the gap (79 % to 86 %), measured by simulating, on parts of "
-                          "the recording that the fit did not use 1. temp_lag on x: 62 % of the gap (55 % "
-                          "to 68 %), probability 91 %. The output follows the temperature late, 0.0210 ± "
-                          "0.0020 deg/s per degC with a lag of 6.8 ± 1.0 min and a play of 0 degC. This "
-                          "recording cannot tell it from `temp_linear`."));
+                HasSubstr("explained: 83 % of the gap (79 % to 86 %), measured by simulating, on parts of\n"
+                          "the recording that the fit did not use\n"
+                          "     cause     axes  size                       share of gap     probability\n"
+                          "  1. temp_lag  x     0.0210 ± 0.0020 deg/s per  62 % (55 to 68)  91 %\n"
+                          "                       degC\n"
+                          "                     6.8 ± 1.0 min\n"
+                          "\n"
+                          "left: "));
+    EXPECT_THAT(joined(text),
+                HasSubstr("what the causes are 1. The output follows the temperature late, 0.0210 ± "
+                          "0.0020 deg/s per degC with a lag of 6.8 ± 1.0 min and a play of 0 degC. "
+                          "This recording cannot tell it from `temp_linear`."));
+    EXPECT_THAT(joined(text), HasSubstr("1. temp_lag: evidence 140 nats; `temp_linear` has 2.1 nats less"));
     EXPECT_THAT(text, Not(HasSubstr("may overlap")));
-    EXPECT_THAT(text, HasSubstr("1. temp_lag: evidence 140 nats; `temp_linear` has 2.1 nats less"));
-    EXPECT_THAT(text, HasSubstr("tau_s 6.8 ± 1.0 min"));
-    EXPECT_THAT(
-        joined(diagnosis_text(with_line_of_model())),
-        HasSubstr("2. line_absent on z: 20 % of the gap (10 % to 30 %), probability 98 %. The model has "
-                  "a line at 31 Hz that the recording lacks. Each share is what returns when that "
-                  "cause alone is taken out again: shares may overlap."));
+}
+
+TEST(DiagnosisText, HasARowOfTheTableForEachCause) {
+    const std::string text = diagnosis_text(with_line_of_model());
+    EXPECT_THAT(text, HasSubstr("\n  2. line_absent  z     31 Hz "));
+    EXPECT_THAT(text, HasSubstr("20 % (10 to 30)  98 %\n"));
+    EXPECT_THAT(joined(text), HasSubstr("2. The model has a line at 31 Hz that the recording lacks."));
+    EXPECT_THAT(joined(text),
+                HasSubstr("Each share is what returns when that cause alone is taken out again: "
+                          "shares may overlap."));
+}
+
+// Axes that have more or less of a cause have lines of their own.
+TEST(DiagnosisText, HasASizeForEachAxisThatHasItsOwn) {
+    Diagnosis diagnosis = known();
+    diagnosis.causes[0].finding = different_axes();
+    const std::string text = diagnosis_text(diagnosis);
+    EXPECT_THAT(text, HasSubstr("  1. temp_lag  x     0.0210 ± 0.0020 deg/s per  97 % (90 to 100)  91 %\n"));
+    EXPECT_THAT(text, HasSubstr("\n               z     0.0500 ± 0.0010 deg/s per\n"));
+    const std::vector<CauseSize> sizes = cause_sizes(diagnosis.causes[0]);
+    ASSERT_EQ(sizes.size(), 2U);
+    EXPECT_EQ(sizes[0].axes, "x");
+    EXPECT_EQ(sizes[1].axes, "z");
+    diagnosis.causes[0].finding.entries[1].params = diagnosis.causes[0].finding.entries[0].params;
+    diagnosis.causes[0].finding.sd[1] = diagnosis.causes[0].finding.sd[0];
+    ASSERT_EQ(cause_sizes(diagnosis.causes[0]).size(), 1U);
+    EXPECT_EQ(cause_sizes(diagnosis.causes[0])[0].axes, "x, z");
+}
+
+TEST(DiagnosisText, NamesAValueOfTheTableThatHasNoUnit) {
+    Diagnosis diagnosis = known();
+    Finding& finding = diagnosis.causes[0].finding;
+    finding.effect = "arw_scale";
+    finding.entries = {{"arw_scale", {"x", "y", "z"}, {{"factor", 1.45}}, ""}};
+    finding.sd = {{{"factor", 0.01}}};
+    finding.where = {};
+    finding.where.axes = {0, 1, 2};
+    EXPECT_THAT(diagnosis_text(diagnosis), HasSubstr("  1. arw_scale  x, y, z  factor 1.450 ± 0.010"));
 }
 
 TEST(DiagnosisText, SaysOnWhatTheSharesWereMeasured) {
@@ -156,7 +188,7 @@ TEST(DiagnosisText, SaysOfASecondRecordingHowFarItIs) {
 TEST(DiagnosisText, HasNoNegativeZero) {
     Diagnosis diagnosis = partly();
     diagnosis.causes[0].share = {-0.004, -0.2, 0.1};
-    EXPECT_THAT(joined(diagnosis_text(diagnosis)), HasSubstr(": 0 % of the gap (-20 % to 10 %)"));
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)), HasSubstr("0 % (-20 to 10)"));
 }
 
 TEST(DiagnosisText, HasTheDetailsAtItsEnd) {
@@ -286,7 +318,7 @@ TEST(DiagnosisText, OfManyPlacesListsThoseThatStandOut) {
 }
 
 TEST(DiagnosisText, OfNoGapClaimsNoPlaceAndNoCause) {
-    const std::string text = diagnosis_text(none());
+    const std::string text = joined(diagnosis_text(none()));
     EXPECT_THAT(text, HasSubstr("43 of 100 would differ as much (p = 0.43)"));
     for (const char* claim : {"as far from a simulation", "explained", "left: ", "causes"}) {
         EXPECT_THAT(text, Not(HasSubstr(claim)));
@@ -300,7 +332,7 @@ TEST(DiagnosisText, KeepsItsLinesWithinATerminal) {
     diagnosis.recording_name =
         "a_rather_long_name_of_a_recording_from_the_temperature_chamber_2026-11-21.csv";
     std::istringstream lines(diagnosis_text(diagnosis));
-    for (std::string line; std::getline(lines, line);) { EXPECT_LE(line.size(), 112U) << line; }
+    for (std::string line; std::getline(lines, line);) { EXPECT_LE(width_of(line), 80U) << line; }
 }
 
 }  // namespace
