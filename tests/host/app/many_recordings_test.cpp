@@ -44,11 +44,11 @@ protected:
         return run_command_line(std::move(arguments), {out, err});
     }
     std::vector<json> lines_of(const std::string& text) {
-        std::vector<json> lines;
+        std::vector<json> parsed;
         std::istringstream in(text);
-        for (std::string line; std::getline(in, line);) { lines.push_back(json::parse(line)); }
+        for (std::string line; std::getline(in, line);) { parsed.push_back(json::parse(line)); }
         EXPECT_TRUE(text.ends_with('\n'));
-        return lines;
+        return parsed;
     }
 
     TemporaryFolder folder;
