@@ -145,8 +145,10 @@ std::vector<Corner> corners_of(const Blocks& blocks, double chance_without,
         blocks.span_s * static_cast<double>(blocks.index.back() - blocks.index.front() + 1);
     const double most_hz = options.corner_most_cycles_per_block / blocks.span_s;
     std::vector<Corner> corners = {{0.0, std::log(chance_without)}};
-    for (double f_hz = options.corner_least_cycles_per_record / record_s; f_hz <= most_hz; f_hz *= 2.0) {
+    double f_hz = options.corner_least_cycles_per_record / record_s;
+    while (f_hz <= most_hz) {
         corners.push_back({f_hz, 0.0});
+        f_hz *= 2.0;
     }
     const double share = (1.0 - chance_without) / static_cast<double>(corners.size() - 1);
     for (std::size_t i = 1; i < corners.size(); ++i) { corners[i].log_weight = std::log(share); }

@@ -178,11 +178,13 @@ void AxesDrawing::draw_ticks(Canvas& canvas, const Axes& axes) const {
 // As wide as the panel: with numbers and names it is longer than a narrow plot.
 void AxesDrawing::draw_caption(Canvas& canvas, const Axes& axes) const {
     const double size_px = letter_px * scale_;
-    const auto lines = title_lines(panel_.caption, size_px, axes.area.width());
+    // The last one stands next to the plot.
+    auto lines = title_lines(panel_.caption, size_px, axes.area.width());
+    std::ranges::reverse(lines);
     const double guides_px = panel_.guides.empty() ? 0.0 : guide_line_px;
     double y = axes.plot.top - (guides_px + caption_gap_px) * scale_;
-    for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
-        canvas.text(typeface_, *line, {axes.area.left, y},
+    for (const std::string& line : lines) {
+        canvas.text(typeface_, line, {axes.area.left, y},
                     {size_px, colours::muted_ink, Across::left, Along::baseline});
         y -= title_line_px * scale_;
     }
