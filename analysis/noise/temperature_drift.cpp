@@ -282,8 +282,8 @@ private:
 };
 
 double walk_left_in(const std::vector<Answer>& answers) {
-    std::vector<double> logs;
-    for (const Answer& answer : answers) { logs.push_back(answer.log_weight_without); }
+    std::vector<double> logs(answers.size());
+    std::ranges::transform(answers, logs.begin(), &Answer::log_weight_without);
     const double all = log_sum_exp(logs);
     double walk = 0.0;
     for (const Answer& answer : answers) {

@@ -331,7 +331,7 @@ std::vector<std::string> named_params(const Finding& finding) {
 }
 
 bool has_unit(std::string_view name, const EffectParam* param) {
-    return units_of(name, param).front().name != "";
+    return !units_of(name, param).front().name.empty();
 }
 
 std::vector<std::string> values_of(const Finding& finding, std::size_t entry) {
