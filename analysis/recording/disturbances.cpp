@@ -179,8 +179,8 @@ struct Signal {
     double ratio(std::size_t block) const { return std::exp(powers[block].log - levels[block]); }
 };
 
-// Of numbers that lie on no grid, or on one of two or three codes only, the largest of the gaps between
-// these.
+// The grid's step. grid_step() wants four codes: of two or three it is the widest gap between them. 0: no
+// grid.
 double code_step(std::span<const double> values) {
     const double step = grid_step(values);
     constexpr std::size_t codes_most = 3;
@@ -246,7 +246,8 @@ bool is_pulse(const Signal& signal, std::span<const double> values, std::size_t 
     return (rest.log - signal.levels[block]) / signal.sd_log <= signal.loud_from;
 }
 
-// P(X >= least) of a binomial variable, as -ln; p below 1.
+// -ln (P(X >= least) / p^least) of a binomial variable X. The power of p, which may be too small for a
+// double, is left to the caller.
 double binomial_tail_nats(double p, std::size_t count, std::size_t least) {
     double ways = 1.0;  // to choose j of all
     double sum = 0.0;   // over p^least
