@@ -23,6 +23,10 @@ public:
     static std::optional<ExponentialTail> of(std::span<const double> values,
                                              const ExponentialTailOptions& options);
 
+    double threshold() const { return threshold_; }
+    double mean_excess() const { return mean_; }
+    double count() const { return count_; }  // of the numbers in the tail
+
     // Where the tail ends: of these numbers, which may be other than those that the tail is of, at most a
     // share `chance` lie beyond it by chance (Benjamini, Hochberg, J. R. Stat. Soc. B 57 (1995) 289). Where
     // none is anything else, a share `chance` of such samples has one beyond. `others`: that were found to be

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/numerics/exponential_tail.hpp"
+
 namespace gyrolog {
 
 EvidenceTail::EvidenceTail(std::vector<double> simulated_nats) : sorted_nats_(std::move(simulated_nats)) {
     std::ranges::sort(sorted_nats_);
-    const std::size_t count = sorted_nats_.size();
-    const std::size_t in_tail = std::max<std::size_t>(count / 10, 2);
-    tail_from_nats_ = sorted_nats_[count - in_tail - 1];
-    double excess = 0.0;
-    for (std::size_t i = count - in_tail; i < count; ++i) { excess += sorted_nats_[i] - tail_from_nats_; }
-    tail_scale_nats_ = std::max(1.0, excess / static_cast<double>(in_tail));
-    tail_probability_ = static_cast<double>(in_tail) / static_cast<double>(count);
+    const auto tail = ExponentialTail::of(
+        sorted_nats_, {.share = 0.1, .least = 2, .censored_share = 0.0, .mean_least = 1.0});
+    tail_from_nats_ = tail->threshold();
+    tail_scale_nats_ = tail->mean_excess();
+    tail_probability_ = tail->count() / static_cast<double>(sorted_nats_.size());
 }
 
 double EvidenceTail::probability(double nats) const {
