@@ -97,20 +97,6 @@ Power power_of(std::span<const double> values, double least) {
     return {std::log(std::max(kept / static_cast<double>(values.size()), least)), std::sqrt(largest.back())};
 }
 
-// A block less its outliers: single samples that are farther off than this, between such as are not.
-std::vector<double> without_outliers(std::span<const double> values, double far_off) {
-    const TwoMeans means = two_means(values);
-    const auto is_far = [&](std::size_t i) {
-        return i < values.size() && std::abs(means.off(values, i)) > far_off;
-    };
-    std::vector<double> kept;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const bool is_single = is_far(i) && !is_far(i + 1) && (i == 0 || !is_far(i - 1));
-        if (!is_single) { kept.push_back(values[i]); }
-    }
-    return kept;
-}
-
 double median_of(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::ranges::nth_element(values, middle);
@@ -230,11 +216,6 @@ Signal signal_of(std::span<const double> values, const std::vector<Block>& block
     signal.levels = levels_of(signal.powers, options);
     signal.sd_log = sd_of_logs(signal, blocks.front().count);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-        const double far_off = options.outlier_sigma * std::exp(0.5 * signal.levels[i]);
-        if (signal.powers[i].largest > far_off) {
-            const auto rest = without_outliers(values.subspan(blocks[i].first, blocks[i].count), far_off);
-            if (rest.size() < blocks[i].count) { signal.powers[i] = power_of(rest, signal.least_power); }
-        }
         signal.excess.push_back((signal.powers[i].log - signal.levels[i]) / signal.sd_log);
     }
     return signal;

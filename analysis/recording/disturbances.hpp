@@ -3,12 +3,12 @@
 //
 // A sensor's own noise is loud on one axis at a time, and about as loud as its other loud stretches are. The
 // power of a block of the recording is what is left about two means with one step between them, less its two
-// largest squares and its outliers, so that neither a step of the bias nor single samples that are off count.
+// largest squares, so that neither a step of the bias nor single samples that are off count.
 // A block is loud on an axis where the logarithm of its power lies above the axis' median around it by more
 // than chance has it.
 //
 // A block is disturbed that lies beyond the tail of one axis' own blocks, for a bump may move one axis alone,
-// or whose axes together lie beyond the tail of what they are otherwise. So are the blocks that follow or
+// or in which several axes are as loud at once as they are not by chance. So are the blocks that follow or
 // lead to it as long as the axis, or the axes together, stay loud, for what was bumped rings out, and one
 // more on either side.
 #pragma once
@@ -30,8 +30,6 @@ struct DisturbanceOptions {
     // Of the recordings without disturbances the share in which one is found, and of the blocks that are
     // found to be disturbed the share that is not.
     double false_alarms_most = 0.01;
-    // Standard deviations: single samples beyond are outliers, 1 in 5e8 by chance; the normal distribution.
-    double outlier_sigma = 6.0;
     // Shares of the recording. What lasts longer is not from outside, or cannot be told from a sensor whose
     // noise changes.
     double longest_share = 0.05;
