@@ -3,8 +3,9 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 #include <vector>
+
+#include <opencv2/core.hpp>
 
 namespace gyrolog {
 
@@ -23,8 +24,7 @@ std::size_t fast_length(std::size_t most) {
 
 template <typename Real>
 struct CosineTransform::Plan {
-    explicit Plan(std::size_t length) : reordered(length), spectrum(length / 2 + 1), turn(length / 2 + 1) {
-        fft.SetFlag(Eigen::FFT<Real>::HalfSpectrum);
+    explicit Plan(std::size_t length) : reordered(length), spectrum(length), turn(length / 2 + 1) {
         for (std::size_t k = 0; k < turn.size(); ++k) {
             const double angle =
                 -std::numbers::pi * static_cast<double>(k) / (2.0 * static_cast<double>(length));
@@ -40,36 +40,44 @@ struct CosineTransform::Plan {
             reordered[i] = values[2 * i];
             reordered[n - 1 - i] = values[2 * i + 1];
         }
-        fft.fwd(spectrum.data(), reordered.data(), static_cast<Eigen::Index>(n));
+        cv::Mat to = row_of(spectrum);
+        cv::dft(row_of(reordered), to);
         // turn_k V_k = (C_k - i C_{n-k}) / 1, C_k = sum x cos(...): both halves from one product.
         const Real scale = std::sqrt(Real{2} / static_cast<Real>(n));
-        values[0] = spectrum[0].real() / std::sqrt(static_cast<Real>(n));
-        for (std::size_t k = 1; k <= n / 2; ++k) {
-            const std::complex<Real> c = turn[k] * spectrum[k];
+        values[0] = spectrum[0] / std::sqrt(static_cast<Real>(n));
+        for (std::size_t k = 1; k < n / 2; ++k) {
+            const std::complex<Real> c = turn[k] * std::complex<Real>(spectrum[2 * k - 1], spectrum[2 * k]);
             values[n - k] = -scale * c.imag();
             values[k] = scale * c.real();
         }
+        values[n / 2] = scale * turn[n / 2].real() * spectrum[n - 1];
     }
 
     void inverse(std::span<Real> values) {
         const std::size_t n = length();
         const Real scale = std::sqrt(static_cast<Real>(n) / Real{2});
         spectrum[0] = values[0] * std::sqrt(static_cast<Real>(n));
-        for (std::size_t k = 1; k <= n / 2; ++k) {
-            const std::complex<Real> c(scale * values[k], -scale * values[n - k]);
-            spectrum[k] = std::conj(turn[k]) * c;
+        for (std::size_t k = 1; k < n / 2; ++k) {
+            const std::complex<Real> c =
+                std::conj(turn[k]) * std::complex<Real>(scale * values[k], -scale * values[n - k]);
+            spectrum[2 * k - 1] = c.real();
+            spectrum[2 * k] = c.imag();
         }
-        spectrum[n / 2].imag(Real{0});
-        fft.inv(reordered.data(), spectrum.data(), static_cast<Eigen::Index>(n));
+        spectrum[n - 1] = std::sqrt(Real{2}) * scale * values[n / 2];
+        cv::Mat to = row_of(reordered);
+        cv::dft(row_of(spectrum), to, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT | cv::DFT_SCALE);
         for (std::size_t i = 0; i < n / 2; ++i) {
             values[2 * i] = reordered[i];
             values[2 * i + 1] = reordered[n - 1 - i];
         }
     }
 
-    Eigen::FFT<Real> fft;
+    static cv::Mat row_of(std::vector<Real>& numbers) {
+        return {1, static_cast<int>(numbers.size()), cv::DataType<Real>::type, numbers.data()};
+    }
+
     std::vector<Real> reordered;
-    std::vector<std::complex<Real>> spectrum;
+    std::vector<Real> spectrum;            // as OpenCV packs it: Re V_0, Re V_1, Im V_1, ... Re V_{n/2}
     std::vector<std::complex<Real>> turn;  // exp(-i pi k / 2n)
 };
 

@@ -28,7 +28,8 @@ public:
     CosineTransform& operator=(CosineTransform&&) noexcept;
 
     std::size_t length() const;
-    void forward(std::span<double> values);  // in place
+    // In place, to 1e-10 of the largest.
+    void forward(std::span<double> values);
     void inverse(std::span<double> values);
     // Faster, and as exact as such numbers are: 1e-6 of the largest.
     void inverse(std::span<float> values);

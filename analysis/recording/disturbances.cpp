@@ -230,22 +230,21 @@ bool is_pulse(const Signal& signal, std::span<const double> values, std::size_t 
 // -ln (P(X >= least) / p^least) of a binomial variable X. The power of p, which may be too small for a
 // double, is left to the caller.
 double binomial_tail_nats(double p, std::size_t count, std::size_t least) {
-    double ways = 1.0;  // to choose j of all
-    double sum = 0.0;   // over p^least
-    for (std::size_t j = 0; j <= count; ++j) {
-        const auto chosen = static_cast<double>(j);
-        const auto all = static_cast<double>(count);
-        if (j >= least) {
-            sum += ways * std::pow(p, chosen - static_cast<double>(least)) * std::pow(1.0 - p, all - chosen);
-        }
-        ways *= (all - chosen) / (chosen + 1.0);
+    // By Horner's rule in p, from X = count down.
+    double ways = 1.0;        // to choose so many of all
+    double others = 1.0;      // (1 - p)^(count - X)
+    double over_power = 0.0;  // of p^least
+    for (std::size_t chosen = count; chosen >= least; --chosen) {
+        over_power = over_power * p + ways * others;
+        ways *= static_cast<double>(chosen) / static_cast<double>(count - chosen + 1);
+        others *= 1.0 - p;
     }
-    return -std::log(sum);
+    return -std::log(over_power);
 }
 
 // That two of these, or more, are as large as they are, if they are independent: a sensor's own noise is loud
-// on one axis at a time.
-double surprisal_of_several(std::vector<double> nats) {
+// on one axis at a time. Puts them in order.
+double surprisal_of_several(std::span<double> nats) {
     std::ranges::sort(nats, std::greater{});
     double most = 0.0;
     for (std::size_t several = 2; several <= nats.size(); ++several) {
@@ -300,11 +299,11 @@ public:
             nats.push_back(tail->surprisals_nats(excess));
         }
         std::vector<double> at_once(left.size());
+        std::vector<double> each(nats.size());
         for (std::size_t i = 0; i < left.size(); ++i) {
-            std::vector<double> each(nats.size());
             std::ranges::transform(nats, each.begin(),
                                    [&](const std::vector<double>& of_signal) { return of_signal[i]; });
-            at_once[i] = surprisal_of_several(std::move(each));
+            at_once[i] = surprisal_of_several(each);
         }
         options.mean_least = 1.0;
         const auto tail = ExponentialTail::of(at_once, options);

@@ -1,8 +1,13 @@
 #include "analysis/recording/grid_step.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <set>
+#include <utility>
 
 namespace gyrolog {
 namespace {
@@ -12,13 +17,32 @@ constexpr std::size_t most_steps = 1U << 16U;
 // Of a step: how far printed decimals may put a value from its place on the grid.
 constexpr double grid_tolerance = 0.05;
 
+// Values on a grid come again and again: of most of them this tells sooner than a tree that they are known.
+class RecentValues {
+public:
+    RecentValues() { by_hash_.fill(std::numeric_limits<double>::quiet_NaN()); }
+
+    // Whether the value was among the last; it is from now on.
+    bool had(double value) {
+        constexpr std::uint64_t golden_ratio =
+            0x9E3779B97F4A7C15U;  // Knuth 1998, 6.4: multiplicative hashing
+        double& place = by_hash_[(std::bit_cast<std::uint64_t>(value) * golden_ratio) >> (64 - bits)];
+        return std::exchange(place, value) == value;
+    }
+
+private:
+    static constexpr unsigned bits = 10;
+    std::array<double, std::size_t{1} << bits> by_hash_{};
+};
+
 }  // namespace
 
 double grid_step(std::span<const double> values) {
     constexpr std::size_t least_values = 4;
     std::set<double> different;
+    RecentValues recent;
     for (const double value : values) {
-        if (std::isnan(value)) { continue; }
+        if (std::isnan(value) || recent.had(value)) { continue; }
         different.insert(value);
         // Values on a grid repeat: this many samples without are enough to know.
         if (different.size() > most_steps ||

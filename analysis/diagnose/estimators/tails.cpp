@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <numeric>
 
 #include "analysis/diagnose/decision_options.hpp"
@@ -27,10 +29,35 @@ namespace gyrolog {
 
 namespace {
 
-struct AxisTables {
-    WhiteShare share;
-    double nu = 0.0;                     // the prediction's
-    std::vector<LogDensityTable> table;  // the prediction's distribution, then one a node
+// Distributions of what is white on an axis, by the degrees of freedom of Student's t.
+class AxisTables {
+public:
+    AxisTables(const WhiteShare& share, double nu, std::vector<double> log_nu)
+        : share_(share), nu_(nu), own_(at(std::log(nu))), log_nu_(std::move(log_nu)) {}
+
+    const WhiteShare& share() const { return share_; }
+    double nu() const { return nu_; }                    // the prediction's
+    const LogDensityTable& own() const { return own_; }  // likewise
+
+    // One a node. Few axes have tails at all: made when the first asks.
+    const std::vector<LogDensityTable>& of_nodes() const {
+        std::call_once(made_, [&] {
+            for (const double node : log_nu_) { of_nodes_.push_back(at(node)); }
+        });
+        return of_nodes_;
+    }
+
+    LogDensityTable at(double log_nu) const {
+        return LogDensityTable(NormalMixture(std::exp(log_nu), share_.own_variance, share_.lattice));
+    }
+
+private:
+    WhiteShare share_;
+    double nu_ = 0.0;
+    LogDensityTable own_;
+    std::vector<double> log_nu_;  // by node
+    mutable std::once_flag made_;
+    mutable std::vector<LogDensityTable> of_nodes_;
 };
 
 // What one axis says: gain and scale by node.
@@ -88,26 +115,18 @@ private:
         for (const std::size_t other : prediction_->axes()) {
             if (other == axis) { break; }
             const AxisTables& made = *tables_[other];
-            if (made.nu == nu &&
-                std::fabs(made.share.own_variance - share.own_variance) < resolution::negligible_share &&
-                std::fabs(made.share.lattice - share.lattice) < resolution::negligible_share) {
+            if (made.nu() == nu &&
+                std::fabs(made.share().own_variance - share.own_variance) < resolution::negligible_share &&
+                std::fabs(made.share().lattice - share.lattice) < resolution::negligible_share) {
                 tables_[axis] = tables_[other];
                 return;
             }
         }
-        auto tables = std::make_shared<AxisTables>();
-        tables->share = share;
-        tables->nu = nu;
-        tables->table.emplace_back(NormalMixture(nu, share.own_variance, share.lattice));
+        std::vector<double> nodes;
         for (std::size_t node = 0; node < resolution::node_count; ++node) {
-            tables->table.push_back(table_at(*tables, log_nu(static_cast<double>(node))));
+            nodes.push_back(log_nu(static_cast<double>(node)));
         }
-        tables_[axis] = std::move(tables);
-    }
-
-    static LogDensityTable table_at(const AxisTables& tables, double log_nu) {
-        return LogDensityTable(
-            NormalMixture(std::exp(log_nu), tables.share.own_variance, tables.share.lattice));
+        tables_[axis] = std::make_shared<const AxisTables>(share, nu, std::move(nodes));
     }
 
     std::optional<Profile> profile_of(const Observation& observation, std::size_t axis) const {
@@ -118,15 +137,14 @@ private:
         profile.axis = axis;
         profile.histogram = whitened_histogram(blocks, observation, axis);
         const double chance = std::sqrt(24.0 / profile.histogram.samples);
-        if (std::isinf(tables.nu) &&
+        if (std::isinf(tables.nu()) &&
             profile.histogram.excess_kurtosis() < resolution::kurtosis_sigma * chance) {
             return std::nullopt;
         }
-        profile.plain =
-            fit_scale(profile.histogram, tables.table.front(), std::sqrt(profile.histogram.moment(2)));
+        profile.plain = fit_scale(profile.histogram, tables.own(), std::sqrt(profile.histogram.moment(2)));
         ScaledFit fit = profile.plain;
         for (std::size_t node = resolution::node_count; node-- > 0;) {
-            fit = fit_scale(profile.histogram, tables.table[node + 1], fit.scale);
+            fit = fit_scale(profile.histogram, tables.of_nodes()[node], fit.scale);
             profile.gain_nats.push_back(fit.log_likelihood_nats - profile.plain.log_likelihood_nats);
         }
         std::ranges::reverse(profile.gain_nats);
@@ -135,7 +153,7 @@ private:
 
     double gain_at(const Profile& profile, double log_nu) const {
         const ScaledFit fit =
-            fit_scale(profile.histogram, table_at(*tables_[profile.axis], log_nu), profile.plain.scale);
+            fit_scale(profile.histogram, tables_[profile.axis]->at(log_nu), profile.plain.scale);
         return fit.log_likelihood_nats - profile.plain.log_likelihood_nats;
     }
 
