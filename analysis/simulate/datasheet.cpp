@@ -47,7 +47,7 @@ private:
 
 double standard_uncertainty(double half_width) { return half_width / std::sqrt(3.0); }
 
-Drawn counted(Drawn first, std::size_t axis) {
+Drawn of_axis(Drawn first, std::size_t axis) {
     return static_cast<Drawn>(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(axis));
 }
 
@@ -65,7 +65,7 @@ void draw_gain(const Datasheet& sheet, const UnitDraw& draw, SensorModel& model)
     for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t from = 0; from < 3; ++from) {
             model.M[row][from] = row == from ? 1.0 + draw(Drawn::scale, row, scale)
-                                             : draw(counted(Drawn::from_x, from), row, cross_axis);
+                                             : draw(of_axis(Drawn::from_x, from), row, cross_axis);
         }
     }
     if (sheet.scale || sheet.cross_axis) {

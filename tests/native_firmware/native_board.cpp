@@ -47,7 +47,7 @@ NativeBoard::NativeBoard(const NativeBoardOptions& options)
     powered = this;
     processor_.add_surroundings(*this);
     set_spi_fast(false);
-    processor_.start(run);
+    processor_.start(::run);
 }
 
 NativeBoard::~NativeBoard() { powered = nullptr; }

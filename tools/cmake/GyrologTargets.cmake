@@ -48,6 +48,11 @@ include(GyrologHardening)
 if(GYROLOG_SANITIZE)
   target_compile_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all)
+  # Checks at every access, half the time to compile, of what AddressSanitizer finds as well: it stops at address 0, and
+  # at what lies outside of an object.
+  if(GYROLOG_SANITIZE MATCHES "address.*undefined")
+    target_compile_options(gyrolog_settings INTERFACE -fno-sanitize=null,object-size,pointer-overflow,vptr)
+  endif()
   target_link_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE})
   # -Wmaybe-uninitialized misfires on instrumented code.
   target_compile_options(gyrolog_settings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -114,7 +114,7 @@ Sections sections() {
     return sections;
 }
 
-Vector3 mean_of(const std::vector<std::array<double, 6>>& rows, std::size_t from, std::size_t count) {
+Vector3 mean_reading(const std::vector<std::array<double, 6>>& rows, std::size_t from, std::size_t count) {
     Vector3 mean{};
     for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -147,7 +147,7 @@ protected:
             // What was still before the turn: a third of a second.
             const std::size_t at_rest = is_turn ? 68 : rows.size();
             const Vector3 force =
-                product(correction, difference(mean_of(rows, 0, at_rest), accelerometer.bias_m_s2));
+                product(correction, difference(mean_reading(rows, 0, at_rest), accelerometer.bias_m_s2));
             const Vector3 up = scaled(force, 1.0 / norm(force));
             const double noise = norm(calibration.phases.scatter.rate_rad_s_sqrt_s) / std::sqrt(duration_s);
             const double along = is_turn ? 2.0 * std::numbers::pi / duration_s : 0.0;
@@ -155,7 +155,7 @@ protected:
             observations.means.push_back({is_turn ? ObservationKind::turn : ObservationKind::rest,
                                           scaled(up, along),
                                           force,
-                                          mean_of(rows, 3, rows.size()),
+                                          mean_reading(rows, 3, rows.size()),
                                           {turn_sd, turn_sd, turn_sd}});
         }
         return observations;
