@@ -8,17 +8,11 @@
 #include <vector>
 
 #include "analysis/diagnose/calibration/null_bias.hpp"
-#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/hypotheses.hpp"
 #include "analysis/diagnose/report.hpp"
+#include "analysis/diagnose/selection/cause_set.hpp"
 
 namespace gyrolog {
-
-struct FoundCause {
-    Finding finding;
-    // The rivals are the findings of all effects with the other causes in the model, this one not.
-    std::vector<Finding> rivals;
-};
 
 struct CauseSelection {
     std::vector<FoundCause> causes;        // by evidence
@@ -27,17 +21,6 @@ struct CauseSelection {
     SensorModel corrected;
     NullBias null_bias;  // was taken off the findings beside the main cause
     Hypotheses last;     // under the corrected model
-};
-
-struct SelectionOptions {
-    double evidence_min_nats = decisions.strong_nats;  // for a further cause
-    // A share of the main cause's evidence: two right formulas of one filter differ by so much.
-    double formulas_share = 5e-5;
-    // Of the frequency's resolution: what a line leaves nearer to itself than that is no other line.
-    double same_line_resolutions = 10.0;
-    std::uint64_t seed = 1;
-    unsigned threads = 0;
-    std::function<bool(double)> on_progress{};  // false ends the work
 };
 
 // The function selects greedily, by evidence. After each new cause all are fitted again, one by one, with the
