@@ -1,6 +1,7 @@
 #include "host/app/analysis_plot.hpp"
 
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -77,6 +78,16 @@ std::vector<std::string> facts_of(const AnalysisReport& report) {
     return facts;
 }
 
+// What was taken off the samples before their deviation was worked out; empty: nothing.
+std::string taken_off(const std::vector<AxisReport>& axes) {
+    std::string names;
+    for (const AxisReport& axis : axes) {
+        if (!axis.temperature || !axis.temperature->is_taken_off) { continue; }
+        names += (names.empty() ? "" : ", ") + axis.axis;
+    }
+    return names.empty() ? names : "without the drift with temperature of " + names;
+}
+
 // What of a report a figure shows.
 struct DrawnSensor {
     SensorKind sensor;
@@ -107,6 +118,7 @@ AllanFigure analysis_figure(const AnalysisReport& report, SensorKind sensor) {
     figure.slope_lines = deviation.is_allan;
     figure.source = report.name;
     figure.facts = facts_of(report);
+    if (const std::string off = taken_off(drawn.axes); !off.empty()) { figure.facts.push_back(off); }
     figure.unit = deviation_unit(drawn);
     for (const AxisReport& axis : drawn.axes) { figure.traces.push_back(trace_of(axis, deviation.is_allan)); }
     return figure;

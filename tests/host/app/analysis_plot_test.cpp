@@ -1,0 +1,34 @@
+#include "host/app/analysis_plot.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gyrolog {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+AnalysisReport report_on(const std::vector<std::string>& axes) {
+    AnalysisReport report;
+    report.rate_hz = 100.0;
+    for (const std::string& axis : axes) {
+        report.axes.emplace_back();
+        report.axes.back().axis = axis;
+        report.axes.back().temperature = TemperatureDrift{};
+    }
+    return report;
+}
+
+TEST(AnalysisFigure, SaysWhichAxesLackTheirDriftWithTemperature) {
+    AnalysisReport report = report_on({"x", "y", "z"});
+    EXPECT_THAT(analysis_figure(report, SensorKind::gyro).facts, Not(Contains(HasSubstr("temperature"))));
+    report.axes[0].temperature->is_taken_off = true;
+    report.axes[2].temperature->is_taken_off = true;
+    EXPECT_THAT(analysis_figure(report, SensorKind::gyro).facts,
+                Contains("without the drift with temperature of x, z"));
+}
+
+}  // namespace
+}  // namespace gyrolog
