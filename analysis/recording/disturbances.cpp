@@ -44,6 +44,12 @@ std::vector<Block> blocks_of(const Recording& recording, const DisturbanceOption
     return blocks;
 }
 
+// Of the recording, that one disturbance may last.
+double longest_share_of(const Recording& recording, const DisturbanceOptions& options) {
+    const double duration_s = static_cast<double>(recording.rows()) / recording.rate_hz;
+    return std::max(options.longest_share, std::min(options.longest_s / duration_s, options.together_share));
+}
+
 // The largest squares about the two means, the least of them first.
 void keep_largest(std::array<double, largest_left_out>& largest, double square) {
     if (square <= largest.front()) { return; }
@@ -107,9 +113,10 @@ double median_of(std::vector<double> values) {
 // four times the longest disturbance one is a quarter, which a median hardly feels. Between the middles of
 // two windows the larger level holds, so that the blocks beside a step of the noise are none. At the ends of
 // the recording the window is as wide, for a recording often begins with a touch.
-std::vector<double> levels_of(const std::vector<Power>& powers, const DisturbanceOptions& options) {
+std::vector<double> levels_of(const std::vector<Power>& powers, double longest_share,
+                              const DisturbanceOptions& options) {
     const std::size_t blocks = powers.size();
-    const auto longest = static_cast<std::size_t>(options.longest_share * static_cast<double>(blocks));
+    const auto longest = static_cast<std::size_t>(longest_share * static_cast<double>(blocks));
     const std::size_t half = std::max(2 * longest, options.blocks_least / 2);
     std::vector<double> of_windows;
     for (std::size_t middle = 0; middle < blocks + half; middle += half) {
@@ -205,7 +212,7 @@ double normal_mean_excess(double share) {
     return std::exp(-0.5 * quantile * quantile) / (share * std::sqrt(2.0 * std::numbers::pi)) - quantile;
 }
 
-Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks,
+Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double longest_share,
                  const DisturbanceOptions& options) {
     Signal signal;
     signal.loud_from = normal_upper_quantile(1.0 / static_cast<double>(blocks.size()));
@@ -213,7 +220,7 @@ Signal signal_of(std::span<const double> values, const std::vector<Block>& block
     for (const Block& block : blocks) {
         signal.powers.push_back(power_of(values.subspan(block.first, block.count), signal.least_power));
     }
-    signal.levels = levels_of(signal.powers, options);
+    signal.levels = levels_of(signal.powers, longest_share, options);
     signal.sd_log = sd_of_logs(signal, blocks.front().count);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         signal.excess.push_back((signal.powers[i].log - signal.levels[i]) / signal.sd_log);
@@ -420,14 +427,16 @@ std::vector<Disturbance> disturbances(const Recording& recording,
                                       const DisturbanceOptions& options) {
     const std::vector<Block> blocks = blocks_of(recording, options);
     if (signals.empty() || blocks.size() < options.blocks_least) { return {}; }
+    const double longest_share = longest_share_of(recording, options);
     std::vector<Signal> seen;
-    for (const std::vector<double>& signal : signals) { seen.push_back(signal_of(signal, blocks, options)); }
+    for (const std::vector<double>& signal : signals) {
+        seen.push_back(signal_of(signal, blocks, longest_share, options));
+    }
     std::vector<Disturbance> found =
         stretches(recording, blocks, seen, disturbed_blocks(seen, signals, blocks, options));
     const auto rows = static_cast<double>(recording.rows());
-    std::erase_if(found, [&](const Disturbance& one) {
-        return static_cast<double>(one.rows) > options.longest_share * rows;
-    });
+    std::erase_if(
+        found, [&](const Disturbance& one) { return static_cast<double>(one.rows) > longest_share * rows; });
     double together = 0.0;
     for (const Disturbance& one : found) { together += static_cast<double>(one.rows); }
     return together > options.together_share * rows ? std::vector<Disturbance>{} : found;

@@ -34,6 +34,9 @@ struct DisturbanceOptions {
     // noise changes.
     double longest_share = 0.05;
     double together_share = 0.1;
+    // A bump that rings out as slowly as is plausible (decay 2 s) is down to a twelfth. In a short recording
+    // one may last so long if all together may.
+    double longest_s = 5.0;
 };
 
 struct Disturbance {

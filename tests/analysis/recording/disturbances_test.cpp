@@ -85,6 +85,23 @@ TEST(Disturbances, AreFoundWhereAShortRecordingBegins) {
     EXPECT_LE(found[0].to_s, 2.0);
 }
 
+// A hand that lets go of a sensor takes its time, however short the recording is.
+TEST(Disturbances, MayLastSecondsOfAShortRecording) {
+    constexpr std::size_t short_rows = 3500;
+    constexpr std::size_t touched_rows = 220;  // more than a twentieth
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        Signals signals = white(seed, short_rows);
+        for (std::vector<double>& signal : signals) {
+            for (std::size_t i = 0; i < touched_rows; ++i) { signal[i] *= 6.0; }
+        }
+        const std::vector<Disturbance> found = disturbances(grid_of(short_rows), signals);
+        ASSERT_EQ(found.size(), 1U) << seed;
+        EXPECT_EQ(found[0].first, 0U) << seed;
+        EXPECT_GE(found[0].rows, touched_rows) << seed;
+        EXPECT_LE(found[0].rows, short_rows / 10) << seed;
+    }
+}
+
 // Noise that swells to twice its size and back on all axes, as it does with the temperature, hides none.
 TEST(Disturbances, AreFoundInNoiseWhoseLevelChanges) {
     Signals signals = white(8);
