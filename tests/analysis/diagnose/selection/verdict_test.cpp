@@ -25,7 +25,15 @@ TEST(Verdict, IsNotChangedByADoubtedCauseThatHardlyMatters) {
     const std::vector<Cause> little = {cause(0.9, 0.9), cause(0.0, 0.01)};
     EXPECT_EQ(verdict_of(little, false, 0.97), Verdict::known);
     const std::vector<Cause> much = {cause(0.9, 0.6), cause(0.1, 0.3)};
-    EXPECT_EQ(verdict_of(much, false, 0.97), Verdict::partly);
+    EXPECT_EQ(verdict_of(much, true, 0.85), Verdict::partly);
+}
+
+// In part means that more than a tenth is left.
+TEST(Verdict, IsNeverInPartWhereNextToNothingIsLeft) {
+    const std::vector<Cause> doubted = {cause(0.9, 0.6), cause(0.1, 0.3)};
+    EXPECT_EQ(verdict_of(doubted, false, 0.97), Verdict::known);
+    const std::vector<Cause> guesses = {cause(0.9, 0.05), cause(0.1, 0.9)};
+    EXPECT_EQ(verdict_of(guesses, false, 0.97), Verdict::unexplained);
 }
 
 TEST(Verdict, IsUnexplainedWhereNoLikelyCauseClosesATenth) {
