@@ -48,10 +48,8 @@ include(GyrologHardening)
 if(GYROLOG_SANITIZE)
   target_compile_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all)
-  # Checks at every access, half the time to compile, of what AddressSanitizer finds as well: it stops at address 0, and
-  # at what lies outside of an object.
-  if(GYROLOG_SANITIZE MATCHES "address.*undefined")
-    target_compile_options(gyrolog_settings INTERFACE -fno-sanitize=null,object-size,pointer-overflow,vptr)
+  if(GYROLOG_NO_SANITIZE)
+    target_compile_options(gyrolog_settings INTERFACE -fno-sanitize=${GYROLOG_NO_SANITIZE})
   endif()
   target_link_options(gyrolog_settings INTERFACE -fsanitize=${GYROLOG_SANITIZE})
   # -Wmaybe-uninitialized misfires on instrumented code.
