@@ -34,8 +34,8 @@ struct DisturbanceOptions {
     // noise changes.
     double longest_share = 0.05;
     double together_share = 0.1;
-    // A bump that rings out as slowly as is plausible (decay 2 s) is down to a twelfth. In a short recording
-    // one may last so long if all together may.
+    // A disturbance may last this long where that is more than longest_share, up to together_share: the
+    // slowest plausible bump (decay 2 s) has fallen to a twelfth by then.
     double longest_s = 5.0;
 };
 

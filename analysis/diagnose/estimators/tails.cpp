@@ -143,8 +143,9 @@ private:
         }
         profile.plain = fit_scale(profile.histogram, tables.own(), std::sqrt(profile.histogram.moment(2)));
         ScaledFit fit = profile.plain;
+        const std::vector<LogDensityTable>& of_nodes = tables.of_nodes();
         for (std::size_t node = resolution::node_count; node-- > 0;) {
-            fit = fit_scale(profile.histogram, tables.of_nodes()[node], fit.scale);
+            fit = fit_scale(profile.histogram, of_nodes[node], fit.scale);
             profile.gain_nats.push_back(fit.log_likelihood_nats - profile.plain.log_likelihood_nats);
         }
         std::ranges::reverse(profile.gain_nats);

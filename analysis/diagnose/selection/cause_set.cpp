@@ -22,11 +22,12 @@ namespace gyrolog {
 
 namespace {
 
-// As a cause of its own at this place; one of the same effect has the axes beside its own. Whether it
-// can.
+const std::string& effect_name(const FoundCause& cause) { return cause.finding.effect; }
+
+// The finding becomes a cause of its own at this place; where its effect is a cause already, that one gains
+// the axes. False where it cannot.
 bool take_into(std::vector<FoundCause>& causes, const Finding& finding, std::size_t place) {
-    const auto same = std::ranges::find(causes, finding.effect,
-                                        [](const FoundCause& found) { return found.finding.effect; });
+    const auto same = std::ranges::find(causes, finding.effect, effect_name);
     if (same == causes.end()) {
         causes.insert(causes.begin() + static_cast<std::ptrdiff_t>(place), {finding, {}});
         return true;
@@ -139,7 +140,7 @@ std::vector<Finding> CauseSet::all_further(const std::vector<std::optional<Findi
     return best_first(std::move(best));
 }
 
-std::vector<Finding> CauseSet::best_first(std::map<EvidenceMethod, Finding> best) const {
+std::vector<Finding> CauseSet::best_first(std::map<EvidenceMethod, Finding> best) {
     std::vector<Finding> found;
     found.reserve(best.size());
     for (auto& [method, finding] : best) { found.push_back(std::move(finding)); }
@@ -283,8 +284,7 @@ bool CauseSet::is_same_line(const Finding& a, const Finding& b) const {
 bool CauseSet::is_rival(const Finding& finding, const Finding& cause) const {
     if (is_new(finding)) { return true; }
     if (traits_of(finding.effect).recurs || is_told_by_twin(finding)) { return false; }
-    const auto same = std::ranges::find(causes, finding.effect,
-                                        [](const FoundCause& found) { return found.finding.effect; });
+    const auto same = std::ranges::find(causes, finding.effect, effect_name);
     return same != causes.end() && std::ranges::none_of(cause.where.axes, [&](std::size_t axis) {
                return std::ranges::count(same->finding.where.axes, axis) != 0;
            });

@@ -71,7 +71,7 @@ public:
     // Of those, the best of each estimator, the best first.
     std::vector<Finding> all_further(const std::vector<std::optional<Finding>>& found) const;
     // The best of these, the best first: as many as are tried.
-    std::vector<Finding> best_first(std::map<EvidenceMethod, Finding> best) const;
+    static std::vector<Finding> best_first(std::map<EvidenceMethod, Finding> best);
     // Whether no cause tells what the finding does.
     bool is_new(const Finding& finding) const;
     // Whether a cause is another part of the same spectrum: a second one is not yet what its name says.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <string_view>
 #include <utility>
 
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
@@ -125,7 +124,7 @@ private:
             if (CauseSet::is_of_codes(finding)) { return {finding}; }
             best.try_emplace(traits_of(finding.effect, *first_.prediction).method, finding);
         }
-        return set_.best_first(std::move(best));
+        return CauseSet::best_first(std::move(best));
     }
 
     // One beside which others may only seem to be.

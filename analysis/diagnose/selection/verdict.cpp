@@ -28,7 +28,7 @@ Verdict verdict_of(std::span<const Cause> causes, bool leaves_nothing, double sh
         if (!is_named(cause)) { doubted_share += std::max(cause.share.value, 0.0); }
     }
     const bool is_closed = shrink > 1.0 - definition::small_share;
-    // More is then no part of the gap. How sure a cause is, its own probability says.
+    // `partly` would claim that more is left. A cause's own probability tells how sure it is.
     if (is_closed && std::ranges::any_of(causes, explains)) { return Verdict::known; }
     if ((is_closed || leaves_nothing) && std::ranges::any_of(causes, is_named) &&
         doubted_share < definition::small_share) {
