@@ -3,12 +3,16 @@
 
 Headers take most of the time of compilers and checkers; sources that share them are quicker together.
 
-usage: tools/source_groups.py --lines N DIRECTORY SOURCE...     groups of N lines at most; writes the texts there; prints what to compile, ;-separated
+usage: tools/source_groups.py DIRECTORY
+
+DIRECTORY/targets.txt has a line for each target, with tabs between its name, the most lines of a group, and its sources
+as whole paths.
+Writes the texts below DIRECTORY/NAME, and prints likewise for each target its name and what to compile.
 """
-import argparse
 import os
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -25,6 +29,7 @@ TESTS = re.compile(r"^TEST\w*\((\w+, \w+)\)", re.MULTILINE)
 CLASS = re.compile(r"(?<![\w:])[A-Z]\w*")  # in this project's spelling
 DEFINED_TYPES = re.compile(r"^(?:struct|class|union|enum(?: class)?) (\w+)[^;\n]*\{", re.MULTILINE)
 LOCAL = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
+FOR_OTHERS = re.compile(r"^(?:extern )?const [\w:<>,&*\[\] ]*[ &*](\w+)(?: = |[{\[])", re.MULTILINE)
 ONCE_A_PROGRAM = ("int main(", "LLVMFuzzerTestOneInput(")
 
 
@@ -102,6 +107,7 @@ class Joined:
         self.aliases = dict(ALIASES.findall(local))
         self.values = names(TYPES_AND_VALUES, local)
         self.own = set(TESTS.findall(local)) | {once for once in ONCE_A_PROGRAM if once in text}
+        self.own |= names(FOR_OTHERS, LOCAL.sub("", text))  # two that define one are of two programs
         self.functions = {}  # with the classes of their parameters
         for name, parameters in FUNCTIONS.findall(local):
             self.functions.setdefault(name, set()).add(classes_of(parameters))
@@ -134,9 +140,9 @@ class Joined:
         self.types.update(other.types)
 
 
-def groups_of(sources, lines_most):
+def groups_of(sources, lines_most, tree=None):
     """Groups of C++ sources in which no local name is there twice or declared by a header that one of them includes."""
-    tree = Tree(ROOT)
+    tree = tree or Tree(ROOT)
     groups = []
     for source in sources:
         one = Joined(tree, source)
@@ -157,18 +163,22 @@ def write_group(directory, group):
     return joined
 
 
+def what_to_compile(directory, tree, sources, lines_most):
+    directory.mkdir(parents=True, exist_ok=True)
+    groups = groups_of([source for source in sources if source.suffix == ".cpp"], lines_most, tree)
+    compiled = [write_group(directory, group) if len(group) > 1 else ROOT / group[0] for group in groups]
+    return compiled + [ROOT / source for source in sources if source.suffix != ".cpp"]
+
+
 def main():
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("--lines", type=int, required=True)
-    arguments.add_argument("directory", type=Path)
-    arguments.add_argument("sources", nargs="*")
-    wanted = arguments.parse_args()
-    wanted.directory.mkdir(parents=True, exist_ok=True)
-    sources = [Path(name).relative_to(ROOT) for name in wanted.sources]
-    groups = groups_of([source for source in sources if source.suffix == ".cpp"], wanted.lines)
-    compiled = [write_group(wanted.directory, group) if len(group) > 1 else ROOT / group[0] for group in groups]
-    compiled += [ROOT / source for source in sources if source.suffix != ".cpp"]
-    print(";".join(str(file) for file in compiled), end="")
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    directory = Path(sys.argv[1])
+    tree = Tree(ROOT)
+    for target in (directory / "targets.txt").read_text().splitlines():
+        name, lines, *sources = target.split("\t")
+        sources = [Path(source).relative_to(ROOT) for source in sources]
+        print(name, *what_to_compile(directory / name, tree, sources, int(lines)), sep="\t")
 
 
 if __name__ == "__main__":

@@ -55,22 +55,61 @@ if(GYROLOG_SANITIZE)
   # -Wmaybe-uninitialized misfires on instrumented code.
   target_compile_options(gyrolog_settings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
-if(GYROLOG_JOIN_SOURCES)
+# Once for all folders: each search starts it.
+if(GYROLOG_TESTS OR GYROLOG_BENCHMARKS OR GYROLOG_FUZZ OR GYROLOG_JOIN_SOURCES)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
+endif()
+if(GYROLOG_JOIN_SOURCES)
   # One source's local name is another's variable.
   target_compile_options(gyrolog_settings INTERFACE -Wno-shadow)
 endif()
 
-# gyrolog_join(VARIABLE NAME LINES SOURCES...): the sources, or with GYROLOG_JOIN_SOURCES fewer that include several of
-# them, LINES at most, which compile in half the time. For builds that are made once.
-function(gyrolog_join variable name lines)
-  set(joined ${ARGN})
-  if(GYROLOG_JOIN_SOURCES)
-    list(TRANSFORM joined REPLACE "^([^/].*)$" "${CMAKE_CURRENT_SOURCE_DIR}/\\1")
-    execute_process(COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/source_groups.py
-      --lines ${lines} ${CMAKE_BINARY_DIR}/joined/${name} ${joined} OUTPUT_VARIABLE joined COMMAND_ERROR_IS_FATAL ANY)
+# gyrolog_sources(NAME LINES [SEVERAL_PRECOMPILE <header>...] [REUSE target] SOURCES ...): the sources of a target. With
+# GYROLOG_JOIN_SOURCES the end of the configuration (gyrolog_join_sources) makes of them fewer that include several each,
+# LINES at most, which compile in half the time: for builds that are made once. Headers to precompile are those of REUSE,
+# or its own where more than one source is left.
+function(gyrolog_sources name lines)
+  cmake_parse_arguments(arg "" "REUSE" "SEVERAL_PRECOMPILE;SOURCES" ${ARGN})
+  set(sources ${arg_SOURCES})
+  list(TRANSFORM sources REPLACE "^([^/].*)$" "${CMAKE_CURRENT_SOURCE_DIR}/\\1")
+  set_target_properties(${name} PROPERTIES GYROLOG_PRECOMPILE "${arg_SEVERAL_PRECOMPILE}" GYROLOG_REUSE "${arg_REUSE}")
+  list(LENGTH sources count)
+  if(GYROLOG_JOIN_SOURCES AND count GREATER 1)
+    list(JOIN sources "\t" words)
+    set_property(GLOBAL APPEND PROPERTY GYROLOG_TO_JOIN "${name}\t${lines}\t${words}")
+  else()
+    gyrolog_set_sources(${name} ${sources})
   endif()
-  set(${variable} "${joined}" PARENT_SCOPE)
+endfunction()
+
+function(gyrolog_set_sources name)
+  target_sources(${name} PRIVATE ${ARGN})
+  get_target_property(precompile ${name} GYROLOG_PRECOMPILE)
+  get_target_property(reuse ${name} GYROLOG_REUSE)
+  list(LENGTH ARGN units)
+  if(precompile AND units GREATER 1)
+    target_precompile_headers(${name} PRIVATE ${precompile})
+  elseif(reuse AND NOT ARGN MATCHES "\\.c(;|$)")
+    target_precompile_headers(${name} REUSE_FROM ${reuse})
+  endif()
+endfunction()
+
+# One start of Python for all targets: a hundred take a minute.
+function(gyrolog_join_sources)
+  get_property(targets GLOBAL PROPERTY GYROLOG_TO_JOIN)
+  if(NOT targets)
+    return()
+  endif()
+  set(joined ${CMAKE_BINARY_DIR}/joined)
+  list(JOIN targets "\n" lines)
+  file(WRITE ${joined}/targets.txt "${lines}\n")
+  execute_process(COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_SOURCE_DIR}/tools/source_groups.py ${joined}
+    OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY OUTPUT_STRIP_TRAILING_WHITESPACE)
+  string(REPLACE "\n" ";" lines "${lines}")
+  foreach(line IN LISTS lines)
+    string(REPLACE "\t" ";" line "${line}")
+    gyrolog_set_sources(${line})
+  endforeach()
 endfunction()
 
 # gyrolog_precompile_standard_headers(TARGET option...): the parts of the standard library that most sources include,
@@ -101,8 +140,7 @@ gyrolog_precompile_standard_headers(${GYROLOG_STANDARD_HEADERS}_brief ${GYROLOG_
 # functions with a target attribute with -O2, too.
 function(gyrolog_library name)
   cmake_parse_arguments(arg "RUNS_BRIEFLY" "FASTER_IN" "SOURCES;LINK;PRECOMPILE" ${ARGN})
-  gyrolog_join(sources ${name} ${GYROLOG_JOINED_LINES} ${arg_SOURCES})
-  add_library(${name} STATIC ${sources})
+  add_library(${name} STATIC)
   target_link_libraries(${name} PUBLIC ${arg_LINK} PRIVATE gyrolog_settings)
   target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
   set(precompiled ${GYROLOG_STANDARD_HEADERS})
@@ -113,12 +151,8 @@ function(gyrolog_library name)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)
     set(precompiled "")
   endif()
-  list(LENGTH sources units)
-  if(arg_PRECOMPILE AND units GREATER 1)
-    target_precompile_headers(${name} PRIVATE ${arg_PRECOMPILE})
-  elseif(precompiled AND NOT arg_SOURCES MATCHES "\\.c(;|$)")
-    target_precompile_headers(${name} REUSE_FROM ${precompiled})
-  endif()
+  gyrolog_sources(${name} ${GYROLOG_JOINED_LINES} SEVERAL_PRECOMPILE ${arg_PRECOMPILE} REUSE "${precompiled}"
+    SOURCES ${arg_SOURCES})
 endfunction()
 
 # Every test includes GoogleTest, most of them the same parts of the standard library: read once for all of them.
@@ -144,14 +178,14 @@ function(gyrolog_test name)
   endif()
   find_package(GTest REQUIRED)
   set(test_lines_joined 2000) # of tests, more have names in common
-  gyrolog_join(sources ${name} ${test_lines_joined} ${arg_SOURCES})
-  add_executable(${name} ${sources})
+  add_executable(${name})
   target_link_libraries(${name} PRIVATE gyrolog_settings ${arg_LINK} GTest::gmock GTest::gtest_main)
+  set(precompiled gyrolog_test_headers)
   if(arg_COMPUTES)
     target_compile_options(${name} PRIVATE -O2)
-  else()
-    target_precompile_headers(${name} REUSE_FROM gyrolog_test_headers)
+    set(precompiled "")
   endif()
+  gyrolog_sources(${name} ${test_lines_joined} REUSE "${precompiled}" SOURCES ${arg_SOURCES})
   add_test(NAME ${name} COMMAND ${name})
   if(NOT arg_LABELS)
     set(arg_LABELS default)
