@@ -12,6 +12,7 @@
 #include "host/formats/noise_text.hpp"
 #include "host/formats/stops_text.hpp"
 #include "host/formats/uncertain_number.hpp"
+#include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -32,15 +33,16 @@ std::vector<TextRow> line_rows(const SensorTable& sensor) {
     }
     std::vector<TextRow> rows;
     for (std::size_t i = 0; i < std::min(most, shown); ++i) {
-        TextRow row{i == 0 ? "spectral lines" : "", sensor.unit.name, {}};
+        TextRow amplitude{i == 0 ? "spectral lines" : "", sensor.unit.name, {}};
+        TextRow frequency{"   at", "Hz", {}};
         for (const AxisReport& axis : sensor.axes) {
-            row.cells.push_back(axis.fit.sinusoids.empty() && i < axis.lines.size()
-                                    ? fmt::format("{:.3g} at {:.5g} Hz",
-                                                  axis.lines[i].amplitude * sensor.unit.per_column_unit,
-                                                  axis.lines[i].f_hz)
-                                    : "-");
+            const bool has = axis.fit.sinusoids.empty() && i < axis.lines.size();
+            amplitude.cells.push_back(
+                has ? fmt::format("{:.3g}", axis.lines[i].amplitude * sensor.unit.per_column_unit) : "-");
+            frequency.cells.push_back(has ? fmt::format("{:.5g}", axis.lines[i].f_hz) : "-");
         }
-        rows.push_back(std::move(row));
+        rows.push_back(std::move(amplitude));
+        rows.push_back(std::move(frequency));
     }
     return rows;
 }
@@ -51,8 +53,8 @@ TextRow mean_row(const SensorTable& sensor) {
     const SensorUnit unit = is_gyro || sensor.unit.is_counts() ? sensor.unit : SensorUnit::g();
     TextRow row{is_gyro ? "bias" : "mean, with gravity", unit.name, {}};
     for (const AxisReport& axis : sensor.axes) {
-        row.cells.push_back(with_uncertainty(axis.bias.value * unit.per_column_unit,
-                                             axis.bias.expanded_uncertainty * unit.per_column_unit));
+        row.cells.push_back(in_short_form(axis.bias.value * unit.per_column_unit,
+                                          axis.bias.expanded_uncertainty * unit.per_column_unit));
     }
     return row;
 }
@@ -71,23 +73,23 @@ std::vector<TextRow> temperature_rows(const SensorTable& sensor, double confiden
         const double value = drift.slope_per_C * sensor.unit.per_column_unit;
         const double sd = drift.sd_per_C * sensor.unit.per_column_unit;
         const double upper = std::abs(value) + normal_quantile(0.5 + confidence / 2.0) * sd;
-        row.cells.push_back(drift.is_there ? with_uncertainty(value, sd) : "< " + in_digits(upper, 2));
+        row.cells.push_back(drift.is_there ? in_short_form(value, sd) : "< " + in_digits(upper, 2));
     }
     return any ? std::vector{row} : std::vector<TextRow>{};
 }
 
-TextRow lowest_row(const SensorTable& sensor) {
-    TextRow lowest{"lowest deviation", sensor.unit.name, {}};
+std::vector<TextRow> lowest_rows(const SensorTable& sensor) {
+    TextRow deviation{"lowest deviation", sensor.unit.name, {}};
+    TextRow tau{"   at tau", "s", {}};
     for (const AxisReport& axis : sensor.axes) {
         const auto& points = axis.curve.points;
         const auto least = std::ranges::min_element(points, {}, &AllanPoint::deviation);
-        lowest.cells.push_back(least == points.end()
-                                   ? "-"
-                                   : fmt::format("{:.3g} at {:.3g} s",
-                                                 least->deviation * sensor.unit.per_column_unit,
-                                                 least->tau_s));
+        const bool has = least != points.end();
+        deviation.cells.push_back(has ? fmt::format("{:.3g}", least->deviation * sensor.unit.per_column_unit)
+                                      : "-");
+        tau.cells.push_back(has ? in_digits(least->tau_s, 3) : "-");
     }
-    return lowest;
+    return {deviation, tau};
 }
 
 std::vector<TextRow> rows_of(const SensorTable& sensor, std::span<const FitOfColumn> fits,
@@ -95,7 +97,7 @@ std::vector<TextRow> rows_of(const SensorTable& sensor, std::span<const FitOfCol
     std::vector<TextRow> rows = {mean_row(sensor)};
     for (TextRow& row : temperature_rows(sensor, confidence)) { rows.push_back(std::move(row)); }
     for (TextRow& row : noise_rows(fits, sensor.unit)) { rows.push_back(std::move(row)); }
-    rows.push_back(lowest_row(sensor));
+    for (TextRow& row : lowest_rows(sensor)) { rows.push_back(std::move(row)); }
     for (TextRow& row : line_rows(sensor)) { rows.push_back(std::move(row)); }
     return rows;
 }
@@ -134,17 +136,16 @@ std::string head_of(const AnalysisReport& report) {
         text += "no dropouts\n";
     }
     if (report.stops > 0) { text += stops_text(report.stops, report.stopped_s) + "\n"; }
-    for (const std::string& warning : report.warnings) { text += fmt::format("warning: {}\n", warning); }
+    for (const std::string& warning : report.warnings) { text += wrapped_text("warning: ", warning); }
     return text;
 }
 
 // What the signs in a table mean.
 std::string signs_text(const AnalysisReport& report, const char* expanded) {
     return fmt::format(
-        "  ± one standard deviation ({}: expanded, 95.45 %); \"<\": not identifiable in this record, "
-        "upper "
-        "limit\n"
-        "  at {:.3g} %; \"± at best\": Cramer-Rao bound, below which no unbiased method gets\n",
+        "  In brackets: one standard deviation in the last two digits ({}: expanded,\n"
+        "  95.45 %). \"<\": not identifiable in this record, upper limit at {:.3g} %.\n"
+        "  (at best): the Cramer-Rao bound, below which no unbiased method gets.\n",
         expanded, report.confidence * 100.0);
 }
 
@@ -174,9 +175,8 @@ std::string analysis_text(const AnalysisReport& report) {
         const AccelerometerReport& of = *report.accelerometer;
         const std::string signs =
             gravity_text(of) + (report.axes.empty() ? signs_text(report, "mean, gravity, tilt") : "") +
-            "  mean, gravity and tilt: ± expanded, 95.45 %, as far as this record's noise goes; the axes' "
-            "own biases\n"
-            "  and scale factors are in them\n";
+            "  Mean, gravity and tilt: expanded, 95.45 %, as far as this record's noise goes;\n"
+            "  the axes' own biases and scale factors are in them.\n";
         text +=
             "\naccelerometer\n" + tables_of({of.axes, of.unit.is_counts() ? of.unit : SensorUnit::micro_g()},
                                             report.confidence, signs);

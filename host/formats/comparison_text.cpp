@@ -8,6 +8,7 @@
 
 #include "host/formats/text_table.hpp"
 #include "host/formats/uncertain_number.hpp"
+#include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -53,18 +54,33 @@ std::string ranges_text(const Comparison& comparison, const ComparedCurve& curve
     return text;
 }
 
-std::string curve_text(const Comparison& comparison, const char* name, const ComparedCurve& curve,
-                       PlaceText place) {
-    if (curve.at.empty()) { return fmt::format("  {}: no values above zero to compare\n", name); }
-    std::string text = fmt::format("  {}: {} of {} points outside, {:.1f} by chance", name,
-                                   curve.points_outside(), curve.at.size(), curve.points_by_chance);
+TextRow count_row(const Comparison& comparison, const char* name, const ComparedCurve& curve) {
+    if (curve.at.empty()) { return {name, "", {"no values above zero", "", ""}}; }
+    TextRow row{name,
+                "",
+                {fmt::format("{} of {}", curve.points_outside(), curve.at.size()),
+                 fmt::format("{:.1f}", curve.points_by_chance), ""}};
     if (curve.simulations_outside_as_often && curve.points_outside() > 0) {
-        text += fmt::format("; {} of {} simulations have as many against the others",
-                            *curve.simulations_outside_as_often, comparison.simulations);
+        row.cells.back() =
+            fmt::format("{} of {}", *curve.simulations_outside_as_often, comparison.simulations);
     }
-    text += '\n';
-    // Where chance does as much, places are noise: the last lines say that nothing differs.
-    return curve.gap.stands_out ? text + ranges_text(comparison, curve, place) : text;
+    return row;
+}
+
+// How many points are outside, and where; where chance does as much, places are noise and not listed.
+std::string curves_text(const Comparison& comparison, const AxisComparison& axis) {
+    const std::array<std::string, 3> heads{"points outside", "by chance",
+                                           comparison.simulations > 0 ? "simulations with as many" : ""};
+    const std::array rows{count_row(comparison, "Allan deviation", axis.allan),
+                          count_row(comparison, "spectrum", axis.spectrum)};
+    std::string text = text_table(heads, rows);
+    if (axis.allan.gap.stands_out) {
+        text += "  Allan deviation\n" + ranges_text(comparison, axis.allan, &duration_text);
+    }
+    if (axis.spectrum.gap.stands_out) {
+        text += "  spectrum\n" + ranges_text(comparison, axis.spectrum, &frequency_text);
+    }
+    return text;
 }
 
 TextRow number_row(const char* label, const char* unit, const ComparedNumber& number, double per_unit) {
@@ -73,7 +89,7 @@ TextRow number_row(const char* label, const char* unit, const ComparedNumber& nu
         unit,
         {fmt::format("{:.4g}", number.recording * per_unit), fmt::format("{:.4g}", number.other * per_unit)}};
     if (number.lo) {
-        row.cells.push_back(fmt::format("{:.4g} to {:.4g}", *number.lo * per_unit, *number.hi * per_unit));
+        row.cells.push_back(fmt::format("{:.3g} to {:.3g}", *number.lo * per_unit, *number.hi * per_unit));
         const char* where = number.outside() ? "outside" : "";
         row.cells.emplace_back(number.stands_out ? "stands out" : where);
     }
@@ -87,10 +103,10 @@ std::string distribution_text(const Comparison& comparison, const AxisComparison
     } else {
         heads.emplace_back("other");
     }
-    const std::array rows{number_row("  standard deviation", comparison.unit.name.c_str(),
-                                     axis.standard_deviation, comparison.unit.per_column_unit),
-                          number_row("  skewness", "", axis.skewness, 1.0),
-                          number_row("  excess kurtosis", "", axis.excess_kurtosis, 1.0)};
+    const std::array rows{number_row("std. deviation", comparison.unit.name.c_str(), axis.standard_deviation,
+                                     comparison.unit.per_column_unit),
+                          number_row("skewness", "", axis.skewness, 1.0),
+                          number_row("excess kurtosis", "", axis.excess_kurtosis, 1.0)};
     return text_table(heads, rows);
 }
 
@@ -107,29 +123,33 @@ std::string worst_number_text(const SensorUnit& unit, const AxisComparison& axis
                        fmt::arg("unit", is_rate ? " " + unit.name : std::string()));
 }
 
-std::string heading_text(const Comparison& comparison) {
+std::string other_text(const Comparison& comparison) {
+    if (comparison.simulations == 0) { return comparison.other_name; }
+    return fmt::format("{} simulations of {} (seed {})", comparison.simulations, comparison.other_name,
+                       comparison.seed);
+}
+
+// What the numbers below it mean.
+std::string explanation_text(const Comparison& comparison) {
     std::string text;
     if (comparison.simulations > 0) {
         const std::size_t rank = band_rank(comparison.simulations);
-        text = fmt::format("{} against {} simulations of {} (seed {})\n", comparison.recording_name,
-                           comparison.simulations, comparison.other_name, comparison.seed);
-        text += fmt::format(
-            "band: from the {} to the {} of the simulations at each point; one more simulation lies\n"
-            "within it with probability {:.2f} % at each point. Neighbouring points vary together.\n",
+        text = fmt::format(
+            "band: from the {} to the {} of the simulations at each point; one more simulation lies "
+            "within it with probability {:.2f} % at each point. Neighbouring points vary together.",
             rank == 1 ? "smallest" : fmt::format("{}. smallest", rank),
             rank == 1 ? "largest" : fmt::format("{}. largest", rank), comparison.band_probability * 100.0);
     } else {
-        text = fmt::format("{} against {}\n", comparison.recording_name, comparison.other_name);
-        text += "outside: the 68.3 % intervals of the two do not meet\n";
+        text = "outside: the 68.3 % intervals of the two do not meet";
     }
+    text = wrapped_text("", text);
     if (comparison.unit.sensor == SensorKind::accelerometer) { text += "of the accelerometer\n"; }
     if (comparison.less_reference) { text += "curves are of the gyro less the reference rate\n"; }
     return text;
 }
 
-}  // namespace
-
-std::string outcome_sentence(const Comparison& comparison, const AxisComparison& axis) {
+// The sentence without the axis before it.
+std::string outcome(const Comparison& comparison, const AxisComparison& axis) {
     std::string curve;
     if (const ComparedCurve* worst = axis.worst()) {
         const PlaceText place = worst == &axis.allan ? &duration_text : &frequency_text;
@@ -144,27 +164,32 @@ std::string outcome_sentence(const Comparison& comparison, const AxisComparison&
         number = worst_number_text(comparison.unit, axis, *worst);
     }
     if (!curve.empty() || !number.empty()) {
-        return fmt::format("{}: {}{}{}", axis.axis, curve, curve.empty() || number.empty() ? "" : "; ",
-                           number);
+        return fmt::format("{}{}{}", curve, curve.empty() || number.empty() ? "" : "; ", number);
     }
-    if (axis.allan.at.empty()) { return axis.axis + ": there is no noise to compare"; }
-    return axis.axis + (comparison.simulations > 0
-                            ? ": the recording differs no more than simulations do among themselves"
-                            : ": the recordings differ no more than their uncertainty allows");
+    if (axis.allan.at.empty()) { return "there is no noise to compare"; }
+    return (comparison.simulations > 0 ? "the recording differs no more than simulations do among themselves"
+                                       : "the recordings differ no more than their uncertainty allows");
+}
+
+}  // namespace
+
+std::string outcome_sentence(const Comparison& comparison, const AxisComparison& axis) {
+    return axis.axis + ": " + outcome(comparison, axis);
 }
 
 std::string comparison_text(const Comparison& comparison) {
-    std::string text = heading_text(comparison);
-    for (const std::string& note : comparison.notes) { text += fmt::format("model: {}\n", note); }
-    for (const std::string& warning : comparison.warnings) { text += fmt::format("warning: {}\n", warning); }
-    for (const AxisComparison& axis : comparison.axes) {
-        text += fmt::format("\n{}\n", axis.axis);
-        text += curve_text(comparison, "Allan deviation", axis.allan, &duration_text);
-        text += curve_text(comparison, "spectrum", axis.spectrum, &frequency_text);
-        text += distribution_text(comparison, axis);
-    }
+    std::string text = fmt::format("{} against {}\n", comparison.recording_name, other_text(comparison));
+    for (const std::string& warning : comparison.warnings) { text += wrapped_text("warning: ", warning); }
     text += '\n';
-    for (const AxisComparison& axis : comparison.axes) { text += outcome_sentence(comparison, axis) + '\n'; }
+    for (const AxisComparison& axis : comparison.axes) {
+        text += wrapped_text(axis.axis + ": ", outcome(comparison, axis));
+    }
+    text += '\n' + explanation_text(comparison);
+    for (const std::string& note : comparison.notes) { text += wrapped_text("model: ", note); }
+    for (const AxisComparison& axis : comparison.axes) {
+        text += fmt::format("\n{}\n", axis.axis) + curves_text(comparison, axis) + '\n' +
+                distribution_text(comparison, axis);
+    }
     return text;
 }
 

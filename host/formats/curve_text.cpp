@@ -8,6 +8,7 @@
 
 #include "host/formats/noise_text.hpp"
 #include "host/formats/uncertain_number.hpp"
+#include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -89,7 +90,7 @@ std::string curve_text(const CurveReport& report) {
     std::string text = fmt::format("{}: {} Allan curve{} without samples; reading error taken as {:.3g} %\n",
                                    report.name, report.curves.size(), report.curves.size() == 1 ? "" : "s",
                                    report.options.reading_error * 100.0);
-    for (const std::string& warning : report.warnings) { text += fmt::format("warning: {}\n", warning); }
+    for (const std::string& warning : report.warnings) { text += wrapped_text("warning: ", warning); }
     std::vector<FitOfColumn> fits;
     std::vector<std::string> heads;
     for (const PrintedCurveReport& curve : report.curves) {
@@ -99,11 +100,10 @@ std::string curve_text(const CurveReport& report) {
     }
     text += '\n' + text_table(heads, noise_rows(fits, unit));
     text += fmt::format(
-        "\n  ± one standard deviation of reading the curve and of what the model leaves over: the scatter of "
-        "the\n"
-        "  record behind the curve, which print does not tell, is not in it; \"<\": not called for by the "
-        "curve,\n"
-        "  upper limit at {:.3g} %\n",
+        "\n  In brackets: one standard deviation in the last two digits, of reading the curve\n"
+        "  and of what the model leaves over. The scatter of the record behind the curve,\n"
+        "  which print does not tell, is not in it. \"<\": not called for by the curve, upper\n"
+        "  limit at {:.3g} %.\n",
         report.options.confidence * 100.0);
     const std::vector<TextRow> si = si_rows(fits, unit);
     if (!si.empty()) { text += '\n' + text_table(heads, si); }

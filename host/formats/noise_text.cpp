@@ -34,8 +34,8 @@ Trade trade_of(const SensorUnit& unit) {
     const bool counts = unit.is_counts();
     if (unit.sensor == SensorKind::accelerometer) {
         return {"N  velocity random walk",
-                "K  acceleration random walk",
-                "R  acceleration ramp",
+                "K  accel. random walk",
+                "R  accel. ramp",
                 "m/s/sqrt(h)",
                 counts ? 0.0 : min_per_h,
                 nullptr,
@@ -53,14 +53,9 @@ Trade trade_of(const SensorUnit& unit) {
 using Cell = std::function<std::string(const FitOfColumn&)>;
 
 TextRow row_of(std::span<const FitOfColumn> columns, std::string label, std::string unit, const Cell& cell) {
-    TextRow row{std::move(label), std::move(unit), {}};
+    TextRow row{std::move(label), with_root_signs(std::move(unit)), {}};
     for (const FitOfColumn& column : columns) { row.cells.push_back(cell(column)); }
     return row;
-}
-
-std::string slope_text(const std::optional<SlopeReading::Value>& value, double scale) {
-    if (!value) { return "-"; }
-    return fmt::format("{:.3g} at {:.3g} s", value->coefficient * scale, value->tau_s);
 }
 
 // A row where any column has a bound.
@@ -69,7 +64,7 @@ void add_bound_row(std::vector<TextRow>& rows, std::span<const FitOfColumn> colu
     const bool any =
         std::ranges::any_of(columns, [&](const FitOfColumn& c) { return (*c.fit)[term].bound > 0.0; });
     if (!any) { return; }
-    rows.push_back(row_of(columns, "   ± at best", "", [=](const FitOfColumn& column) {
+    rows.push_back(row_of(columns, "   (at best)", "", [=](const FitOfColumn& column) {
         const FittedCoefficient& fitted = (*column.fit)[term];
         return fitted.state == State::identified && fitted.bound > 0.0
                    ? fmt::format("{:.2g}", fitted.bound * scale)
@@ -92,29 +87,29 @@ void add_optional_rows(std::vector<TextRow>& rows, std::span<const FitOfColumn> 
 
 }  // namespace
 
-std::string coefficient_text(const FittedCoefficient& fitted, double scale) {
+std::string coefficient_text(const FittedCoefficient& fitted, double scale, UncertaintyForm form) {
     if (fitted.state == State::not_identifiable) { return "< " + in_digits(fitted.upper * scale, 2); }
-    return with_uncertainty(fitted.value * scale, fitted.sd * scale);
+    return form(fitted.value * scale, fitted.sd * scale);
 }
 
-std::vector<TextRow> shaped_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit) {
+std::vector<TextRow> shaped_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit,
+                                 UncertaintyForm form) {
     std::vector<TextRow> rows;
     const double scale = unit.per_column_unit;
     const auto processes = [](const FitOfColumn& c) -> const auto& { return c.fit->gauss_markov; };
     const auto lines = [](const FitOfColumn& c) -> const auto& { return c.fit->sinusoids; };
     add_optional_rows(rows, columns, "Gauss-Markov sigma", unit.name, processes,
                       [&](const FittedGaussMarkov& g) {
-                          return with_uncertainty(g.value.sigma_rad_per_s * scale, g.sigma_sd * scale);
+                          return form(g.value.sigma_rad_per_s * scale, g.sigma_sd * scale);
                       });
-    add_optional_rows(rows, columns, "   correlation time", "s", processes, [](const FittedGaussMarkov& g) {
-        return with_uncertainty(g.value.correlation_s, g.correlation_sd_s);
+    add_optional_rows(rows, columns, "   correlation time", "s", processes, [=](const FittedGaussMarkov& g) {
+        return form(g.value.correlation_s, g.correlation_sd_s);
     });
     add_optional_rows(rows, columns, "sinusoid amplitude", unit.name, lines, [&](const FittedSinusoid& s) {
-        return with_uncertainty(s.value.amplitude_rad_per_s * scale, s.amplitude_sd * scale);
+        return form(s.value.amplitude_rad_per_s * scale, s.amplitude_sd * scale);
     });
-    add_optional_rows(rows, columns, "   frequency", "Hz", lines, [](const FittedSinusoid& s) {
-        return with_uncertainty(s.value.frequency_hz, s.frequency_sd_hz);
-    });
+    add_optional_rows(rows, columns, "   frequency", "Hz", lines,
+                      [=](const FittedSinusoid& s) { return form(s.value.frequency_hz, s.frequency_sd_hz); });
     return rows;
 }
 
@@ -122,13 +117,23 @@ std::vector<TextRow> slope_rows(std::span<const FitOfColumn> columns, const Sens
     const double scale = unit.per_column_unit;
     std::vector<TextRow> rows;
     const auto add_slope = [&](const char* label, NoiseTerm term, auto member) {
-        rows.push_back(row_of(columns, label, noise_unit(term, unit), [=](const FitOfColumn& column) {
-            return slope_text(column.slopes->*member, scale);
-        }));
+        if (std::ranges::none_of(columns,
+                                 [=](const FitOfColumn& c) { return (c.slopes->*member).has_value(); })) {
+            return;
+        }
+        const auto number = [=](double SlopeReading::Value::*part, double by) {
+            return [=](const FitOfColumn& column) {
+                const std::optional<SlopeReading::Value>& value = column.slopes->*member;
+                return value ? fmt::format("{:.3g}", (*value).*part * by) : std::string("-");
+            };
+        };
+        rows.push_back(
+            row_of(columns, label, noise_unit(term, unit), number(&SlopeReading::Value::coefficient, scale)));
+        rows.push_back(row_of(columns, "   at tau", "s", number(&SlopeReading::Value::tau_s, 1.0)));
     };
-    add_slope("by slope: N", NoiseTerm::N, &SlopeReading::N);
-    add_slope("          B", NoiseTerm::B, &SlopeReading::B);
-    add_slope("          K", NoiseTerm::K, &SlopeReading::K);
+    add_slope("N  by slope", NoiseTerm::N, &SlopeReading::N);
+    add_slope("B  by slope", NoiseTerm::B, &SlopeReading::B);
+    add_slope("K  by slope", NoiseTerm::K, &SlopeReading::K);
     return rows;
 }
 
@@ -138,7 +143,7 @@ std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const Sens
     std::vector<TextRow> rows;
     const auto add = [&](const char* label, const std::string& unit_name, NoiseTerm term, double by) {
         rows.push_back(row_of(columns, label, unit_name, [=](const FitOfColumn& column) {
-            return coefficient_text((*column.fit)[term], by);
+            return coefficient_text((*column.fit)[term], by, &in_short_form);
         }));
     };
     add(trade.N, noise_unit(NoiseTerm::N, unit), NoiseTerm::N, scale);
@@ -151,7 +156,7 @@ std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const Sens
     add_bound_row(rows, columns, NoiseTerm::K, scale);
     add("Q  quantisation", noise_unit(NoiseTerm::Q, unit), NoiseTerm::Q, scale);
     add(trade.R, noise_unit(NoiseTerm::R, unit), NoiseTerm::R, scale);
-    for (TextRow& row : shaped_rows(columns, unit)) { rows.push_back(std::move(row)); }
+    for (TextRow& row : shaped_rows(columns, unit, &in_short_form)) { rows.push_back(std::move(row)); }
     for (TextRow& row : slope_rows(columns, unit)) { rows.push_back(std::move(row)); }
     return rows;
 }

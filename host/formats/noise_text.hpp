@@ -17,15 +17,19 @@ struct FitOfColumn {
     const SlopeReading* slopes;
 };
 
-// "0.01314 ± 0.00002"; of a term that is not identifiable "< 1.2e-05", its upper limit.
-std::string coefficient_text(const FittedCoefficient& fitted, double scale);
+// A value with its uncertainty: with_uncertainty or in_short_form.
+using UncertaintyForm = std::string (*)(double value, double uncertainty);
+
+// "0.013144(21)"; of a term that is not identifiable "< 1.2e-05", its upper limit.
+std::string coefficient_text(const FittedCoefficient& fitted, double scale, UncertaintyForm form);
 
 // N, B, K, Q, R in the unit given, N also per root hour and a gyro's B per hour; the least uncertainty
 // possible where it is known; Gauss-Markov noise and sinusoids where a fit has some; the readings of slopes.
 std::vector<TextRow> noise_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);
 
 // Of these the rows of Gauss-Markov noise and sinusoids, and those of the slopes.
-std::vector<TextRow> shaped_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);
+std::vector<TextRow> shaped_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit,
+                                 UncertaintyForm form);
 std::vector<TextRow> slope_rows(std::span<const FitOfColumn> columns, const SensorUnit& unit);
 
 // N, B and K in SI, the units of simulators and filters; no row for counts, and for rad/s, which is SI.

@@ -1,5 +1,8 @@
 #include "host/formats/noise_unit.hpp"
 
+#include <cstddef>
+#include <string_view>
+
 namespace gyrolog {
 namespace {
 
@@ -8,6 +11,15 @@ constexpr double sqrt_s_per_sqrt_h = 60.0;
 constexpr double arcsec_per_deg = 3600.0;
 
 }  // namespace
+
+std::string with_root_signs(std::string unit) {
+    const std::string_view root = "sqrt(";
+    for (std::size_t at = unit.find(root); at != std::string::npos; at = unit.find(root)) {
+        unit.erase(unit.find(')', at), 1);
+        unit.replace(at, root.size(), "√");
+    }
+    return unit;
+}
 
 std::vector<ScaledUnit> printed_units(NoiseTerm term, const RateUnit& unit) {
     if (unit.name == "lsb") { return {{noise_unit(term, unit), unit.per_column_unit}}; }

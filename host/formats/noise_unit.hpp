@@ -26,6 +26,9 @@ inline std::string noise_unit(NoiseTerm term, const SensorUnit& unit) {
     return unit.name;
 }
 
+// The same for people: "dps/√Hz", "deg/√h" of "deg/sqrt(h)".
+std::string with_root_signs(std::string unit);
+
 struct ScaledUnit {
     std::string name;
     double per_column_unit = 1.0;  // what 1 of the column's own unit is

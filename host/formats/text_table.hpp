@@ -17,6 +17,6 @@ struct TextRow {
 // Rows of as many cells as there are heads. Columns that do not fit into `width_max` characters go into
 // further tables below.
 std::string text_table(std::span<const std::string> heads, std::span<const TextRow> rows,
-                       std::size_t width_max = 110);
+                       std::size_t width_max = 80);
 
 }  // namespace gyrolog

@@ -19,17 +19,43 @@ std::string rounded(double x, int decimals) {
     return zero && text.front() == '-' ? text.substr(1) : text;
 }
 
+// A power of ten before very small and large numbers.
+struct Scaled {
+    int exponent = 0;
+
+    [[nodiscard]] double unit() const { return std::pow(10.0, exponent); }
+    // With which the uncertainty shows two digits.
+    [[nodiscard]] int decimals(double uncertainty) const {
+        constexpr int digits_after_first = 1;
+        return std::min(digits_after_first - decade_of(uncertainty / unit()), 9);
+    }
+};
+
+Scaled scaled(double value, double uncertainty) {
+    const double larger = std::max(std::abs(value), uncertainty);
+    return {larger < 1e-3 || larger >= 1e6 ? decade_of(larger) : 0};
+}
+
 }  // namespace
 
 std::string with_uncertainty(double value, double uncertainty) {
     if (!(uncertainty > 0.0)) { return fmt::format("{:.6g}", value); }
-    const double larger = std::max(std::abs(value), uncertainty);
-    const int exponent = larger < 1e-3 || larger >= 1e6 ? decade_of(larger) : 0;
-    const double unit = std::pow(10.0, exponent);
-    constexpr int digits_after_first = 1;
-    const int decimals = std::min(digits_after_first - decade_of(uncertainty / unit), 9);
-    const std::string text = rounded(value / unit, decimals) + " ± " + rounded(uncertainty / unit, decimals);
-    return exponent == 0 ? text : fmt::format("({})e{:+03d}", text, exponent);
+    const Scaled of = scaled(value, uncertainty);
+    const int decimals = of.decimals(uncertainty);
+    const std::string text =
+        rounded(value / of.unit(), decimals) + " ± " + rounded(uncertainty / of.unit(), decimals);
+    return of.exponent == 0 ? text : fmt::format("({})e{:+03d}", text, of.exponent);
+}
+
+std::string in_short_form(double value, double uncertainty) {
+    if (!(uncertainty > 0.0)) { return fmt::format("{:.6g}", value); }
+    Scaled of = scaled(value, uncertainty);
+    // No digit may stand in the brackets that the value does not show.
+    if (of.decimals(uncertainty) < 0) { of.exponent = decade_of(std::max(std::abs(value), uncertainty)); }
+    const int decimals = of.decimals(uncertainty);
+    const double last_digits = uncertainty / of.unit() * std::pow(10.0, decimals);
+    const std::string text = fmt::format("{}({:.0f})", rounded(value / of.unit(), decimals), last_digits);
+    return of.exponent == 0 ? text : fmt::format("{}e{:+03d}", text, of.exponent);
 }
 
 std::string in_digits(double value, int digits) {

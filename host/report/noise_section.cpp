@@ -84,7 +84,8 @@ void add_term(HtmlTable& list, Axes axes, NoiseTerm term, const RateUnit& unit) 
     for (const ScaledUnit& printed : printed_units(term, unit)) {
         HtmlRow row = cells_of({printed.name});
         for (const AxisReport& axis : axes) {
-            row.push_back(Html::text(coefficient_text(axis.fit[term], printed.per_column_unit)));
+            row.push_back(
+                Html::text(coefficient_text(axis.fit[term], printed.per_column_unit, &with_uncertainty)));
         }
         list.rows.push_back(std::move(row));
     }
@@ -107,7 +108,7 @@ Html coefficients_of(Axes axes, const RateUnit& unit) {
     }
     std::vector<FitOfColumn> fits;
     for (const AxisReport& axis : axes) { fits.push_back({&axis.fit, &axis.slopes}); }
-    add_rows(list, "Further noise", shaped_rows(fits, unit));
+    add_rows(list, "Further noise", shaped_rows(fits, unit, &with_uncertainty));
     add_rows(list, "The same read off the slopes, as textbooks do", slope_rows(fits, unit));
     return table(list);
 }

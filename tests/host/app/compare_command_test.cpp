@@ -11,6 +11,7 @@
 #include "host/app/command_line.hpp"
 #include "host/formats/model_json.hpp"
 #include "host/formats/recording_csv.hpp"
+#include "host/formats/wrapped_text.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -140,7 +141,7 @@ TEST_F(CompareCommand, TellsTheNotesOfTheModelFile) {
     const auto notes = read_model_file(parameters, 1)->notes;
     ASSERT_FALSE(notes.empty());
     EXPECT_EQ(compare({recording, parameters, "--simulations", "9"}), ExitCode::ok) << err.str();
-    EXPECT_THAT(out.str(), HasSubstr("model: " + notes[0]));
+    EXPECT_THAT(out.str(), HasSubstr(wrapped_text("model: ", notes[0])));
     EXPECT_EQ(compare({recording, parameters, "--simulations", "9", "--json", "-"}), ExitCode::ok);
     EXPECT_EQ(json::parse(out.str())["notes"], notes);
 }

@@ -23,6 +23,19 @@ TEST(UncertainNumber, LargerThanItsValueIsRoundedAsWell) {
     EXPECT_EQ(with_uncertainty(-1e-9, 0.5), "0.00 ± 0.50");
 }
 
+TEST(UncertainNumber, ShortFormHasTheLastTwoDigitsInBrackets) {
+    EXPECT_EQ(in_short_form(100.02147, 0.00035), "100.02147(35)") << "GUM:2008 7.2.2";
+    EXPECT_EQ(in_short_form(0.0131449, 0.0000213), "0.013145(21)");
+    EXPECT_EQ(in_short_form(1.579e-4, 1.04e-6), "1.579(10)e-04");
+    EXPECT_EQ(in_short_form(142.66, 2.51), "142.7(25)");
+    EXPECT_EQ(in_short_form(12345.678, 34.0), "12346(34)");
+    EXPECT_EQ(in_short_form(12345.678, 340.0), "1.235(34)e+04");
+    EXPECT_EQ(in_short_form(-123.0, 178.0), "-1.2(18)e+02");
+    EXPECT_EQ(in_short_form(2.5e7, 1.2e5), "2.500(12)e+07");
+    EXPECT_EQ(in_short_form(-1e-9, 0.5), "0.00(50)");
+    EXPECT_EQ(in_short_form(0.25, 0.0), "0.25");
+}
+
 TEST(UncertainNumber, DigitsNeedNoExponentWhereTheyFit) {
     EXPECT_EQ(in_digits(211.3, 2), "210");
     EXPECT_EQ(in_digits(5134.0, 3), "5130");
