@@ -26,8 +26,10 @@ struct Scaled {
     [[nodiscard]] double unit() const { return std::pow(10.0, exponent); }
     // With which the uncertainty shows two digits.
     [[nodiscard]] int decimals(double uncertainty) const {
-        constexpr int digits_after_first = 1;
-        return std::min(digits_after_first - decade_of(uncertainty / unit()), 9);
+        const int digits_after_first = 1 - decade_of(uncertainty / unit());
+        const bool rounds_to_the_next_decade =
+            std::round(uncertainty / unit() * std::pow(10.0, digits_after_first)) >= 100.0;
+        return std::min(digits_after_first - (rounds_to_the_next_decade ? 1 : 0), 9);
     }
 };
 

@@ -14,6 +14,7 @@ TEST(UncertainNumber, HasTwoDigitsOfTheUncertaintyAndTheValueToThem) {
     EXPECT_EQ(with_uncertainty(1.579e-4, 1.04e-6), "(1.579 ± 0.010)e-04");
     EXPECT_EQ(with_uncertainty(12345.678, 34.0), "12346 ± 34");
     EXPECT_EQ(with_uncertainty(2.5e7, 1.2e5), "(2.500 ± 0.012)e+07");
+    EXPECT_EQ(with_uncertainty(0.001952, 9.97e-5), "0.00195 ± 0.00010");
     EXPECT_EQ(with_uncertainty(0.25, 0.0), "0.25");
 }
 
@@ -33,6 +34,8 @@ TEST(UncertainNumber, ShortFormHasTheLastTwoDigitsInBrackets) {
     EXPECT_EQ(in_short_form(-123.0, 178.0), "-1.2(18)e+02");
     EXPECT_EQ(in_short_form(2.5e7, 1.2e5), "2.500(12)e+07");
     EXPECT_EQ(in_short_form(-1e-9, 0.5), "0.00(50)");
+    EXPECT_EQ(in_short_form(0.001952, 9.97e-5), "0.00195(10)");
+    EXPECT_EQ(in_short_form(12345.678, 99.7), "1.235(10)e+04");
     EXPECT_EQ(in_short_form(0.25, 0.0), "0.25");
 }
 
