@@ -87,6 +87,11 @@ Status write_fitted_model(const AnalysisRequest& request, const Recording& recor
     return write_model(fitted_model(report, recording), request.model_path);
 }
 
+// Where the figure of an accelerometer beside a gyro goes; nowhere, where a pipe takes one figure.
+std::string second_figure(const std::string& path) {
+    return is_figure_file(path) ? path_of_accelerometer(path) : std::string();
+}
+
 // A figure for each sensor: an accelerometer beside a gyro has a file of its own, NAME.accelerometer.png.
 void write_figures(ResultOutput& results, const AnalysisReport& report, const std::string& path,
                    const std::function<Status(SensorKind, const std::string&)>& write) {
@@ -96,8 +101,8 @@ void write_figures(ResultOutput& results, const AnalysisReport& report, const st
     if (!report.accelerometer) { return; }
     std::string own = path;
     if (!report.axes.empty()) {
-        if (!is_figure_file(path)) { return; }  // a pipe takes one figure
-        own = path_of_accelerometer(path);
+        own = second_figure(path);
+        if (own.empty()) { return; }
     }
     results.file(own, [&] { return write(SensorKind::accelerometer, own); });
 }
@@ -154,9 +159,13 @@ Status write_results(Console& console, const char* command, const AnalysisReques
 
 ExitCode analyze_to_files(Console& console, const char* command, const AnalysisRequest& request) {
     const NamedPath read[] = {{"RECORDING", request.recording_path}};
+    const std::string second_plot = second_figure(request.plot_path);
+    const std::string second_histogram = second_figure(request.histogram_path);
     const NamedPath written_paths[] = {{"--json", request.json_path},
                                        {"--plot", request.plot_path},
+                                       {"--plot's figure of the accelerometer", second_plot},
                                        {"--histogram", request.histogram_path},
+                                       {"--histogram's figure of the accelerometer", second_histogram},
                                        {"--model", request.model_path}};
     if (const Status fine = check_output_paths(read, written_paths); !fine.ok()) {
         return report_error(console, command, fine.error());

@@ -17,6 +17,7 @@
 #include "host/app/former_id.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/stop_signal.hpp"
+#include "host/base/printable.hpp"
 
 namespace gyrolog {
 namespace {
@@ -175,8 +176,8 @@ ExitCode capture_boards(Console& console, const char* command, const CaptureOpti
     }
     const Boards boards = std::move(opened).value();
     for (const auto& board : boards) {
-        console.notices() << "capturing from " << board->source().identity().uri << " to " << board->path()
-                          << '\n';
+        console.notices() << "capturing from " << printable(board->source().identity().uri) << " to "
+                          << printable(board->path()) << '\n';
         warn_of_former_id(console, command, board->source().identity());
     }
     const TidyEnd tidy;

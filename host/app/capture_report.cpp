@@ -10,6 +10,7 @@
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
 #include "host/base/counted.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/json.hpp"
 #include "host/formats/stops_text.hpp"
 
@@ -130,16 +131,15 @@ std::string end_text(const std::string& path, const LoadedCapture& capture) {
                                                 "short, by a full disk or a kill";
         case FileEnd::torn_tail:
             return fmt::format(
-                "torn tail: the writer died there. {} bytes at the end are in no whole block; all "
-                "before them is intact",
-                format_count(file.bytes_in_tail));
+                "torn tail: the writer died there. {} at the end {} in no whole block; all "
+                "before is intact",
+                counted(file.bytes_in_tail, "byte"), file.bytes_in_tail == 1 ? "is" : "are");
         case FileEnd::damaged:
             return fmt::format(
                 "damaged: {} bytes in {} {} are no intact blocks. Run `gyrolog recover {} -o NEW` to keep "
-                "the "
-                "intact part",
+                "the intact part",
                 format_count(file.bytes_damaged + file.bytes_in_tail), file.damaged_ranges,
-                file.damaged_ranges == 1 ? "place" : "places", path);
+                file.damaged_ranges == 1 ? "place" : "places", shell_word(path));
     }
     return "";
 }
@@ -229,9 +229,10 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
 
 std::string check_text(const std::string& path, const LoadedCapture& capture) {
     const LinkReport link = capture.decoder->report();
-    std::string text = path + "\n";
+    std::string text = printable(path) + "\n";
     if (capture.files.size() > 1) {
-        text += fmt::format("  in {} files, up to {}\n", capture.files.size(), capture.files.back());
+        text +=
+            fmt::format("  in {} files, up to {}\n", capture.files.size(), printable(capture.files.back()));
     }
     text += fmt::format("  end of file: {}\n", end_text(path, capture));
     text += row("bytes of the stream", link.bytes.total);
@@ -346,7 +347,7 @@ std::vector<LabelledLine> info_lines(const std::string& path, const LoadedCaptur
     const auto& config = capture.decoder->config();
     std::vector<LabelledLine> lines;
     const auto line = [&](const char* what, const std::string& value) {
-        if (!value.empty()) { lines.push_back({what, value}); }
+        if (!value.empty()) { lines.push_back({what, printable(value)}); }
     };
     if (capture.metadata) {
         const SourceIdentity& source = capture.metadata->source;
@@ -387,7 +388,7 @@ std::vector<LabelledLine> info_lines(const std::string& path, const LoadedCaptur
 }
 
 std::string info_text(const std::string& path, const LoadedCapture& capture) {
-    std::string text = path + "\n";
+    std::string text = printable(path) + "\n";
     for (const LabelledLine& line : info_lines(path, capture)) {
         text += fmt::format("  {:<10} {}\n", line.label, line.text);
     }

@@ -13,6 +13,7 @@
 #include "host/app/quantity.hpp"
 #include "host/app/stop_signal.hpp"
 #include "host/base/counted.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/stops_text.hpp"
 #include "host/session/load_capture.hpp"
 
@@ -35,12 +36,12 @@ void keep_what_is_stored(const std::string& path, const CaptureOutcome& outcome,
 
 void sum_up(Console& console, const CaptureOutcome& outcome, const LinkReport& link,
             const std::string& path) {
-    console.notices() << fmt::format("  {}: {} in {}, {}\n", path, counted(link.samples.good, "sample"),
-                                     format_duration(seconds_of(outcome, link.instants())),
-                                     format_bytes(outcome.progress.file_bytes));
+    console.notices() << fmt::format(
+        "  {}: {} in {}, {}\n", printable(path), counted(link.samples.good, "sample"),
+        format_duration(seconds_of(outcome, link.instants())), format_bytes(outcome.progress.file_bytes));
     if (link.samples.missing > 0 || link.frames.missing > 0) {
         console.err << fmt::format("  missing: {}, {}; run `gyrolog check {}` for each\n", missing_text(link),
-                                   counted(link.frames.missing, "frame"), path);
+                                   counted(link.frames.missing, "frame"), shell_word(path));
     }
     if (!link.stops.empty()) {
         console.err << fmt::format("  {}\n",
@@ -214,7 +215,8 @@ CaptureResult capture_source_to_file(Console& console, const char* command, Open
         request.samples.reset();
     }
     ByteSource& source = *opened.source;
-    console.notices() << "capturing from " << source.identity().uri << " to " << request.path
+    console.notices() << "capturing from " << printable(source.identity().uri) << " to "
+                      << printable(request.path)
                       << (real_time && console.progress ? "; q or Ctrl-C closes the file and analyses it\n"
                                                         : "\n");
     warn_of_former_id(console, command, source.identity());
@@ -247,7 +249,8 @@ CaptureResult tell_outcome(Console& console, const char* command, const Result<C
                             : "; what was written before is saved\n");
     }
     if (outcome->kept_old) {
-        console.err << program_and(command) << ": not one sample came; '" << path << "' is as it was\n";
+        console.err << program_and(command) << ": not one sample came; '" << printable(path)
+                    << "' is as it was\n";
     } else {
         sum_up(console, *outcome, result.link, path);
     }

@@ -1,5 +1,7 @@
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "host/app/boards_capture.hpp"
 #include "host/app/capture_report.hpp"
 #include "host/app/capture_run.hpp"
@@ -7,6 +9,7 @@
 #include "host/app/device_choice.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
+#include "host/capture/segment_files.hpp"
 #include "host/formats/json.hpp"
 
 namespace gyrolog {
@@ -32,6 +35,14 @@ Status check_paths(const CaptureCommandOptions& options) {
     const NamedPath written[] = {
         {"--output", options.path}, {"--denoise-out", denoised}, {"--json", options.json}};
     GYROLOG_CHECK(check_output_paths(read, written));
+    for (const NamedPath& result : {written[1], written[2]}) {
+        if (result.path.empty() || result.path == "-" || !is_segment_path(result.path, options.path)) {
+            continue;
+        }
+        return invalid_argument(
+            fmt::format("{} '{}': further files of the capture get such names, {}; give another",
+                        result.option, result.path, segment_path(options.path, 2)));
+    }
     return check_ending(written[0], "a capture", capture_endings);
 }
 

@@ -6,6 +6,7 @@
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/stop_signal.hpp"
+#include "host/base/printable.hpp"
 #include "host/conform/conformance.hpp"
 #include "host/conform/conversation.hpp"
 #include "host/formats/conform_report.hpp"
@@ -35,7 +36,7 @@ ExitCode conform(Console& console, const ConformOptions& options) {
     }
     auto opened = open_source(options.device, {}, false);
     if (!opened.ok()) { return fail_to_open(console, opened.error()); }
-    console.notices() << "gyrolog conform: talking to " << opened->source->identity().uri
+    console.notices() << "gyrolog conform: talking to " << printable(opened->source->identity().uri)
                       << " for about ten seconds\n";
     warn_of_former_id(console, "conform", opened->source->identity());
     const auto dialogue = [&] {

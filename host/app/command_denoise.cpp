@@ -20,6 +20,7 @@
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/sensor_choice.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/denoise_json.hpp"
 #include "host/formats/denoise_text.hpp"
 #include "host/formats/json.hpp"
@@ -282,8 +283,8 @@ private:
         report_.name =
             request_.input.paths.front().starts_with("sim:") ? request_.input.paths.front() : recording_.name;
         if (request_.input.paths.size() > 1) {
-            report_.name =
-                fmt::format("{} recordings, {} first", request_.input.paths.size(), recording_.name);
+            report_.name = fmt::format("{} recordings, {} first", request_.input.paths.size(),
+                                       printable(recording_.name));
         }
         report_.rate_hz = recording_.rate_hz;
         report_.duration_s = recording_.duration_s();

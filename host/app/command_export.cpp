@@ -13,6 +13,7 @@
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/base/file_output.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/export_format.hpp"
 #include "host/formats/model_source.hpp"
 #include "host/formats/simulators/simulator_format.hpp"
@@ -189,7 +190,7 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
                                 ? export_noise_or_samples(console, options, export_format_of(*filter))
                                 : export_for_simulator(console, options);
         if (!done.ok()) { return report_error(console, "export", done.error()); }
-        console.notices() << "written: " << options.output << '\n';
+        console.notices() << "written: " << printable(options.output) << '\n';
         return ExitCode::ok;
     }
     const ExportFormat* format = export_format_of(options.output);
@@ -201,7 +202,7 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
     }
     const Status done = export_noise_or_samples(console, options, *format);
     if (!done.ok()) { return report_error(console, "export", done.error()); }
-    console.notices() << "written: " << options.output << '\n';
+    console.notices() << "written: " << printable(options.output) << '\n';
     return ExitCode::ok;
 }
 

@@ -7,6 +7,7 @@
 
 #include "host/app/command.hpp"
 #include "host/app/nearest_name.hpp"
+#include "host/base/printable.hpp"
 #include "host/base/program_name.hpp"
 
 namespace gyrolog {
@@ -119,7 +120,7 @@ std::string program_and(const char* command) {
 }
 
 ExitCode report_error(Console& console, const char* command, const Error& error) {
-    console.err << program_and(command) << ": " << error.message << '\n';
+    console.err << program_and(command) << ": " << printable(error.message) << '\n';
     if (console.told_error != nullptr) { *console.told_error = error.message; }
     return exit_code_of(error);
 }

@@ -8,6 +8,7 @@
 #include "host/app/former_id.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/json.hpp"
 #include "host/usb/usb_board.hpp"
 
@@ -41,8 +42,9 @@ Json list_json(const UsbSurvey& survey) {
 std::string list_text(const UsbSurvey& survey) {
     std::string text;
     for (const UsbBoard& board : listed(survey)) {
-        text += fmt::format("{:<20} {:04x}:{:04x}  {:<28} {}\n", board.uri(), board.vendor_id,
-                            board.product_id, board.product.empty() ? "(name not readable)" : board.product,
+        text += fmt::format("{:<20} {:04x}:{:04x}  {:<28} {}\n", printable(board.uri()), board.vendor_id,
+                            board.product_id,
+                            board.product.empty() ? "(name not readable)" : printable(board.product),
                             board_state_name(board.state));
         if (!board.why.empty()) { text += "    " + board.why + '\n'; }
     }
@@ -69,7 +71,7 @@ ExitCode list(Console& console, const ListOptions& options) {
     }
     if (survey->boards.empty()) {
         const auto none = choose_board(*survey, "");
-        console.err << "gyrolog list: " << none.error().message << '\n';
+        console.err << "gyrolog list: " << printable(none.error().message) << '\n';
     }
     const bool usable = std::ranges::any_of(
         survey->boards, [](const UsbBoard& board) { return board.state == BoardState::ready; });

@@ -10,6 +10,7 @@
 #include "host/app/result_output.hpp"
 #include "host/base/counted.hpp"
 #include "host/base/file_output.hpp"
+#include "host/base/printable.hpp"
 #include "host/fleet/fleet_recording.hpp"
 #include "host/fleet/fleet_sqlite.hpp"
 #include "host/fleet/fleet_table.hpp"
@@ -62,7 +63,7 @@ void tell(Console& console, const FleetRecordings& read, const UnitPopulation& p
                                    one.axis, one.name, one.z);
     }
     for (const std::string& name : read.unanswered) {
-        console.err << "gyrolog table: no answer: " << name << '\n';
+        console.err << "gyrolog table: no answer: " << printable(name) << '\n';
     }
     if (!with_notes) { return; }
     for (const std::string& note : population.measured.notes) { console.err << "  " << note << '\n'; }

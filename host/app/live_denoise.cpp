@@ -14,6 +14,7 @@
 #include "host/app/option_check.hpp"
 #include "host/app/quantity.hpp"
 #include "host/base/counted.hpp"
+#include "host/base/printable.hpp"
 #include "host/decode/recording_builder.hpp"
 #include "host/formats/denoise_text.hpp"
 
@@ -503,10 +504,11 @@ Result<std::string> LiveDenoise::finish() {
         return Error{ErrorCode::failed,
                      fmt::format("{} samples found no room while they waited to be denoised: they are "
                                  "missing in {}; run `gyrolog denoise {} {}`",
-                                 samples_dropped_, setup_.output, setup_.capture, again_)};
+                                 samples_dropped_, setup_.output, shell_word(setup_.capture), again_)};
     }
-    return fmt::format("{}: {} samples, {}; the same afterwards: gyrolog denoise {} {}", setup_.output,
-                       format_count(rows_written_), line(), setup_.capture, again_);
+    return fmt::format("{}: {} samples, {}; the same afterwards: gyrolog denoise {} {}",
+                       printable(setup_.output), format_count(rows_written_), line(),
+                       shell_word(setup_.capture), again_);
 }
 
 }  // namespace gyrolog

@@ -1,9 +1,9 @@
-#include <csignal>
 #include <exception>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "host/app/command_line.hpp"
@@ -13,9 +13,23 @@
 #include "host/app/stop_signal.hpp"
 #include "host/base/program_name.hpp"
 
+namespace {
+
+// A standard stream that was closed by who started the program: without this the next file that is opened, a
+// capture perhaps, would get its number and its text. Reading and writing it remain errors.
+void occupy_closed_streams() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(descriptor, F_GETFD) != -1) { continue; }
+        const int occupied = open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+        if (occupied != descriptor && occupied >= 0) { close(occupied); }
+    }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+    occupy_closed_streams();
     gyrolog::install_stop_signals();
-    static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
     try {
         gyrolog::set_program_revision(gyrolog::program_revision);
         gyrolog::StandardOutput output;

@@ -10,6 +10,7 @@
 #include "host/app/command.hpp"
 #include "host/app/stop_signal.hpp"
 #include "host/base/line_file.hpp"
+#include "host/base/printable.hpp"
 #include "host/base/program_name.hpp"
 #include "host/formats/json.hpp"
 
@@ -97,7 +98,7 @@ ExitCode write_lines(Console& console, const char* command, const ManyRecordings
     if (const Status closed = file->close(); !closed.ok()) {
         return worst_of(worst, report_error(console, command, closed.error()));
     }
-    console.notices() << "written: " << many.jsonl_path << '\n';
+    console.notices() << "written: " << printable(many.jsonl_path) << '\n';
     return worst;
 }
 

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "host/base/replacing_file.hpp"
+#include "host/capture/segment_files.hpp"
 #include "host/formats/model_source.hpp"
 
 namespace gyrolog {
@@ -38,6 +41,15 @@ Status try_to_write(const std::string& path) {
     return file.ok() ? Status() : Status(in_context("write '" + path + "'", file.error()));
 }
 
+// What is read where this is given: the model without the name of its sensor, a capture with the files that
+// go on with it.
+std::vector<std::string> files_of(const std::string& source) {
+    std::vector<std::string> files{model_path(source).file};
+    if (source.empty() || takes_anything(source)) { return files; }
+    for (std::string& file : segment_files(source)) { files.push_back(std::move(file)); }
+    return files;
+}
+
 }  // namespace
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -62,8 +74,9 @@ Status check_output_paths(std::span<const NamedPath> read, std::span<const Named
     for (std::size_t i = 0; i < written.size(); ++i) {
         GYROLOG_CHECK(check_stream(written[i]));
         for (const NamedPath& source : read) {
-            if (same_file(source.path, written[i].path) ||
-                same_file(model_path(source.path).file, written[i].path)) {
+            if (std::ranges::any_of(files_of(source.path), [&](const std::string& file) {
+                    return same_file(file, written[i].path);
+                })) {
                 return same(source, written[i], "; give another to write");
             }
         }

@@ -21,6 +21,7 @@
 #include "host/app/command.hpp"
 #include "host/app/diagnosis_input.hpp"
 #include "host/app/diagnosis_output.hpp"
+#include "host/app/figure_file.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
@@ -274,8 +275,11 @@ ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisR
                                    {"--model", request.model_path},
                                    {"--holdout", request.holdout_path}};
     for (const std::string& path : request.asked_paths) { read.push_back({"--ask", path}); }
+    const std::string second_plot =
+        is_figure_file(request.plot_path) ? path_of_accelerometer(request.plot_path) : std::string();
     const NamedPath written[] = {{"--json", request.json_path},
                                  {"--plot", request.plot_path},
+                                 {"--plot's figure of the accelerometer", second_plot},
                                  {"--model-out", request.model_out_path}};
     if (const Status fine = check_output_paths(read, written); !fine.ok()) { return fail(fine.error()); }
     const auto read_model = read_source(request.model_path);

@@ -1,6 +1,7 @@
 #include "host/app/result_output.hpp"
 
 #include "host/base/file_output.hpp"
+#include "host/base/printable.hpp"
 #include "host/base/program_name.hpp"
 #include "host/formats/json.hpp"
 
@@ -37,7 +38,7 @@ void ResultOutput::json(const std::string& path, const std::function<Json()>& an
 // Whether standard output took it is asked once, when the program ends.
 Status ResultOutput::finish() {
     console_.out << shown_ << std::flush;
-    for (const std::string& path : written_) { console_.notices() << "written: " << path << '\n'; }
+    for (const std::string& path : written_) { console_.notices() << "written: " << printable(path) << '\n'; }
     return error_ ? Status(*error_) : Status();
 }
 

@@ -1,9 +1,10 @@
 #include "host/app/standard_output.hpp"
 
 #include <cerrno>
-#include <cstring>
 
 #include <unistd.h>
+
+#include "host/base/storage_error.hpp"
 
 namespace gyrolog {
 
@@ -42,11 +43,8 @@ Status StandardOutput::finish() {
         case 0:
         case EPIPE:
             return {};
-        case ENOSPC:
-            return Error{ErrorCode::disk_full, "write to standard output: disk full"};
         default:
-            return Error{ErrorCode::storage_failed,
-                         std::string("write to standard output: ") + std::strerror(buffer_.problem())};
+            return in_context("write to standard output", storage_error(buffer_.problem()));
     }
 }
 

@@ -47,14 +47,21 @@ void install(int number, void (*handler)(int)) {
 }  // namespace
 
 void install_stop_signals() {
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) { install(number, on_stop_signal); }
-    for (const int number : {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) {
+    // All that end a process (signal(7)): the second row is sent by limits of processor time, timers, power
+    // supplies, and people who take them for a question.
+    for (const int number : {SIGINT, SIGTERM, SIGHUP,  //
+                             SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGPOLL, SIGPWR}) {
+        install(number, on_stop_signal);
+    }
+    for (const int number : {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS}) {
         // A sanitizer tells of a crash in its own handler.
         struct sigaction before {};
         if (sigaction(number, nullptr, &before) == 0 && before.sa_handler == SIG_DFL) {
             install(number, on_crash);
         }
     }
+    // A pipe that nobody reads and a file at its limit (ulimit -f) are errors of the write.
+    for (const int number : {SIGPIPE, SIGXFSZ}) { static_cast<void>(std::signal(number, SIG_IGN)); }
 }
 
 TidyEnd::TidyEnd() { ++tidy_ends; }

@@ -91,6 +91,16 @@ std::string in_quotes(std::string_view text) {
     return "'" + printable(text.substr(0, bytes_most)) + (text.size() > bytes_most ? "...'" : "'");
 }
 
+std::string shell_word(std::string_view text) {
+    const std::string shown = printable(text);
+    constexpr std::string_view plain =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:=,+@%-";
+    if (!shown.empty() && shown.find_first_not_of(plain) == std::string::npos) { return shown; }
+    std::string word = "'";
+    for (const char c : shown) { c == '\'' ? word += "'\\''" : word += c; }
+    return word + "'";
+}
+
 std::string PrintableText::take(std::string_view piece) {
     cut_ += piece;
     std::string shown;

@@ -14,6 +14,9 @@ std::string printable(std::string_view text);
 // The same between quotation marks and cut: what a message says of something that may be of any length.
 std::string in_quotes(std::string_view text);
 
+// The same as one word of a command that a person copies into a shell: as it is, or 'between these'.
+std::string shell_word(std::string_view text);
+
 // The same for text that comes in pieces and has lines and tabs of its own, which pass.
 class PrintableText {
 public:

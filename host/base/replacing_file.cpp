@@ -1,7 +1,6 @@
 #include "host/base/replacing_file.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <random>
@@ -10,29 +9,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "host/base/storage_error.hpp"
 #include "host/base/unfinished_files.hpp"
 
 namespace gyrolog {
 namespace {
-
-Error storage_error(int number) {
-    switch (number) {
-        case ENOSPC:
-        case EDQUOT:
-            return {ErrorCode::disk_full, "disk full"};
-        case ENOENT:
-        case ENOTDIR:
-            return {ErrorCode::not_found, "no such directory"};
-        case EISDIR:
-            return {ErrorCode::storage_failed, "it is a directory"};
-        case EACCES:
-        case EPERM:
-            return {ErrorCode::permission_denied, "permission denied"};
-        default:
-            return {number == EROFS ? ErrorCode::permission_denied : ErrorCode::storage_failed,
-                    std::strerror(number)};
-    }
-}
 
 // In the same folder, so that it can be renamed; beginning with the name that it shall have, if that leaves
 // room for the rest (a name has 255 bytes at most).
@@ -48,15 +29,18 @@ std::string name_beside(const std::string& path) {
     return (wanted.parent_path() / (name + ".part")).string();
 }
 
-// Of the file that is replaced. Only its owner and root can give a file away; without the owner's rights
-// nobody else gains any.
+// Of the file that is replaced. Only root can give a file away. Where it stays this process's own, its group
+// is another one, which may do what all others may.
 void take_over_rights(int descriptor, const struct stat& replaced) {
     struct stat own {};
     if (::fstat(descriptor, &own) != 0) { return; }
     const bool same_owner = own.st_uid == replaced.st_uid && own.st_gid == replaced.st_gid;
-    if (same_owner || ::fchown(descriptor, replaced.st_uid, replaced.st_gid) == 0) {
-        static_cast<void>(::fchmod(descriptor, replaced.st_mode & 0777U));
+    mode_t rights = replaced.st_mode & 0777U;
+    if (!same_owner && ::fchown(descriptor, replaced.st_uid, replaced.st_gid) != 0) {
+        const mode_t of_others = rights & 0007U;
+        rights = (rights & 0700U) | (of_others << 3U) | of_others;
     }
+    static_cast<void>(::fchmod(descriptor, rights));
 }
 
 // A rename is on the disk when its folder is. Not every file system can be asked for that.
@@ -102,7 +86,7 @@ Result<ReplacingFile> ReplacingFile::create(const std::string& path) {
         state->written_path = name_beside(path);
         state->unfinished.emplace(state->written_path);
         constexpr int flags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-        state->descriptor = ::open(state->written_path.c_str(), flags, 0666);
+        state->descriptor = ::open(state->written_path.c_str(), flags, exists ? 0600 : 0666);
         const int problem = errno;
         if (state->descriptor >= 0) { break; }
         state->unfinished.reset();

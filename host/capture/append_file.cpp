@@ -120,8 +120,13 @@ public:
 }  // namespace
 
 Result<std::unique_ptr<AppendFile>> create_append_file(const std::string& path, IfExists if_exists) {
+    namespace fs = std::filesystem;
     std::error_code unknown;
-    if (if_exists == IfExists::replace && std::filesystem::is_regular_file(path, unknown)) {
+    const auto there = fs::status(path, unknown);
+    // A link is replaced and not followed, also one to nothing. A pipe or a device takes what is written.
+    const bool is_replaced = fs::is_regular_file(there) ||
+                             (!fs::exists(there) && fs::is_symlink(fs::symlink_status(path, unknown)));
+    if (if_exists == IfExists::replace && is_replaced) {
         auto replacing = ReplacingFile::create(path);
         if (!replacing.ok()) { return in_context("create '" + path + "'", std::move(replacing).error()); }
         const int descriptor = ::fcntl(replacing->descriptor(), F_DUPFD_CLOEXEC, 0);
@@ -129,8 +134,9 @@ Result<std::unique_ptr<AppendFile>> create_append_file(const std::string& path, 
         return std::unique_ptr<AppendFile>(
             std::make_unique<PosixAppendFile>(descriptor, path, std::move(replacing).value()));
     }
-    const int existing = if_exists == IfExists::refuse ? O_EXCL : 0;
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | existing, 0666);
+    const bool is_new = if_exists == IfExists::refuse || !fs::exists(there);
+    const int creating = is_new ? O_CREAT | O_EXCL : 0;
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | creating, 0666);
     if (descriptor < 0) { return errno_error("create '" + path + "'"); }
     auto file = std::make_unique<PosixAppendFile>(descriptor, path, std::nullopt);
     GYROLOG_CHECK(sync_directory_of(path));

@@ -46,6 +46,15 @@ std::string segment_path(const std::string& first_path, std::uint64_t number) {
     return std::string(stem) + "." + std::to_string(number) + first_path.substr(stem.size());
 }
 
+bool is_segment_path(const std::string& path, const std::string& first_path) {
+    namespace fs = std::filesystem;
+    std::error_code none;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(path, none), none);
+    const fs::path first = fs::weakly_canonical(fs::absolute(first_path, none), none);
+    return whole.parent_path() == first.parent_path() &&
+           is_named_like_a_segment(whole.filename().string(), first.filename().string());
+}
+
 std::vector<std::string> segment_files(const std::string& first_path) {
     namespace fs = std::filesystem;
     std::error_code unknown;

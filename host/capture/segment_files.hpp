@@ -15,4 +15,7 @@ std::string segment_path(const std::string& first_path, std::uint64_t number);
 // capture. A file of the middle may be missing: the stream then shows a gap.
 std::vector<std::string> segment_files(const std::string& first_path);
 
+// Whether the capture that begins with that file may go on in this one, or has.
+bool is_segment_path(const std::string& path, const std::string& first_path);
+
 }  // namespace gyrolog

@@ -43,12 +43,16 @@ Status SegmentWriter::check_room() {
         room_until_bytes_ = bytes_written() + (free_bytes - spoken_for);
         return {};
     }
-    constexpr std::uint64_t megabyte = 1'000'000;
+    const auto size_text = [](std::uint64_t bytes) {
+        constexpr std::uint64_t kilobyte = 1'000;
+        constexpr std::uint64_t megabyte = 1'000'000;
+        return bytes < 10 * megabyte ? std::to_string(bytes / kilobyte) + " kB"
+                                     : std::to_string(bytes / megabyte) + " MB";
+    };
     return Error{ErrorCode::disk_full,
                  "write '" + (paths_.empty() ? plan_.path : paths_.back()) + "': the disk has " +
-                     std::to_string(free_bytes / megabyte) + " MB left, and " +
-                     std::to_string(plan_.min_free_bytes / megabyte) +
-                     " MB are to stay free (--min-free); make room, or choose another disk"};
+                     size_text(free_bytes) + " left, and " + size_text(plan_.min_free_bytes) +
+                     " are to stay free (--min-free); make room, or choose another disk"};
 }
 
 Result<std::unique_ptr<AppendFile>> SegmentWriter::create_file() {

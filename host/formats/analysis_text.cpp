@@ -9,6 +9,7 @@
 
 #include "analysis/numerics/distributions.hpp"
 #include "host/base/counted.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/noise_text.hpp"
 #include "host/formats/stops_text.hpp"
 #include "host/formats/uncertain_number.hpp"
@@ -110,7 +111,7 @@ std::string gravity_text(const AccelerometerReport& report) {
             return with_uncertainty(n.value * scale, n.expanded_uncertainty * scale);
         };
         text += fmt::format("  gravity{}: {} {}; {} is up, tilted by {} deg\n",
-                            of.unit.empty() ? "" : " of unit " + of.unit,
+                            of.unit.empty() ? "" : " of unit " + printable(of.unit),
                             number(of.gravity.size, unit.per_column_unit), unit.name, of.gravity.up_name(),
                             number(of.gravity.tilt_rad, deg_per_rad));
     }
@@ -118,8 +119,8 @@ std::string gravity_text(const AccelerometerReport& report) {
 }
 
 std::string head_of(const AnalysisReport& report) {
-    std::string text =
-        fmt::format("{}: {} samples, {}", report.name, report.samples, duration_text(report.duration_s));
+    std::string text = fmt::format("{}: {} samples, {}", printable(report.name), report.samples,
+                                   duration_text(report.duration_s));
     text += fmt::format(", {} Hz", report.rate_sd_hz ? with_uncertainty(report.rate_hz, *report.rate_sd_hz)
                                                      : fmt::format("{:.6g}", report.rate_hz));
     if (report.nominal_rate_hz) {
@@ -155,7 +156,7 @@ std::string tables_of(const SensorTable& sensor, double confidence, const std::s
     std::vector<std::string> heads;
     for (const AxisReport& axis : sensor.axes) {
         fits.push_back({&axis.fit, &axis.slopes});
-        heads.push_back(axis.axis);
+        heads.push_back(printable(axis.axis));
     }
     std::string text = '\n' + text_table(heads, rows_of(sensor, fits, confidence)) + '\n' + below;
     const std::vector<TextRow> si = si_rows(fits, sensor.unit);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
 #include "host/formats/text_table.hpp"
 #include "host/formats/uncertain_number.hpp"
 #include "host/formats/wrapped_text.hpp"
@@ -124,9 +125,9 @@ std::string worst_number_text(const SensorUnit& unit, const AxisComparison& axis
 }
 
 std::string other_text(const Comparison& comparison) {
-    if (comparison.simulations == 0) { return comparison.other_name; }
-    return fmt::format("{} simulations of {} (seed {})", comparison.simulations, comparison.other_name,
-                       comparison.seed);
+    if (comparison.simulations == 0) { return printable(comparison.other_name); }
+    return fmt::format("{} simulations of {} (seed {})", comparison.simulations,
+                       printable(comparison.other_name), comparison.seed);
 }
 
 // What the numbers below it mean.
@@ -178,16 +179,17 @@ std::string outcome_sentence(const Comparison& comparison, const AxisComparison&
 }
 
 std::string comparison_text(const Comparison& comparison) {
-    std::string text = fmt::format("{} against {}\n", comparison.recording_name, other_text(comparison));
+    std::string text =
+        fmt::format("{} against {}\n", printable(comparison.recording_name), other_text(comparison));
     for (const std::string& warning : comparison.warnings) { text += wrapped_text("warning: ", warning); }
     text += '\n';
     for (const AxisComparison& axis : comparison.axes) {
-        text += wrapped_text(axis.axis + ": ", outcome(comparison, axis));
+        text += wrapped_text(printable(axis.axis) + ": ", outcome(comparison, axis));
     }
     text += '\n' + explanation_text(comparison);
     for (const std::string& note : comparison.notes) { text += wrapped_text("model: ", note); }
     for (const AxisComparison& axis : comparison.axes) {
-        text += fmt::format("\n{}\n", axis.axis) + curves_text(comparison, axis) + '\n' +
+        text += fmt::format("\n{}\n", printable(axis.axis)) + curves_text(comparison, axis) + '\n' +
                 distribution_text(comparison, axis);
     }
     return text;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
 #include "host/formats/cause_table.hpp"
 #include "host/formats/curve_diagnosis_report.hpp"
 #include "host/formats/curve_effect.hpp"
@@ -67,8 +68,8 @@ std::string left_text(const CurveLeft& left) {
 std::string curve_text(const DiagnosedCurve& curve, const RateUnit& unit) {
     const CurveDiagnosis& diagnosis = curve.diagnosis;
     const auto& points = curve.curve.points;
-    std::string text = fmt::format("\n{} against the model's {} axis: {} points from {} to {}\n", curve.name,
-                                   axis_names.at(curve.axis), diagnosis.points,
+    std::string text = fmt::format("\n{} against the model's {} axis: {} points from {} to {}\n",
+                                   printable(curve.name), axis_names.at(curve.axis), diagnosis.points,
                                    duration_text(points.front().tau_s), duration_text(points.back().tau_s));
     text += wrapped_text("  before: ", residual_text(diagnosis, diagnosis.before));
     for (const CurveGapStretch& stretch : diagnosis.stretches) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
 #include "host/formats/noise_text.hpp"
 #include "host/formats/uncertain_number.hpp"
 #include "host/formats/wrapped_text.hpp"
@@ -30,7 +31,7 @@ std::string step_text(const CurveFitStep& step, const SensorUnit& unit) {
 
 std::string ladder_text(const PrintedCurveReport& curve, const SensorUnit& unit) {
     const auto& points = curve.curve.points;
-    std::string text = fmt::format("\n{}: {} points from {} to {}\n", curve.name, points.size(),
+    std::string text = fmt::format("\n{}: {} points from {} to {}\n", printable(curve.name), points.size(),
                                    duration_text(points.front().tau_s), duration_text(points.back().tau_s));
     for (const CurveFitStep& step : curve.fit.steps) {
         text += fmt::format("  {:<44}  {}\n", step_text(step, unit), residual_text(step.residual));
@@ -87,16 +88,16 @@ std::string gap_text(const NamedCurveGap& named, const SensorUnit& unit) {
 std::string curve_text(const CurveReport& report) {
     const bool is_gyro = report.unit.sensor == SensorKind::gyro;
     const SensorUnit unit = is_gyro ? report.unit : SensorUnit::micro_g();
-    std::string text = fmt::format("{}: {} Allan curve{} without samples; reading error taken as {:.3g} %\n",
-                                   report.name, report.curves.size(), report.curves.size() == 1 ? "" : "s",
-                                   report.options.reading_error * 100.0);
+    std::string text = fmt::format(
+        "{}: {} Allan curve{} without samples; reading error taken as {:.3g} %\n", printable(report.name),
+        report.curves.size(), report.curves.size() == 1 ? "" : "s", report.options.reading_error * 100.0);
     for (const std::string& warning : report.warnings) { text += wrapped_text("warning: ", warning); }
     std::vector<FitOfColumn> fits;
     std::vector<std::string> heads;
     for (const PrintedCurveReport& curve : report.curves) {
         text += ladder_text(curve, unit);
         fits.push_back({&curve.fit.noise, &curve.slopes});
-        heads.push_back(curve.name);
+        heads.push_back(printable(curve.name));
     }
     text += '\n' + text_table(heads, noise_rows(fits, unit));
     text += fmt::format(

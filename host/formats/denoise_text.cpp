@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
 #include "host/formats/text_table.hpp"
 #include "host/formats/uncertain_number.hpp"
 
@@ -161,7 +162,7 @@ std::string design_text(const DenoiseDesign& design) {
 }
 
 std::string denoise_text(const DenoiseReport& report) {
-    std::string text = fmt::format("{}: {:.6g} Hz, {}, {} samples\n", report.name, report.rate_hz,
+    std::string text = fmt::format("{}: {:.6g} Hz, {}, {} samples\n", printable(report.name), report.rate_hz,
                                    duration_text(report.duration_s), report.samples);
     for (const std::string& warning : report.warnings) { text += "warning: " + warning + '\n'; }
     text += "noise of the units: " + report.learned_from + '\n';

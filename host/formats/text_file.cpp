@@ -9,6 +9,7 @@
 #include <archive.h>
 #include <archive_entry.h>
 
+#include "host/base/storage_error.hpp"
 #include "host/formats/input_limits.hpp"
 
 namespace gyrolog {
@@ -32,7 +33,9 @@ Error error_of(archive* file) {
         case EACCES:
             return {ErrorCode::permission_denied, "permission denied"};
         case ENOSPC:
-            return {ErrorCode::disk_full, "disk full"};
+        case EDQUOT:
+        case EFBIG:
+            return storage_error(number);
         case EISDIR:
             return {ErrorCode::failed, "it is a directory"};
         case EIO:

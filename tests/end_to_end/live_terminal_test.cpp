@@ -133,13 +133,13 @@ TEST_F(LiveTerminal, StoppedAndContinuedItTakesItsKeysAgainAndLosesNothing) {
     EXPECT_TRUE(capture->decoder->report().complete());
 }
 
-TEST_F(LiveTerminal, QuitAndAbortGiveTheTerminalBack) {
-    for (const int number : {SIGQUIT, SIGABRT, SIGTERM, SIGHUP}) {
+TEST_F(LiveTerminal, EverySignalThatEndsItGivesTheTerminalBack) {
+    for (const int number : {SIGQUIT, SIGABRT, SIGTRAP, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU, SIGALRM}) {
         Terminal terminal(command());
         ASSERT_TRUE(terminal.shows("keys:")) << terminal.screen();
         EXPECT_FALSE(terminal.echoes());
         terminal.send(number);
-        const bool tidy = number == SIGTERM || number == SIGHUP;
+        const bool tidy = number != SIGQUIT && number != SIGABRT && number != SIGTRAP;
         EXPECT_EQ(terminal.wait(), tidy ? 0 : 128 + number) << terminal.screen();
         EXPECT_TRUE(terminal.echoes()) << number;
         std::filesystem::remove(path);

@@ -29,6 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AnyOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Outputs : public testing::Test {
 protected:
@@ -146,6 +147,74 @@ TEST_F(Outputs, AreNeverWrittenOverWhatIsRead) {
         }
     }
     EXPECT_EQ(names(), before);
+}
+
+// They are read with its first one.
+TEST_F(Outputs, AreNotWrittenOverACapturesFurtherFiles) {
+    const std::string first = folder_.path("r.pcapng");
+    const std::vector<std::string> capture{"capture",    "--device", "sim:rate=1000,seed=7",
+                                           "--duration", "4s",       "--rotate-every",
+                                           "2s",         "-o",       first};
+    ASSERT_EQ(run_gyrolog(capture).exit_code, 0);
+    const std::string second = folder_.path("r.2.pcapng");
+    const std::string contents = read_whole_file(second);
+    ASSERT_FALSE(contents.empty());
+    for (const char* command : {"analyze", "check", "info"}) {
+        const ProgramResult result = run_gyrolog({command, first, "--json", second});
+        EXPECT_EQ(result.exit_code, 2) << command;
+        EXPECT_THAT(result.err, HasSubstr("are the same file")) << command;
+        EXPECT_EQ(read_whole_file(second), contents) << command;
+    }
+    for (const char* of_another : {"n.2.pcapng", "n.17.pcapng"}) {
+        std::vector<std::string> over_its_own = capture;
+        over_its_own.back() = folder_.path("n.pcapng");
+        over_its_own.insert(over_its_own.end(), {"--json", folder_.path(of_another)});
+        const ProgramResult result = run_gyrolog(over_its_own);
+        EXPECT_EQ(result.exit_code, 2) << of_another;
+        EXPECT_THAT(result.err, HasSubstr("further files of the capture get such names")) << of_another;
+        EXPECT_FALSE(fs::exists(over_its_own.back()));
+    }
+}
+
+TEST_F(Outputs, FigureOfTheSecondSensorCostsNoOther) {
+    make_inputs();
+    const ProgramResult result = run_gyrolog({"analyze", capture_, "--plot", folder_.path("p.png"),
+                                              "--histogram", folder_.path("p.accelerometer.png")});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("are the same file"));
+}
+
+int run_in_shell(const std::string& command) {
+    const pid_t child = start_program({"/bin/sh", "-c", command}, -1, -1);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+// The limit sends a signal before it is an error.
+TEST_F(Outputs, AFileAtItsLimitIsAnErrorAndLeavesNothing) {
+    make_inputs();
+    const auto before = names();
+    for (const std::string& command :
+         {"export " + capture_ + " -o " + folder_.path("e.csv"),
+          "simulate " + model_ + " -o " + folder_.path("s.csv") + " --duration 5m"}) {
+        // dash counts in blocks of 512 bytes, bash of 1024.
+        EXPECT_EQ(run_in_shell("ulimit -f 100; exec " + gyrolog_path() + " " + command), 6) << command;
+        EXPECT_EQ(names(), before) << command;
+    }
+}
+
+// Descriptor 2 would be the capture's.
+TEST_F(Outputs, AClosedStandardErrorTakesNoFilesPlace) {
+    const std::string capture = folder_.path("closed.pcapng");
+    EXPECT_EQ(
+        run_in_shell("exec " + gyrolog_path() +
+                     " capture -q --device sim:rate=1000,fault=int_lost@0.3,realtime=1 --duration 3s -o " +
+                     capture + " 2>&-"),
+        5);
+    const ProgramResult checked = run_gyrolog({"check", capture});
+    EXPECT_THAT(checked.out, Not(HasSubstr("damaged"))) << checked.out;
+    EXPECT_THAT(checked.out, HasSubstr("end of file: clean")) << checked.out;
 }
 
 // A new option for a file needs a row above.
@@ -398,6 +467,7 @@ TEST_F(Outputs, ANameFromOutsideCommandsNobody) {
     const auto shows_only = [](const std::string& text) {
         EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
         EXPECT_EQ(text.find("\xC2\x9B"), std::string::npos) << text;
+        EXPECT_EQ(text.find("\n\\u009b31m"), std::string::npos) << "its own line: " << text;
     };
     shows_only(captured.err);
     for (const std::vector<std::string>& command :

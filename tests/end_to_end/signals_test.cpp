@@ -141,6 +141,19 @@ TEST_F(Signals, OfOtherProgramsEndEveryCommand) {
     }
 }
 
+// Limits of processor time and timers send these, and people who take SIGUSR1 for a question.
+TEST_F(Signals, OfLimitsAndTimersAreTidyToo) {
+    const LongCommand command = commands().front();
+    for (const int number : {SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGPROF}) {
+        const std::string what = "signal " + std::to_string(number);
+        const ProgramResult result =
+            run_gyrolog_and_signal(command.arguments, milliseconds(command.interrupted_after_ms), number);
+        ASSERT_NE(result.signalled_ns, 0) << what << ": it has too little to do for this test";
+        EXPECT_EQ(result.exit_code, 128 + number) << what << '\n' << result.err;
+        expect_whole(command, what);
+    }
+}
+
 // The bare program's first Ctrl-C ends the capture. One in the analysis that follows ends that, and the
 // capture stays.
 TEST_F(Signals, CtrlCInTheAnalysisAfterACaptureEndsIt) {
@@ -241,6 +254,9 @@ TEST_F(Signals, ACaptureThatWaitsForItsBoardEndsAndPutsThePortBack) {
                                                                          {SIGHUP},
                                                                          {SIGQUIT},
                                                                          {SIGABRT},
+                                                                         {SIGUSR1},
+                                                                         {SIGXCPU},
+                                                                         {SIGALRM},
                                                                          {SIGINT, SIGINT},
                                                                          {SIGTSTP, SIGCONT, SIGINT}}) {
         for (const bool configured : {false, true}) {

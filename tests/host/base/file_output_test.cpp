@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
+#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -87,6 +89,30 @@ TEST_F(FileOutput, KeepsTheOwnerOfWhatWasThere) {
     ASSERT_EQ(stat(path("a").c_str(), &there), 0);
     EXPECT_EQ(there.st_uid, 65534U);
     EXPECT_EQ(there.st_gid, 65534U);
+}
+
+// Of a file that only its owner may read, by somebody else in a folder that both may write.
+TEST_F(FileOutput, IsNoMoreReadableThanWhatWasThere) {
+    if (geteuid() != 0) { GTEST_SKIP() << "needs root, who can become somebody else"; }
+    for (const auto& [before, after] :
+         {std::pair{0600U, 0600U}, std::pair{0640U, 0600U}, std::pair{0664U, 0644U}}) {
+        std::ofstream(path("a")) << "first";
+        ASSERT_EQ(chown(path("a").c_str(), 65534, 0), 0);
+        ASSERT_EQ(chmod(path("a").c_str(), before), 0);
+        ASSERT_EQ(chmod(fs::path(path("a")).parent_path().c_str(), 0777), 0);
+        const pid_t child = fork();
+        if (child == 0) {
+            const bool other = setgroups(0, nullptr) == 0 && setgid(65534) == 0 && setuid(65534) == 0;
+            _exit(other && write_file(path("a"), as_bytes("second")).ok() ? 0 : 1);
+        }
+        int status = 1;
+        waitpid(child, &status, 0);
+        ASSERT_EQ(status, 0);
+        struct stat there {};
+        ASSERT_EQ(stat(path("a").c_str(), &there), 0);
+        EXPECT_EQ(there.st_mode & 0777U, after) << std::oct << before;
+        fs::remove(path("a"));
+    }
 }
 
 TEST_F(FileOutput, ReplacesALinkAndLeavesWhatItShowedTo) {

@@ -48,5 +48,13 @@ TEST(PrintableText, InPiecesIsTheSameAsInOne) {
     }
 }
 
+TEST(ShellWord, IsOneWordThatRunsNothing) {
+    EXPECT_EQ(shell_word("night-1.pcapng"), "night-1.pcapng");
+    EXPECT_EQ(shell_word("a b;id"), "'a b;id'");
+    EXPECT_EQ(shell_word("it's $(id)"), "'it'\\''s $(id)'");
+    EXPECT_EQ(shell_word("a\nb"), "'a\\u000ab'");
+    EXPECT_EQ(shell_word(""), "''");
+}
+
 }  // namespace
 }  // namespace gyrolog

@@ -186,6 +186,16 @@ TEST_F(CaptureOnDisk, IsNotOverwrittenUnlessTold) {
     EXPECT_EQ((*file)->size_bytes(), writer->bytes_written());
 }
 
+TEST_F(CaptureOnDisk, ReplacesALinkToNothing) {
+    std::filesystem::create_symlink(folder_ / "elsewhere", folder_ / "a.pcapng");
+    auto file = create_append_file(folder_ / "a.pcapng", IfExists::replace);
+    ASSERT_TRUE(file.ok());
+    ASSERT_TRUE((*file)->write(as_bytes("x")).ok());
+    ASSERT_TRUE((*file)->take_place().ok());
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "elsewhere"));
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(folder_ / "a.pcapng")));
+}
+
 TEST_F(CaptureOnDisk, NamesTheFolderThatIsNotThere) {
     const auto refused = create_append_file(folder_ / "none" / "a.pcapng", IfExists::refuse);
     ASSERT_FALSE(refused.ok());
