@@ -137,7 +137,6 @@ std::string rounded(double value) {
 // Coefficients of a spectrum that the model does not follow are no property of the sensor.
 void warn_of_misfit(const AxisReport& axis, AxisWarnings& warnings) {
     constexpr double allowed_error = 0.05;
-    constexpr double hopeless_error = 0.5;
     const NoiseFit& fit = axis.fit;
     if (fit.upper_frequency_hz > 0.0) {
         warnings.add(axis.axis,
@@ -145,7 +144,7 @@ void warn_of_misfit(const AxisReport& axis, AxisWarnings& warnings) {
                      "does that); the coefficients are those of what lies below",
                      "above " + rounded(fit.upper_frequency_hz) + " Hz");
     }
-    if (fit.method == FitMethod::likelihood && fit.model_error > hopeless_error) {
+    if (fit.is_of_motion()) {
         warnings.add(axis.axis,
                      "this is not the noise of a sensor at rest (motion, vibration?): the "
                      "coefficients mean nothing");
@@ -313,6 +312,12 @@ void count_holes(const Recording& recording, AnalysisReport& report) {
 }
 
 }  // namespace
+
+bool AnalysisReport::is_of_motion() const {
+    const auto moved = [](const AxisReport& axis) { return axis.fit.is_of_motion(); };
+    return std::ranges::any_of(axes, moved) ||
+           (accelerometer && std::ranges::any_of(accelerometer->axes, moved));
+}
 
 AnalysisReport analyze(const Recording& recording, const AnalysisOptions& options) {
     AnalysisReport report;

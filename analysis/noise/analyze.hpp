@@ -66,6 +66,8 @@ struct AnalysisReport {
     std::vector<std::string> warnings;
 
     bool has_axes() const { return !axes.empty() || accelerometer.has_value(); }
+    // Of any axis of either sensor, which are on one board: NoiseFit::is_of_motion().
+    bool is_of_motion() const;
 };
 
 struct AnalysisOptions : AllanOptions {

@@ -103,6 +103,9 @@ struct NoiseFit {
     const FittedCoefficient& operator[](NoiseTerm term) const {
         return terms[static_cast<std::size_t>(term)];
     }
+    // The record's spectrum has hardly anything of the noise of a sensor at rest (model_error): it was in
+    // motion, or shaken, and the coefficients mean nothing.
+    bool is_of_motion() const;
     // The identified terms as they are reported; 0 for the others.
     NoiseModel identified() const;
 };

@@ -118,6 +118,7 @@ AllanFigure analysis_figure(const AnalysisReport& report, SensorKind sensor) {
     figure.slope_lines = deviation.is_allan;
     figure.source = report.name;
     figure.facts = facts_of(report);
+    if (report.is_of_motion()) { figure.facts.emplace_back("the sensor moved: no noise coefficients"); }
     if (const std::string off = taken_off(drawn.axes); !off.empty()) { figure.facts.push_back(off); }
     figure.unit = deviation_unit(drawn);
     for (const AxisReport& axis : drawn.axes) { figure.traces.push_back(trace_of(axis, deviation.is_allan)); }

@@ -12,7 +12,7 @@
 namespace gyrolog {
 
 // The curves and spectra of one sensor of the report, which has it, and how the samples of its axes lie
-// around their bias, an accelerometer's around their mean.
+// around their bias, an accelerometer's around their mean. Of a recording in motion the facts say so.
 AllanFigure analysis_figure(const AnalysisReport& report, SensorKind sensor);
 HistogramFigure samples_figure(const AnalysisReport& report, const Recording& recording, SensorKind sensor);
 

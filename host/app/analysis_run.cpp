@@ -13,6 +13,7 @@
 #include "host/app/capture_report.hpp"
 #include "host/app/command.hpp"
 #include "host/app/figure_file.hpp"
+#include "host/app/motion_refusal.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
@@ -84,6 +85,7 @@ Status write_fitted_model(const AnalysisRequest& request, const Recording& recor
         return Error{ErrorCode::invalid_argument,
                      "a model is of one sensor with axes x, y and z, and this recording has none of them"};
     }
+    GYROLOG_CHECK(refuse_motion(report, request.recording_path, "model"));
     return write_model(fitted_model(report, recording), request.model_path);
 }
 

@@ -6,6 +6,7 @@
 #include "analysis/noise/analyze.hpp"
 #include "host/app/command.hpp"
 #include "host/app/model_help.hpp"
+#include "host/app/motion_refusal.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/part_options.hpp"
@@ -156,6 +157,9 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     const ExportSource source = export_source(recording, report);
     if (format.needs == ExportFormat::Needs::noise && source.gyro.empty()) {
         return Error{ErrorCode::failed, options.source + ": there is no gyro named gx, gy or gz"};
+    }
+    if (format.needs == ExportFormat::Needs::noise) {
+        GYROLOG_CHECK(refuse_motion(report, options.source, "noise parameters"));
     }
     return write_noise(console, options, format, source);
 }

@@ -30,5 +30,18 @@ TEST(AnalysisFigure, SaysWhichAxesLackTheirDriftWithTemperature) {
                 Contains("without the drift with temperature of x, z"));
 }
 
+TEST(AnalysisFigure, SaysThatTheSensorMoved) {
+    AnalysisReport report = report_on({"x", "y"});
+    report.accelerometer.emplace().axes.resize(1);
+    for (AxisReport& axis : report.axes) { axis.fit.method = FitMethod::likelihood; }
+    report.axes[1].fit.model_error = 0.4;
+    EXPECT_THAT(analysis_figure(report, SensorKind::gyro).facts, Not(Contains(HasSubstr("moved"))));
+    report.axes[1].fit.model_error = 0.6;
+    for (const SensorKind sensor : {SensorKind::gyro, SensorKind::accelerometer}) {
+        EXPECT_THAT(analysis_figure(report, sensor).facts,
+                    Contains("the sensor moved: no noise coefficients"));
+    }
+}
+
 }  // namespace
 }  // namespace gyrolog

@@ -205,6 +205,64 @@ TEST(AnalyzeFiles, TheReportIsShownBeforeAFileThatCannotBeWritten) {
     }
 }
 
+// Turned by hand, quickly and now and then, for half a minute; after that half a minute at rest.
+std::string write_moving_recording(const TemporaryFolder& folder) {
+    std::string path = folder.path("turned.csv");
+    std::ofstream text(path);
+    text << "t_s,gx_dps,ax_g,ay_g,az_g\n";
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise;
+    for (int row = 0; row < 6000; ++row) {
+        const double t_s = row / 100.0;
+        double rate_dps = 0.05 * noise(random);
+        for (const double at_s : {2.0, 3.1, 7.4, 12.0, 12.9, 19.3, 24.4, 27.7}) {
+            rate_dps += 90.0 * std::exp(-0.5 * std::pow((t_s - at_s) / 0.15, 2.0));
+        }
+        text << t_s << ',' << rate_dps << ',' << 1e-3 * noise(random) << ',' << 1e-3 * noise(random) << ','
+             << 1.0 + 1e-3 * noise(random) << '\n';
+    }
+    return path;
+}
+
+TEST(AnalyzeFiles, NoModelIsMadeOfARecordingInMotion) {
+    const TemporaryFolder folder;
+    const std::string recording = write_moving_recording(folder);
+    const std::string model = folder.path("m.json");
+    const CommandResult result = run({"analyze", recording, "--model", model, "--json", folder.path("a.json"),
+                                      "--plot", folder.path("a.png")});
+    EXPECT_EQ(result.exit_code, ExitCode::failed);
+    EXPECT_FALSE(std::filesystem::exists(model));
+    EXPECT_NE(result.err.find("no model from a recording in motion or under vibration (gyro x)"),
+              std::string::npos)
+        << result.err;
+    for (const char* option : {"--still auto", "--from"}) {
+        EXPECT_NE(result.err.find(option), std::string::npos) << result.err;
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder.path("a.json")));
+    EXPECT_TRUE(std::filesystem::exists(folder.path("a.png")));
+    EXPECT_NE(result.out.find("the coefficients mean nothing"), std::string::npos) << result.out;
+    const CommandResult at_rest = run({"analyze", recording, "--still", "auto", "--model", model});
+    EXPECT_EQ(at_rest.exit_code, ExitCode::ok) << at_rest.err;
+    EXPECT_TRUE(std::filesystem::exists(model));
+}
+
+TEST(ExportFiles, NoNoiseParametersAreMadeOfARecordingInMotion) {
+    const TemporaryFolder folder;
+    const std::string recording = write_moving_recording(folder);
+    for (const char* name : {"imu.yaml", "gyro.m", "gyro.tuning.json"}) {
+        const CommandResult result = run({"export", recording, "-o", folder.path(name)});
+        EXPECT_EQ(result.exit_code, ExitCode::failed) << name;
+        EXPECT_NE(result.err.find("no noise parameters from a recording in motion"), std::string::npos)
+            << result.err;
+        EXPECT_FALSE(std::filesystem::exists(folder.path(name))) << name;
+    }
+    const std::string params = folder.path("ekf.params");
+    EXPECT_EQ(run({"export", recording, "--for", "px4-ekf2", "-o", params}).exit_code, ExitCode::failed);
+    EXPECT_EQ(run({"export", recording, "--for", "px4-ekf2", "--from", "31", "-o", params}).exit_code,
+              ExitCode::ok);
+    EXPECT_EQ(run({"export", recording, "-o", folder.path("all.mat")}).exit_code, ExitCode::ok);
+}
+
 TEST(StageClock, CountsAStageThatIsEnteredAgainAsOne) {
     StageClock clock;
     for (const char* stage : {"a", "b", "a", "b", "c"}) { clock.enter(stage); }

@@ -1,0 +1,15 @@
+// What is of a sensor at rest only, such as its noise model, is not made of a recording in motion.
+#pragma once
+
+#include <string>
+
+#include "analysis/noise/analyze.hpp"
+#include "host/base/result.hpp"
+
+namespace gyrolog {
+
+// Error: failed where the report is of a recording in motion (AnalysisReport::is_of_motion()), with what to
+// do. `result` is what is not made then: "a model".
+Status refuse_motion(const AnalysisReport& report, const std::string& path, const std::string& result);
+
+}  // namespace gyrolog
