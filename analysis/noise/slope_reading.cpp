@@ -9,10 +9,8 @@ namespace gyrolog {
 namespace {
 
 // Slopes are read over windows of a factor four in tau: between neighbouring points the curve's own noise is
-// steeper than any slope looked for. A window needs ten degrees of freedom at its worst point; with fewer, as
-// at the last few averaging times of every record, a slope is chance.
+// steeper than any slope looked for. A window needs edf_to_read at its worst point.
 constexpr double half_window = 2.0;
-constexpr double edf_needed = 10.0;
 
 // In logarithms of tau and deviation.
 struct Window {
@@ -32,7 +30,7 @@ std::optional<Window> window_around(std::span<const AllanPoint> points, double t
         if (p.tau_s < tau_s / half_window || p.tau_s > tau_s * half_window || p.deviation <= 0.0) {
             continue;
         }
-        if (p.edf > 0.0 && p.edf < edf_needed) { return std::nullopt; }
+        if (p.edf > 0.0 && p.edf < edf_to_read) { return std::nullopt; }
         least_edf = inside.empty() ? p.edf : std::min(least_edf, p.edf);
         inside.push_back(&p);
     }
@@ -95,6 +93,15 @@ SlopeReading read_slopes(const AllanCurve& curve) {
         reading.K = {std::exp(w->level - 0.5 * (w->centre - std::log(3.0))), std::exp(w->centre)};
     }
     return reading;
+}
+
+const AllanPoint* lowest_point(const AllanCurve& curve) {
+    const AllanPoint* lowest = nullptr;
+    for (const AllanPoint& point : curve.points) {
+        if (point.edf < edf_to_read) { continue; }
+        if (lowest == nullptr || point.deviation < lowest->deviation) { lowest = &point; }
+    }
+    return lowest;
 }
 
 }  // namespace gyrolog

@@ -11,6 +11,11 @@
 
 namespace gyrolog {
 
+// What is read off a curve needs so many degrees of freedom behind it, which leave a deviation uncertain by
+// 1 / sqrt(2 edf), 22 %. With fewer, as at the last few averaging times of every record, a slope or a lowest
+// point is chance.
+inline constexpr double edf_to_read = 10.0;
+
 struct SlopeReading {
     struct Value {
         double coefficient = 0.0;  // N, B or K in the curve's unit (times sqrt(s), 1, 1/sqrt(s))
@@ -20,5 +25,8 @@ struct SlopeReading {
 };
 
 SlopeReading read_slopes(const AllanCurve& curve);
+
+// The curve's lowest point among those with edf_to_read behind them; null where there is none.
+const AllanPoint* lowest_point(const AllanCurve& curve);
 
 }  // namespace gyrolog

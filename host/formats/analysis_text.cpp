@@ -81,16 +81,20 @@ std::vector<TextRow> temperature_rows(const SensorTable& sensor, double confiden
 
 std::vector<TextRow> lowest_rows(const SensorTable& sensor) {
     TextRow deviation{"lowest deviation", sensor.unit.name, {}};
+    TextRow from{"   from", sensor.unit.name, {}};
+    TextRow to{"   to", sensor.unit.name, {}};
     TextRow tau{"   at tau", "s", {}};
     for (const AxisReport& axis : sensor.axes) {
-        const auto& points = axis.curve.points;
-        const auto least = std::ranges::min_element(points, {}, &AllanPoint::deviation);
-        const bool has = least != points.end();
-        deviation.cells.push_back(has ? fmt::format("{:.3g}", least->deviation * sensor.unit.per_column_unit)
-                                      : "-");
-        tau.cells.push_back(has ? in_digits(least->tau_s, 3) : "-");
+        const AllanPoint* lowest = lowest_point(axis.curve);
+        const auto size = [&](double AllanPoint::*of) {
+            return lowest == nullptr ? "-" : fmt::format("{:.3g}", lowest->*of * sensor.unit.per_column_unit);
+        };
+        deviation.cells.push_back(size(&AllanPoint::deviation));
+        from.cells.push_back(size(&AllanPoint::lo));
+        to.cells.push_back(size(&AllanPoint::hi));
+        tau.cells.push_back(lowest == nullptr ? "-" : in_digits(lowest->tau_s, 3));
     }
-    return {deviation, tau};
+    return {deviation, from, to, tau};
 }
 
 std::vector<TextRow> rows_of(const SensorTable& sensor, std::span<const FitOfColumn> fits,
@@ -146,8 +150,10 @@ std::string signs_text(const AnalysisReport& report, const char* expanded) {
     return fmt::format(
         "  In brackets: one standard deviation in the last two digits ({}: expanded,\n"
         "  95.45 %). \"<\": not identifiable in this record, upper limit at {:.3g} %.\n"
-        "  (at best): the Cramer-Rao bound, below which no unbiased method gets.\n",
-        expanded, report.confidence * 100.0);
+        "  (at best): the Cramer-Rao bound, below which no unbiased method gets.\n"
+        "  Lowest deviation: where {:g} degrees of freedom or more stand behind it, with\n"
+        "  its interval at {:.3g} %.\n",
+        expanded, report.confidence * 100.0, edf_to_read, report.confidence * 100.0);
 }
 
 // One in the trade's units with the text below it, and one in SI.

@@ -232,6 +232,26 @@ TEST(AnalysisText, NamesEveryAxisWithItsUnits) {
     EXPECT_THAT(text, HasSubstr("not identifiable"));
 }
 
+// Of x the last point is lowest by chance, of y no point is known well enough.
+TEST(AnalysisText, GivesTheLowestDeviationThatIsKnown) {
+    AnalysisReport report;
+    report.rate_hz = 1.0;
+    report.unit = {"dps", 1.0};
+    report.axes.resize(2);
+    report.axes[0].axis = "x";
+    report.axes[0].curve.points = {{1, 1.0, 0.4, 0.39, 0.41, 900.0, 999},
+                                   {10, 10.0, 0.2, 0.17, 0.23, 10.0, 90},
+                                   {30, 30.0, 0.1, 0.05, 0.3, 2.0, 40}};
+    report.axes[1].axis = "y";
+    report.axes[1].curve.points = {{1, 1.0, 0.4, 0.3, 0.6, 9.0, 9}};
+    const std::string text = analysis_text(report);
+    EXPECT_THAT(text, testing::ContainsRegex("lowest deviation +dps +0\\.2 +-\n"
+                                             " +from +dps +0\\.17 +-\n"
+                                             " +to +dps +0\\.23 +-\n"
+                                             " +at tau +s +10 +-\n"));
+    EXPECT_THAT(text, HasSubstr("where 10 degrees of freedom"));
+}
+
 class AnalysisOfRealRecordings : public testing::Test {
 protected:
     void SetUp() override {
