@@ -32,7 +32,9 @@ TimeAxis time_axis(const CourseFigure& course, std::size_t parts) {
     return axis;
 }
 
-std::string rate_title(const CourseFigure& course) { return "rate − bias (" + course.unit_name + ")"; }
+std::string rate_title(const CourseFigure& course) {
+    return course.signal_name + " − " + course.mean_name + " (" + course.unit_name + ")";
+}
 
 Curve curve_of(const CourseFigure& course, std::size_t trace, const std::vector<double>& x) {
     Curve curve;

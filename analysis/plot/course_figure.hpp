@@ -19,6 +19,8 @@ struct CourseFigure {
     std::string title = "Course of the bias";
     std::string source;
     std::vector<std::string> facts;
+    std::string signal_name = "rate";
+    std::string mean_name = "bias";
     std::string unit_name = "°/s";
     double per_unit_of_data = 1.0;
     double duration_s = 0.0;

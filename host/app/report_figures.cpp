@@ -48,13 +48,14 @@ Figure panel_alone(const Figure& of, std::size_t panel, double height_mm) {
     return figure;
 }
 
-Status draw_analysis(ReportPage& page) {
-    AllanFigure allan = analysis_figure(page.analysis, SensorKind::gyro);
+Status draw_analysis(const AnalysisReport& analysis, SensorKind sensor, SensorFigures& drawn_ones) {
+    AllanFigure allan = analysis_figure(analysis, sensor);
     allan.paper = page_column;
     const Figure both = on_page(figure_of(allan));
-    GYROLOG_TRY(page.deviation_png, drawn("Allan deviation", panel_alone(both, 0, deviation_height_mm)));
+    GYROLOG_TRY(drawn_ones.deviation_png,
+                drawn("Allan deviation", panel_alone(both, 0, deviation_height_mm)));
     if (both.panels.size() > 1) {
-        GYROLOG_TRY(page.spectrum_png, drawn("spectrum", panel_alone(both, 1, spectrum_height_mm)));
+        GYROLOG_TRY(drawn_ones.spectrum_png, drawn("spectrum", panel_alone(both, 1, spectrum_height_mm)));
     }
     return {};
 }
@@ -63,18 +64,30 @@ std::size_t parts_of(const Recording& recording) {
     return std::clamp<std::size_t>(recording.rows() / samples_of_part_least, 1, course_parts_most);
 }
 
-CourseFigure course_figure(const AnalysisReport& analysis, const Recording& recording) {
+void set_units(CourseFigure& course, const SensorUnit& unit) {
+    if (unit.sensor == SensorKind::accelerometer) {
+        course.signal_name = "specific force";
+        course.mean_name = "mean";
+    }
+    if (unit.is_counts()) {
+        course.unit_name = "lsb";
+    } else if (unit.sensor == SensorKind::gyro) {
+        course.per_unit_of_data = deg_per_rad;
+    } else {
+        course.unit_name = "g";
+        course.per_unit_of_data = SensorUnit::g().per_column_unit;
+    }
+}
+
+CourseFigure course_figure(const AnalysisReport& analysis, const Recording& recording, SensorKind sensor) {
+    const bool is_gyro = sensor == SensorKind::gyro;
     CourseFigure course;
     course.paper = page_column;
     course.duration_s = analysis.duration_s;
-    if (analysis.unit.name == "lsb") {
-        course.unit_name = "lsb";
-    } else {
-        course.per_unit_of_data = deg_per_rad;
-    }
+    set_units(course, is_gyro ? analysis.unit : analysis.accelerometer->unit);
     const std::size_t parts = parts_of(recording);
-    for (const AxisReport& axis : analysis.axes) {
-        const Column* column = recording.find("g" + axis.axis);
+    for (const AxisReport& axis : is_gyro ? analysis.axes : analysis.accelerometer->axes) {
+        const Column* column = recording.find((is_gyro ? "g" : "a") + axis.axis);
         if (column == nullptr) { continue; }
         CourseTrace& trace = course.traces.emplace_back(CourseTrace{axis.axis, {}});
         trace.means = course_of(recording, *column, parts);
@@ -86,15 +99,27 @@ CourseFigure course_figure(const AnalysisReport& analysis, const Recording& reco
     return course;
 }
 
+Status draw_sensor(const AnalysisReport& analysis, const Recording& recording, SensorKind sensor,
+                   SensorFigures& drawn_ones) {
+    GYROLOG_CHECK(draw_analysis(analysis, sensor, drawn_ones));
+    HistogramFigure samples = samples_figure(analysis, recording, sensor);
+    samples.paper = page_column;
+    GYROLOG_TRY(drawn_ones.samples_png, drawn("histogram", on_page(figure_of(samples))));
+    GYROLOG_TRY(drawn_ones.course_png,
+                drawn("course of the bias", on_page(figure_of(course_figure(analysis, recording, sensor)))));
+    return {};
+}
+
 }  // namespace
 
 Status draw_figures(ReportPage& page, const Recording& recording) {
-    if (Status fine = draw_analysis(page); !fine.ok()) { return fine; }
-    HistogramFigure samples = samples_figure(page.analysis, recording, SensorKind::gyro);
-    samples.paper = page_column;
-    GYROLOG_TRY(page.samples_png, drawn("histogram", on_page(figure_of(samples))));
-    GYROLOG_TRY(page.course_png,
-                drawn("course of the bias", on_page(figure_of(course_figure(page.analysis, recording)))));
+    const AnalysisReport& analysis = page.analysis;
+    if (!analysis.axes.empty()) {
+        GYROLOG_CHECK(draw_sensor(analysis, recording, SensorKind::gyro, page.gyro));
+    }
+    if (analysis.accelerometer) {
+        GYROLOG_CHECK(draw_sensor(analysis, recording, SensorKind::accelerometer, page.accelerometer));
+    }
     if (page.diagnosis == nullptr) { return {}; }
     DiagnosisFigure diagnosis = titled_figure(*page.diagnosis, "recording", diagnosis_facts(*page.diagnosis));
     diagnosis.paper = page_column;

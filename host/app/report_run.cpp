@@ -90,17 +90,18 @@ ExitCode report_to_file(Console& console, const ReportRequest& request) {
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.part = request.part;
     input.text = request.text;
+    input.needs_gyro = false;
     progress.emplace(console);
     input.on_share = progress->of_reading();
     const auto read = read_timed_recording(input);
     if (!read.ok()) { return fail(read.error()); }
     AnalysisOptions options;
-    options.sensors = Sensors::gyro;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     options.on_stage = StageObserver([&](const char* stage) { progress->show_analysis(stage); });
     const AnalysisReport analysis = analyze(read->recording, options);
-    if (analysis.axes.empty()) {
-        return fail({ErrorCode::failed, request.recording_path + ": there is no angular rate to report on"});
+    if (!analysis.has_axes()) {
+        return fail({ErrorCode::failed, request.recording_path +
+                                            ": there is no angular rate and no specific force to report on"});
     }
     progress->show("drawing");
     const auto page = page_of(request, *read, analysis, diagnosis ? &*diagnosis : nullptr);

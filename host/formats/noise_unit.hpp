@@ -34,10 +34,10 @@ struct ScaledUnit {
     double per_column_unit = 1.0;  // what 1 of the column's own unit is
 };
 
-// The units in which people state a term, as a page prints them: of N "rad/s/√Hz", "°/s/√Hz", "°/h/√Hz",
-// "°/√h". A unit of rate that is none of angle has its own only.
-std::vector<ScaledUnit> printed_units(NoiseTerm term, const RateUnit& unit);
-// The same of a rate: "rad/s", "°/s", "°/h".
-std::vector<ScaledUnit> printed_rate_units(const RateUnit& unit);
+// The units in which people state a term, as a page prints them: of a gyro's N "rad/s/√Hz", "°/s/√Hz",
+// "°/h/√Hz", "°/√h", of an accelerometer's "m/s²/√Hz", "µg/√Hz", "m/s/√h". Counts have their own only.
+std::vector<ScaledUnit> printed_units(NoiseTerm term, const SensorUnit& unit);
+// The same of what is sensed: "rad/s", "°/s", "°/h"; "m/s²", "g".
+std::vector<ScaledUnit> printed_signal_units(const SensorUnit& unit);
 
 }  // namespace gyrolog

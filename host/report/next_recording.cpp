@@ -49,10 +49,17 @@ double& value_of(NoiseCoefficients& noise, NoiseTerm term) {
     return term == NoiseTerm::B ? noise.B_rad_per_s : noise.K_rad_per_s_sqrt_s;
 }
 
-void add_unidentified(std::vector<std::string>& sentences, const AnalysisReport& analysis, NoiseTerm term,
+// One sensor of a recording, and what stands before a sentence of it.
+struct SensorAxes {
+    const std::vector<AxisReport>& axes;
+    const AnalysisReport& analysis;
+    std::string of;
+};
+
+void add_unidentified(std::vector<std::string>& sentences, const SensorAxes& sensor, NoiseTerm term,
                       const LengthNeeded& needed) {
     Asked asked;
-    for (const AxisReport& axis : analysis.axes) {
+    for (const AxisReport& axis : sensor.axes) {
         const FittedCoefficient& fitted = axis.fit[term];
         if (fitted.state == State::identified) { continue; }
         NoiseCoefficients noise = axis.fit.best.coefficients;
@@ -60,8 +67,8 @@ void add_unidentified(std::vector<std::string>& sentences, const AnalysisReport&
         asked.add(axis.axis, needed(noise, identified_sd));
     }
     if (asked.axes.empty()) { return; }
-    std::string sentence = fmt::format("{} of {} is not identified in {}", name_of(term), listed(asked.axes),
-                                       duration_text(analysis.duration_s));
+    std::string sentence = fmt::format("{}{} of {} is not identified in {}", sensor.of, name_of(term),
+                                       listed(asked.axes), duration_text(sensor.analysis.duration_s));
     if (asked.is_out_of_reach) {
         sentence +=
             ", and no recording of a year would do, were it half of its upper limit: for a filter "
@@ -73,42 +80,46 @@ void add_unidentified(std::vector<std::string>& sentences, const AnalysisReport&
     sentences.push_back(std::move(sentence));
 }
 
-void add_vague(std::vector<std::string>& sentences, const AnalysisReport& analysis, NoiseTerm term,
+void add_vague(std::vector<std::string>& sentences, const SensorAxes& sensor, NoiseTerm term,
                const LengthNeeded& needed) {
     Asked asked;
     double worst_sd = 0.0;
-    for (const AxisReport& axis : analysis.axes) {
+    for (const AxisReport& axis : sensor.axes) {
         const FittedCoefficient& fitted = axis.fit[term];
         if (fitted.state != State::identified || fitted.sd <= wanted_sd * fitted.value) { continue; }
         worst_sd = std::max(worst_sd, fitted.sd / fitted.value);
         asked.add(axis.axis, needed(axis.fit.best.coefficients, wanted_sd));
     }
-    if (asked.axes.empty() || asked.is_out_of_reach || asked.length_s <= analysis.duration_s) { return; }
-    sentences.push_back(fmt::format("{} of {} is known to ±{:.0f} %; ±{:.0f} % take a recording of {}.",
-                                    name_of(term), listed(asked.axes), 100.0 * worst_sd, 100.0 * wanted_sd,
-                                    length_text(asked.length_s)));
+    if (asked.axes.empty() || asked.is_out_of_reach || asked.length_s <= sensor.analysis.duration_s) {
+        return;
+    }
+    sentences.push_back(fmt::format("{}{} of {} is known to ±{:.0f} %; ±{:.0f} % take a recording of {}.",
+                                    sensor.of, name_of(term), listed(asked.axes), 100.0 * worst_sd,
+                                    100.0 * wanted_sd, length_text(asked.length_s)));
 }
 
-bool any_without(const AnalysisReport& analysis, NoiseTerm term) {
-    return std::ranges::any_of(analysis.axes, [&](const AxisReport& axis) {
-        return axis.fit[term].state == State::not_identifiable;
-    });
+bool any_without(const SensorAxes& sensor, NoiseTerm term) {
+    return std::ranges::any_of(
+        sensor.axes, [&](const AxisReport& axis) { return axis.fit[term].state == State::not_identifiable; });
 }
 
-void add_other_terms(std::vector<std::string>& sentences, const AnalysisReport& analysis) {
-    if (any_without(analysis, NoiseTerm::N)) {
-        sentences.emplace_back(
+void add_other_terms(std::vector<std::string>& sentences, const SensorAxes& sensor) {
+    if (any_without(sensor, NoiseTerm::N)) {
+        sentences.push_back(
+            sensor.of +
             "N is not identified: record for longer, with the sensor's filter off or wider, so that its "
             "white "
             "noise shows.");
     }
-    if (any_without(analysis, NoiseTerm::Q)) {
-        sentences.emplace_back(
+    if (any_without(sensor, NoiseTerm::Q)) {
+        sentences.push_back(
+            sensor.of +
             "Q is told by the rate, not by the length: where a filter works with short increments, record "
             "once at the highest rate and with the filter off.");
     }
-    if (any_without(analysis, NoiseTerm::R)) {
-        sentences.emplace_back(
+    if (any_without(sensor, NoiseTerm::R)) {
+        sentences.push_back(
+            sensor.of +
             "No ramp R stands out; that takes a longer recording after a warm-up, at one temperature.");
     }
 }
@@ -130,22 +141,30 @@ void add_whole(std::vector<std::string>& sentences, const AnalysisReport& analys
     }
 }
 
+void add_of_sensor(std::vector<std::string>& sentences, const SensorAxes& sensor) {
+    const double rate_hz = sensor.analysis.rate_hz;
+    const LengthNeeded for_walk = [=](const NoiseCoefficients& noise, double sd) {
+        return length_to_know_walk_s(noise, rate_hz, sd);
+    };
+    const LengthNeeded for_flicker = [=](const NoiseCoefficients& noise, double sd) {
+        return length_to_know_flicker_s(noise, rate_hz, sd);
+    };
+    add_unidentified(sentences, sensor, NoiseTerm::B, for_flicker);
+    add_unidentified(sentences, sensor, NoiseTerm::K, for_walk);
+    add_vague(sentences, sensor, NoiseTerm::B, for_flicker);
+    add_vague(sentences, sensor, NoiseTerm::K, for_walk);
+    add_other_terms(sentences, sensor);
+}
+
 }  // namespace
 
 std::vector<std::string> next_recordings(const AnalysisReport& analysis, bool has_temperature) {
-    const LengthNeeded for_walk = [&](const NoiseCoefficients& noise, double sd) {
-        return length_to_know_walk_s(noise, analysis.rate_hz, sd);
-    };
-    const LengthNeeded for_flicker = [&](const NoiseCoefficients& noise, double sd) {
-        return length_to_know_flicker_s(noise, analysis.rate_hz, sd);
-    };
     std::vector<std::string> sentences;
     add_whole(sentences, analysis, has_temperature);
-    add_unidentified(sentences, analysis, NoiseTerm::B, for_flicker);
-    add_unidentified(sentences, analysis, NoiseTerm::K, for_walk);
-    add_vague(sentences, analysis, NoiseTerm::B, for_flicker);
-    add_vague(sentences, analysis, NoiseTerm::K, for_walk);
-    add_other_terms(sentences, analysis);
+    add_of_sensor(sentences, {analysis.axes, analysis, analysis.accelerometer ? "Gyro: " : ""});
+    if (analysis.accelerometer) {
+        add_of_sensor(sentences, {analysis.accelerometer->axes, analysis, "Accelerometer: "});
+    }
     return sentences;
 }
 

@@ -44,9 +44,9 @@ std::string temperature_text(const ReportPage& page) {
                        page.temperature->highest_degC);
 }
 
-std::string axes_text(const AnalysisReport& analysis) {
+std::string axes_text(const std::vector<AxisReport>& axes) {
     std::string text;
-    for (const AxisReport& axis : analysis.axes) { text += (text.empty() ? "" : ", ") + axis.axis; }
+    for (const AxisReport& axis : axes) { text += (text.empty() ? "" : ", ") + axis.axis; }
     return text;
 }
 
@@ -55,7 +55,10 @@ Html facts_of(const ReportPage& page) {
     HtmlTable facts{{}, {}, "facts"};
     facts.rows.push_back(cells_of({"length", duration_text(analysis.duration_s)}));
     facts.rows.push_back(cells_of({"samples", format_count(analysis.samples)}));
-    facts.rows.push_back(cells_of({"gyro axes", axes_text(analysis)}));
+    if (!analysis.axes.empty()) { facts.rows.push_back(cells_of({"gyro axes", axes_text(analysis.axes)})); }
+    if (analysis.accelerometer) {
+        facts.rows.push_back(cells_of({"accelerometer axes", axes_text(analysis.accelerometer->axes)}));
+    }
     facts.rows.push_back(cells_of({"rate", rate_text(analysis)}));
     facts.rows.push_back(cells_of({"missing", missing_text(analysis)}));
     if (analysis.stops > 0) {

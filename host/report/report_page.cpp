@@ -19,6 +19,20 @@ Html head_of(const ReportPage& page) {
                     element("style", Html::markup(page_style)));
 }
 
+std::vector<SensorPart> parts_of(const ReportPage& page) {
+    const AnalysisReport& analysis = page.analysis;
+    std::vector<SensorPart> parts;
+    if (!analysis.axes.empty()) {
+        const char* of = analysis.accelerometer ? " of the gyro" : "";
+        parts.push_back({page, page.gyro, analysis.axes, analysis.unit, of});
+    }
+    if (analysis.accelerometer) {
+        parts.push_back({page, page.accelerometer, analysis.accelerometer->axes, analysis.accelerometer->unit,
+                         " of the accelerometer"});
+    }
+    return parts;
+}
+
 Html body_of(const ReportPage& page) {
     Html body = element("h1", Html::text(page.analysis.name));
     if (page.diagnosis != nullptr) {
@@ -26,9 +40,11 @@ Html body_of(const ReportPage& page) {
             fmt::format("Against {}: {}", page.diagnosis->model_name, verdict_sentence(*page.diagnosis)));
     }
     body += recording_section(page);
-    body += figures_section(page);
-    body += coefficients_section(page);
-    body += bias_section(page);
+    for (const SensorPart& part : parts_of(page)) {
+        body += figures_section(part);
+        body += coefficients_section(part);
+        body += bias_section(part);
+    }
     body += diagnosis_section(page);
     body += next_section(page);
     return body + element("footer", Html::text("Written by " + program_name() + "."));

@@ -1,6 +1,6 @@
-// A recording on one page: what it is and how whole, its noise, its bias, where a model parts from it, and
-// what to record next. The page is one file of HTML with its pictures inside: nothing is fetched, nothing
-// runs. It reads in light and in dark, prints on A4, and loses nothing in grey.
+// A recording on one page: what it is and how whole, of each sensor its noise and its bias, where a model
+// parts from it, and what to record next. The page is one file of HTML with its pictures inside: nothing is
+// fetched, nothing runs. It reads in light and in dark, prints on A4, and loses nothing in grey.
 #pragma once
 
 #include <cstdint>
@@ -22,18 +22,23 @@ struct TemperatureRange {
 
 using Png = std::vector<std::uint8_t>;
 
+// Empty where there is none.
+struct SensorFigures {
+    Png deviation_png{};
+    Png spectrum_png{};
+    Png samples_png{};
+    Png course_png{};
+};
+
 struct ReportPage {
     const AnalysisReport& analysis;
     std::vector<LabelledLine> about;  // what a capture says of itself; of text nothing
     std::vector<Dropout> dropouts;    // without the stops
     std::optional<TemperatureRange> temperature;
     const Diagnosis* diagnosis = nullptr;  // null: no model was given
-    // Empty where there is none.
-    Png deviation_png{};
-    Png spectrum_png{};
-    Png samples_png{};
-    Png course_png{};
-    Png diagnosis_png{};
+    SensorFigures gyro{};
+    SensorFigures accelerometer{};
+    Png diagnosis_png{};  // empty where there is none
 };
 
 std::string report_html(const ReportPage& page);

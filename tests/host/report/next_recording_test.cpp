@@ -96,5 +96,14 @@ TEST(NextRecordings, AreWholeStampedAndHaveATemperature) {
     EXPECT_THAT(next_recordings(analysis, true), Not(Contains(HasSubstr("temp_C"))));
 }
 
+TEST(NextRecordings, NameTheSensorWhereThereAreTwo) {
+    AnalysisReport analysis = complete();
+    analysis.accelerometer.emplace().axes = complete().axes;
+    EXPECT_THAT(next_recordings(analysis, true), IsEmpty());
+    term(analysis.accelerometer->axes[1], NoiseTerm::K) = bounded(2e-7);
+    EXPECT_THAT(next_recordings(analysis, true),
+                testing::ElementsAre(HasSubstr("Accelerometer: K of y is not identified")));
+}
+
 }  // namespace
 }  // namespace gyrolog

@@ -86,8 +86,10 @@ std::string ReportCommand::diagnosed_;
 
 TEST_F(ReportCommand, WritesEverySection) {
     for (const char* title :
-         {"What was recorded", "What the capture says of itself", "Allan deviation and spectrum",
-          "Noise coefficients", "Bias", "What to record next"}) {
+         {"What was recorded", "What the capture says of itself", "Allan deviation and spectrum of the gyro",
+          "Noise coefficients of the gyro", "Bias of the gyro",
+          "Allan deviation and spectrum of the accelerometer", "Noise coefficients of the accelerometer",
+          "Mean and gravity of the accelerometer", "What to record next"}) {
         EXPECT_THAT(plain_, HasSubstr(fmt::format(">{}</h", title)));
     }
     EXPECT_THAT(plain_, Not(HasSubstr("Against the model")));
@@ -115,6 +117,47 @@ TEST_F(ReportCommand, HasTheNumbersOfTheAnalysis) {
             << name;
     }
     EXPECT_GE(identified, 3U) << "the recording does not even tell N";
+}
+
+TEST_F(ReportCommand, HasTheAccelerometerInItsOwnUnits) {
+    const json& accelerometer = analysis_["accelerometer"];
+    for (const auto& [name, axis] : accelerometer["axes"].items()) {
+        const json& N = axis["coefficients"]["N"];
+        ASSERT_EQ(N["state"], "identified") << name;
+        EXPECT_THAT(
+            plain_,
+            HasSubstr("<td>" + with_uncertainty(1e6 * N["value"].get<double>(), 1e6 * N["sd"].get<double>()) +
+                      "</td>"))
+            << name;
+        const json& mean = axis["mean"];
+        EXPECT_THAT(plain_, HasSubstr(with_uncertainty(mean["value"], mean["expanded_uncertainty"])));
+    }
+    EXPECT_THAT(plain_, AllOf(HasSubstr("accelerometer axes</th><td>x, y, z</td>"), HasSubstr(">µg/√Hz</th>"),
+                              HasSubstr(">m/s/√h</th>"), HasSubstr("velocity random walk"),
+                              HasSubstr("the velocity is off by")));
+    const json& size = accelerometer["gravity"]["size"];
+    EXPECT_THAT(plain_,
+                HasSubstr("<td>" + with_uncertainty(size["value"], size["expanded_uncertainty"]) + "</td>"));
+    EXPECT_THAT(plain_, AllOf(HasSubstr("<td>+z</td>"), HasSubstr(">tilt, °</th>")));
+}
+
+TEST_F(ReportCommand, ReportsAnAccelerometerAlone) {
+    const std::string path = folder_->path("acc.csv");
+    std::ofstream text(path);
+    text << "t_s,ax_g,ay_g,az_g\n";
+    unsigned state = 1;
+    const auto noise_g = [&] {
+        state = state * 1664525U + 1013904223U;
+        return static_cast<double>(state >> 16U) * 1e-7;
+    };
+    for (int i = 0; i < 1000; ++i) {
+        text << i / 100.0 << ',' << noise_g() << ',' << noise_g() << ',' << 1.0 + noise_g() << '\n';
+    }
+    text.close();
+    const std::string page = page_of({path});
+    EXPECT_THAT(page, AllOf(HasSubstr("Mean and gravity of the accelerometer</h2>"), HasSubstr("µg/√Hz"),
+                            Not(HasSubstr("gyro axes")), Not(HasSubstr("Bias</h2>"))));
+    EXPECT_THAT(test::unclosed(page), IsEmpty());
 }
 
 // Nothing that a browser would go and get, and nothing that it would run.
@@ -145,8 +188,8 @@ TEST_F(ReportCommand, HasPicturesThatShowSomething) {
             EXPECT_GT(static_cast<double>(dark), 0.01 * static_cast<double>(picture.total()));
         }
     };
-    expect_pictures(plain_, 4);
-    expect_pictures(diagnosed_, 5);
+    expect_pictures(plain_, 8);
+    expect_pictures(diagnosed_, 9);
 }
 
 TEST_F(ReportCommand, TellsTheBoardOfACapture) {
