@@ -1,6 +1,7 @@
 #include "host/formats/understood_columns.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -41,6 +42,7 @@ public:
             GYROLOG_TRY(UnderstoodColumn column, understand(header, is_canonical));
             columns_.push_back(std::move(column));
         }
+        if (user_named_ == 0) { let_canonical_names_win(); }
         take_one_time();
         take_one_temperature();
         GYROLOG_CHECK(check_twice());
@@ -78,15 +80,55 @@ private:
         }
         const auto told = dialect_name(name);
         if (!told) {
-            if (!of_user) { return column; }
+            if (!of_user) {
+                take_capitals(column);
+                return column;
+            }
             return invalid_argument(
                 "--columns: " + in_quotes(name) +
                 " is no name of a column: write t, gx, gy, gz, ax, ay, az, with or without "
                 "a unit (t_ms, gx_dps), temp_C, or _ for one to leave out");
         }
-        if (is_canonical && (told->quantity != "t" || wanted_.rate_is_given)) { return column; }
+        // The time of a file that has a gyro by its own name may be no number where a rate is given.
+        if (is_canonical && told->quantity == "t" && wanted_.rate_is_given) { return column; }
+        // A word for a gyro without a unit was never meant for us where the gyro has its own name.
+        if (is_canonical && told->quantity[0] == 'g' && told->unit.empty() && choice_.gyro_unit.empty()) {
+            return column;
+        }
         take(column, *told);
         return column;
+    }
+
+    // T_S, GX1_DPS: canonical names in capitals, as some loggers and spreadsheets write them.
+    void take_capitals(UnderstoodColumn& column) {
+        std::string name = column.header;
+        std::ranges::transform(name, name.begin(), [](char c) {
+            return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        });
+        column.meaning = csv_column(name);
+        if (!column.meaning) { return; }
+        column.taken_for = std::move(name);
+        ranks_.back() = 1;
+    }
+
+    // Where a quantity has its canonical name, another program's word for it is ignored.
+    void let_canonical_names_win() {
+        std::set<std::string> canonical;
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            if (columns_[i].meaning && ranks_[i] == 0) { canonical.insert(without_unit_number(i)); }
+        }
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            const bool is_told = columns_[i].meaning && ranks_[i] > 0;
+            const bool is_time = is_told && columns_[i].meaning->kind == Kind::time_stamp;
+            if (is_told && !is_time && canonical.contains(without_unit_number(i))) { ignore(columns_[i]); }
+        }
+    }
+
+    // "gx" of "gx2", an array's second.
+    std::string without_unit_number(std::size_t column) const {
+        std::string name = columns_[column].meaning->name;
+        if (is_sensor(columns_[column].meaning)) { name.resize(2); }
+        return name;
     }
 
     void take(UnderstoodColumn& column, const DialectName& told) {

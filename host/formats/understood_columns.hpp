@@ -49,8 +49,10 @@ struct WantedColumns {
     bool rate_is_given = false;
 };
 
-// A file that names a gyro as recording.md does is read by that alone, and other names are ignored. In all
-// others each column is what its name says in any dialect; of several times one is taken.
+// Each column is what its name says: by the canonical names of recording.md, or else by those of any dialect,
+// or by canonical ones in capitals. Where one quantity has both, the canonical name wins and the other is
+// ignored; of several times one is taken. In a file with a canonical gyro, a dialect's gyro without a unit is
+// ignored, and so is its time where a rate is given.
 //
 // `user_named`: so many of the first names are the user's own, and what is beyond is ignored. Errors:
 // malformed (nothing is a sensor; one quantity twice), invalid_argument (a unit is missing; a name of the

@@ -332,15 +332,43 @@ TEST(ColumnDialect, DatesAreNoStamps) {
     EXPECT_EQ(dialect_read(text, {.rate_hz = 200.0, .choice = {.columns = "time=_"}}).rows(), 2U);
 }
 
-// recording.md: what is read by its names ignores all others.
-TEST(ColumnDialect, ACanonicalFileIsReadByItsOwnNamesAlone) {
+TEST(ColumnDialect, ACanonicalNameWinsOverAnotherForTheSame) {
     const Recording r =
-        dialect_read("time,t_s,gx_dps,gyro_y (deg/s),temperature (C),t_ms\nnoon,0,1,a,b,c\nnoon,1,2,a,b,c\n");
+        dialect_read("time,t_s,gx_dps,gyro_x (deg/s),gyro_y,t_ms\nnoon,0,1,a,b,c\nnoon,1,2,a,b,c\n");
     EXPECT_EQ(r.columns.size(), 1U);
     EXPECT_NEAR(r.rate_hz, 1.0, 1e-12);
+    EXPECT_THAT(r.warnings,
+                ElementsAre("ignored columns of unknown name: time, gyro_x (deg/s), gyro_y, t_ms"));
     const Recording rated = dialect_read("time,gx_dps\nnoon,1\nnoon,2\n", {.rate_hz = 10.0});
     EXPECT_EQ(rated.stamps, StampKind::none);
     EXPECT_THAT(dialect_read("time,gx_dps\n0.5,1\n0.6,2\n").warnings, ElementsAre("time is taken for t_s"));
+    const Recording array = dialect_read("t_s,gx1_dps,gx2_dps,gyro_x (deg/s)\n0,1,2,3\n1,1,2,3\n");
+    EXPECT_EQ(array.columns.size(), 2U);
+    EXPECT_EQ(dialect_read("t_s,temperature (C),gx_dps,temp_C\n0,7,1,20\n1,7,1,20\n").find("temp")->value(0),
+              20.0);
+}
+
+TEST(ColumnDialect, ACanonicalNameDoesNotHideTheOtherSensorsNames) {
+    const Recording r =
+        dialect_read("t_s,gx_dps,Gy (deg/s),acc_x (g),temperature (C)\n0,1,2,1,25\n1,1,2,1,26\n");
+    ASSERT_NE(r.find("gy"), nullptr);
+    EXPECT_NEAR(r.find("gy")->value(0), 2.0 * rad_per_deg, 1e-12);
+    ASSERT_NE(r.find("ax"), nullptr);
+    EXPECT_NEAR(r.find("ax")->value(0), standard_gravity_m_s2, 1e-12);
+    ASSERT_NE(r.find("temp"), nullptr);
+    EXPECT_EQ(r.find("temp")->value(1), 26.0);
+    EXPECT_THAT(r.warnings, ElementsAre("Gy (deg/s) is taken for gy_dps, acc_x (g) for ax_g, temperature (C) "
+                                        "for temp_C"));
+}
+
+TEST(ColumnDialect, CanonicalNamesMayStandInCapitals) {
+    expect_same(dialect_read("T_S,GX_RAD_S,GY_RAD_S,GZ_RAD_S,AX_M_S2,AY_M_S2,AZ_M_S2\n" + rows(commas, in_s)),
+                canonical());
+    const Recording r = dialect_read("T_MS,GX1_DPS,GX2_DPS,REF_X_DPS\n0,1,2,3\n10,1,2,3\n");
+    EXPECT_NEAR(r.rate_hz, 100.0, 1e-9);
+    for (const char* name : {"gx1", "gx2", "ref_x"}) { EXPECT_NE(r.find(name), nullptr) << name; }
+    EXPECT_EQ(r.warnings.front(),
+              "T_MS is taken for t_ms, GX1_DPS for gx1_dps, GX2_DPS for gx2_dps, REF_X_DPS for ref_x_dps");
 }
 
 TEST(ColumnDialect, StampsInMilliMicroAndNanosecondsAreSeconds) {
