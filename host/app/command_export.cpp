@@ -13,6 +13,7 @@
 #include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/base/file_output.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/export_format.hpp"
@@ -30,12 +31,14 @@ struct ExportOptions {
     std::string output;
     std::optional<double> rate_hz;
     std::optional<double> lsb_dps;
+    std::optional<double> lsb_g;
     PartChoice part;
     TextChoice text{};
     std::string target;  // a simulator or a filter; empty: by the output's ending
     std::string horizon = default_horizon;
     std::uint64_t seed = 1;
     double inflate = 1.0;
+    bool upper_limits = false;
 };
 
 std::string known_filters() {
@@ -77,6 +80,10 @@ Status export_for_simulator(Console& console, const ExportOptions& options) {
     if (options.inflate != 1.0) {
         return invalid_argument("--inflate is for filters; a simulator is to have the noise that there is");
     }
+    if (options.upper_limits) {
+        return invalid_argument(
+            "--upper-limits is for filters; a simulator is to have the noise that there is");
+    }
     if (!is_model_file(options.source)) {
         return invalid_argument("--for needs a model: `gyrolog analyze " + options.source +
                                 " --model MODEL.json` makes one of a recording");
@@ -103,7 +110,11 @@ std::string known_endings() {
 Status write_noise(Console& console, const ExportOptions& options, const ExportFormat& format,
                    ExportSource source) {
     source.inflate = options.inflate;
+    source.upper_limits = options.upper_limits;
     if (format.filter != nullptr) {
+        if (const std::string keys = numbers_at_upper_limit(*format.filter, source); !keys.empty()) {
+            console.err << "gyrolog export: warning: upper limits, not identified: " << keys << '\n';
+        }
         for (const std::string& missing : missing_numbers(*format.filter, source)) {
             console.err << "gyrolog export: warning: left out: " << missing << '\n';
         }
@@ -131,6 +142,7 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     RecordingInput input{options.source, options.rate_hz, options.lsb_dps};
     input.part = options.part;
     input.text = options.text;
+    input.lsb_g = options.lsb_g;
     std::optional<ProgressLine> progress(std::in_place, console);
     input.on_share = progress->of_reading();
     GYROLOG_TRY(const Recording recording, read_recording(input));
@@ -172,8 +184,11 @@ Status export_noise_or_samples(Console& console, const ExportOptions& options, c
         return invalid_argument("--inflate is for filters: Kalibr's .yaml, and those of --for, " +
                                 known_filters());
     }
-    return is_model_file(options.source) ? export_model(console, options, format)
-                                         : export_recording(console, options, format);
+    const bool is_model = is_model_file(options.source);
+    if (options.upper_limits && (format.filter == nullptr || is_model)) {
+        return invalid_argument("--upper-limits is for filters, of a recording; a model has no limits");
+    }
+    return is_model ? export_model(console, options, format) : export_recording(console, options, format);
 }
 
 ExitCode export_to_file(Console& console, const ExportOptions& options) {
@@ -242,12 +257,15 @@ Action setup_export(CLI::App& app) {
                    "For filters: multiply all deviations and densities; the file's head says so")
         ->type_name("FACTOR")
         ->check(positive_number());
+    app.add_flag("--upper-limits", options->upper_limits,
+                 "For filters: what is not identified has its upper limit, and the file's head says so");
     app.add_option("--rate", options->rate_hz, "Sampling rate, in place of the one in the recording or model")
         ->type_name("HZ")
         ->check(sampling_rate());
     add_part_options(app, options->part);
     add_text_options(app, options->text);
     app.add_option("--lsb-dps", options->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
+    app.add_option("--lsb-g", options->lsb_g, lsb_g_help)->type_name("G")->check(positive_number());
     return [options](Console& console) { return export_to_file(console, *options); };
 }
 

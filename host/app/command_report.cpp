@@ -5,6 +5,7 @@
 #include "host/app/option_check.hpp"
 #include "host/app/part_options.hpp"
 #include "host/app/report_run.hpp"
+#include "host/app/sensor_choice.hpp"
 #include "host/app/simulation_count.hpp"
 
 namespace gyrolog {
@@ -38,6 +39,7 @@ Action setup_report(CLI::App& app) {
     add_part_options(app, request->part);
     add_text_options(app, request->text);
     app.add_option("--lsb-dps", request->lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
+    app.add_option("--lsb-g", request->lsb_g, lsb_g_help)->type_name("G")->check(positive_number());
     return [request](Console& console) { return report_to_file(console, *request); };
 }
 

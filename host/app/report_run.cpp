@@ -56,6 +56,7 @@ RecordingDiagnosisRequest diagnosis_request(const ReportRequest& request) {
     diagnosis.model_path = request.model_path;
     diagnosis.rate_hz = request.rate_hz;
     diagnosis.lsb_dps = request.lsb_dps;
+    diagnosis.lsb_g = request.lsb_g;
     diagnosis.part = request.part;
     diagnosis.text = request.text;
     diagnosis.simulations = request.simulations;
@@ -90,6 +91,7 @@ ExitCode report_to_file(Console& console, const ReportRequest& request) {
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.part = request.part;
     input.text = request.text;
+    input.lsb_g = request.lsb_g;
     input.needs_gyro = false;
     progress.emplace(console);
     input.on_share = progress->of_reading();

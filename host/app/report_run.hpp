@@ -19,6 +19,7 @@ struct ReportRequest {
     std::string page_path;
     std::optional<double> rate_hz;  // in place of the one in the file
     std::optional<double> lsb_dps;
+    std::optional<double> lsb_g{};
     PartChoice part{};
     TextChoice text{};
     std::size_t simulations = 200;

@@ -93,7 +93,8 @@ ExportSource export_source(const Recording& recording, const AnalysisReport& rep
         }
     }
     source.lsb_m_s2 = accelerometer_step_m_s2(recording);
-    if (report.accelerometer && !report.accelerometer->unit.is_counts()) {
+    source.accelerometer_has_counts = report.accelerometer && report.accelerometer->unit.is_counts();
+    if (report.accelerometer && !source.accelerometer_has_counts) {
         source.accelerometer = exported_axes(report.accelerometer->axes);
         for (ExportedAxis& axis : source.accelerometer) { axis.bias = 0.0; }  // gravity hides it
     }

@@ -32,12 +32,15 @@ struct ExportSource {
     double confidence = 0.683;                // of the upper limits
     std::vector<ExportedAxis> gyro;           // x, y and z, as far as there are
     std::vector<ExportedAxis> accelerometer;  // in m/s^2 in place of rad/s
+    bool accelerometer_has_counts = false;    // then it is not here, for want of a scale
     std::optional<double> full_scale_rad_s;
     std::optional<double> lsb_rad_s;
     std::optional<double> lsb_m_s2;
     std::optional<TemperatureModel> temperature;
     std::vector<std::string> effects;  // of a model, each a name with its sensor
     double inflate = 1.0;              // for filters: what their deviations and densities are multiplied by
+    // For filters: the upper limit in the place of a number that is not identified.
+    bool upper_limits = false;
     const Recording* recording = nullptr;  // absent of a model
     const AnalysisReport* report = nullptr;
 

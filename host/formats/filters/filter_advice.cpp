@@ -88,7 +88,10 @@ void add_of_temperature(std::vector<std::string>& advice, const TemperatureModel
 
 std::vector<std::string> filter_advice(const ExportSource& source) {
     std::vector<std::string> advice;
-    if (source.accelerometer.empty()) {
+    if (source.accelerometer_has_counts) {
+        advice.emplace_back(
+            "The accelerometer has counts: --lsb-g gives their scale, and then its numbers are here.");
+    } else if (source.accelerometer.empty()) {
         advice.emplace_back(
             "There is no accelerometer in the source: its numbers are missing here, and nobody else's will "
             "do.");

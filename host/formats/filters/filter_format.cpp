@@ -22,9 +22,11 @@ std::string with_rate(std::string_view pattern, const FilterSource& source) {
 
 std::string unknown_text(const FilterNumber& number, const FilterSource& source) {
     const FilterTerm& term = source.term(number.sensor, number.term);
-    const char* unknown = term.of_axes.empty() ? "not measured"
-                          : term.upper         ? "not identified"
-                                               : "the source has none";
+    const bool has_counts = number.sensor == SensorKind::accelerometer && source.accelerometer_has_counts;
+    const char* unknown = has_counts             ? "the accelerometer has counts, --lsb-g gives their scale"
+                          : term.of_axes.empty() ? "not measured"
+                          : term.upper           ? "not identified"
+                                                 : "the source has none";
     std::string text = fmt::format("{}: {}", number.key, unknown);
     if (term.upper) {
         text += fmt::format(", at most {} (at {:.3g} %)", real_text(number.of(*term.upper, source.rate_hz)),
@@ -45,6 +47,10 @@ std::string number_text(const FilterFormat& format, const FilterNumber& number, 
         }
         return text;
     }
+    if (term.is_upper) {
+        text +=
+            fmt::format("# not identified: this is its upper limit at {:.3g} %\n", source.confidence * 100.0);
+    }
     const double value = number.of(*term.value, source.rate_hz);
     if (number.most > 0.0 && value > number.most) {
         text += fmt::format("# more than the filter takes: {:.9g} acts\n", number.most);
@@ -53,6 +59,16 @@ std::string number_text(const FilterFormat& format, const FilterNumber& number, 
            fmt::format(fmt::runtime(format.line), fmt::arg("key", number.key),
                        fmt::arg("value", real_text(value))) +
            '\n';
+}
+
+// Empty where none is one.
+std::string keys_of_upper_limits(const FilterFormat& format, const FilterSource& source) {
+    std::string keys;
+    for (const FilterNumber& number : format.numbers) {
+        if (!source.term(number.sensor, number.term).is_upper) { continue; }
+        keys += (keys.empty() ? "" : ", ") + std::string(number.key);
+    }
+    return keys;
 }
 
 std::string head_text(const FilterFormat& format, const FilterSource& source) {
@@ -67,6 +83,11 @@ std::string head_text(const FilterFormat& format, const FilterSource& source) {
         text += fmt::format(
             "# INFLATED: all deviations and densities are {:.9g} times the sensor's (--inflate).\n",
             source.inflate);
+    }
+    if (const std::string keys = keys_of_upper_limits(format, source); !keys.empty()) {
+        text += fmt::format(
+            "# UPPER LIMITS at {:.3g} % stand in the place of what is not identified (--upper-limits): {}.\n",
+            source.confidence * 100.0, keys);
     }
     for (const std::string_view fact : format.facts) { text += fmt::format("# {}\n", fact); }
     for (const std::string& advice : source.advice) {
@@ -102,6 +123,10 @@ std::vector<std::string> missing_numbers(const FilterFormat& format, const Expor
         missing.push_back(unknown_text(number, filter));
     }
     return missing;
+}
+
+std::string numbers_at_upper_limit(const FilterFormat& format, const ExportSource& source) {
+    return keys_of_upper_limits(format, filter_source(source));
 }
 
 std::string real_text(double value) {

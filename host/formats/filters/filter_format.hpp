@@ -44,11 +44,14 @@ std::span<const FilterFormat* const> filter_formats();
 const FilterFormat* find_filter_format(std::string_view name);
 
 // The whole file. A number that is not identified is left out; a comment in its place says what it may be at
-// most.
+// most. With ExportSource::upper_limits it is that limit, and the head says so.
 std::string filter_text(const FilterFormat& format, const ExportSource& source);
 
 // What the file lacks, one sentence each: numbers that the source does not have.
 std::vector<std::string> missing_numbers(const FilterFormat& format, const ExportSource& source);
+
+// The keys of numbers for which the file has an upper limit (ExportSource::upper_limits): "a, b"; or empty.
+std::string numbers_at_upper_limit(const FilterFormat& format, const ExportSource& source);
 
 // A real number with a point, as readers of YAML 1.1 and OpenCV's want it: 3e-06 is a text to them, or 100 a
 // whole number.

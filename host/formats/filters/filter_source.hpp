@@ -14,6 +14,7 @@ namespace gyrolog {
 
 struct FilterTerm {
     std::optional<double> value;  // absent: not identified, or none
+    bool is_upper = false;        // the value is an upper limit (ExportSource::upper_limits)
     std::optional<double> upper;  // what it may be at most where it is not identified
     std::string axes;             // "x 0.0001, y none, z < 2e-05"
     std::vector<ExportedAxis> of_axes;
@@ -25,6 +26,7 @@ struct FilterSource {
     double confidence = 0.683;
     double inflate = 1.0;  // is in all values
     bool has_accelerometer = false;
+    bool accelerometer_has_counts = false;
     bool has_converter_step = false;  // N has the error of the converter's step in it
     FilterTerm gyro_N;
     FilterTerm gyro_K;
