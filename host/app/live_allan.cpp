@@ -29,7 +29,8 @@ LiveAxis judge(const RunningAllan& running, const glp_config& config) {
         noise.K_rad_per_s_sqrt_s = walk_seen_from(noise, rate_hz, axis.length_s).value_or(0.0);
     }
     axis.K = noise.K_rad_per_s_sqrt_s;
-    if (axis.walk_seen) { axis.K_relative_sd = walk_relative_sd(noise, rate_hz, axis.length_s); }
+    if (!axis.walk_seen) { return axis; }
+    axis.K_relative_sd = walk_relative_sd(noise, rate_hz, axis.length_s);
     if (const auto needed_s = length_to_know_walk_s(noise, rate_hz, walk_wanted_sd)) {
         axis.still_needed_s = std::max(0.0, *needed_s - axis.length_s);
     }
@@ -83,9 +84,8 @@ std::array<LiveAxis, 3> LiveAllan::axes() const {
 std::string walk_text(const LiveAxis& axis) {
     if (axis.curve.points.empty()) { return "K: too early to say"; }
     if (!axis.walk_seen) {
-        if (!axis.still_needed_s) { return "K not seen"; }
-        return fmt::format("K not seen, < {:.2g} dps*sqrt(Hz); at least {} more until ±20 %", axis.K,
-                           format_duration(*axis.still_needed_s));
+        // No time until it is known: that of the largest walk that may be there is seconds, and says nothing.
+        return axis.K > 0.0 ? fmt::format("K not seen, < {:.2g} dps*sqrt(Hz)", axis.K) : "K not seen";
     }
     std::string text = fmt::format("K {:.2g} dps*sqrt(Hz)", axis.K);
     if (axis.K_relative_sd && *axis.K_relative_sd < 1.0) {

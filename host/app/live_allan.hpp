@@ -20,10 +20,9 @@ struct LiveAxis {
     AllanCurve curve;
     double length_s = 0.0;  // of the samples in it
     bool walk_seen = false;
-    double K = 0.0;                       // dps*sqrt(Hz); where it is not seen, most likely less
-    std::optional<double> K_relative_sd;  // as `analyze` will have it now, where it is seen
-    std::optional<double>
-        still_needed_s;  // until K is known to walk_wanted_sd; where it is not seen: at least
+    double K = 0.0;                        // dps*sqrt(Hz); where it is not seen, most likely less
+    std::optional<double> K_relative_sd;   // as `analyze` will have it now, where it is seen
+    std::optional<double> still_needed_s;  // until K is known to walk_wanted_sd, where it is seen
 };
 
 class LiveAllan final : public SampleObserver {
