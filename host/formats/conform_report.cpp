@@ -56,6 +56,16 @@ std::string words_of(const TranscriptEntry& entry) {
                        problem);
 }
 
+// " (5.2, 4.9.2)" behind the number of rules that fail; empty where none does.
+std::string failed_rules(const ConformanceReport& report) {
+    std::string numbers;
+    for (const RuleVerdict& one : report.verdicts) {
+        if (one.verdict.state != JudgementState::fail) { continue; }
+        numbers.append(numbers.empty() ? "" : ", ").append(one.rule->number);
+    }
+    return numbers.empty() ? "" : " (" + numbers + ")";
+}
+
 }  // namespace
 
 std::string transcript_text(const Dialogue& dialogue) {
@@ -128,10 +138,10 @@ std::string conform_text(const ConformanceReport& report) {
     if (!report.broken_off.empty()) {
         text += fmt::format("the conversation was broken off: {}\n", report.broken_off);
     }
-    text +=
-        fmt::format("{}: {} rules pass, {} fail, {} not tested\n",
-                    report.conforms() ? "conforms" : "does not conform", report.count(JudgementState::pass),
-                    report.count(JudgementState::fail), report.count(JudgementState::not_tested));
+    text += fmt::format("{}: {} rules pass, {} fail{}, {} not tested\n",
+                        report.conforms() ? "conforms" : "does not conform",
+                        report.count(JudgementState::pass), report.count(JudgementState::fail),
+                        failed_rules(report), report.count(JudgementState::not_tested));
     return text;
 }
 

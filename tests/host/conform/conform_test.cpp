@@ -162,6 +162,7 @@ TEST(Conform, AFailureSaysWhatWasExpectedWhatCameAndItsBytes) {
         EXPECT_THAT(rule["bytes"].get<std::string>(), HasSubstr("d0ead101"));
         EXPECT_GT(rule["times"], 5);
     }
+    EXPECT_THAT(conform_text(report), HasSubstr("rules pass, 1 fail (4.5), "));
     EXPECT_THAT(conform_text(report), HasSubstr("came:     30534352 n°/s"));
     EXPECT_THAT(transcript_text(*dialogue), HasSubstr("DTR rises"));
 }
