@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "analysis/simulate/effect.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -33,6 +35,21 @@ EffectModel converted(const EffectModel& effect, std::string_view unit, std::str
     return result;
 }
 
+// The names of parameters in a text, all of them: what else is in it has no unit at its end.
+std::string in_accelerometer_names(std::string text) {
+    constexpr std::string_view gyro_unit = "_dps";
+    for (std::size_t at = text.find(gyro_unit); at != std::string::npos; at = text.find(gyro_unit, at)) {
+        text.replace(at, gyro_unit.size(), "_g");
+    }
+    return text;
+}
+
+std::optional<std::string> refusal_of_gyro_name(const std::string& effect, const std::string& name) {
+    const std::string meant = accelerometer_param_name(name);
+    if (meant.empty()) { return std::nullopt; }
+    return "effect '" + effect + "' has no parameter '" + name + "', which is of a gyro; it has " + meant;
+}
+
 }  // namespace
 
 EffectModel as_gyro_effect(const EffectModel& of_accelerometer, double rad_s_per_m_s2) {
@@ -41,6 +58,17 @@ EffectModel as_gyro_effect(const EffectModel& of_accelerometer, double rad_s_per
 
 EffectModel as_accelerometer_effect(const EffectModel& of_gyro, double rad_s_per_m_s2) {
     return converted(of_gyro, "dps", "g", 1.0 / dps_per_g(rad_s_per_m_s2));
+}
+
+std::optional<std::string> accelerometer_effect_refusal(const EffectModel& of_accelerometer) {
+    for (const auto& given : of_accelerometer.params) {
+        if (auto refusal = refusal_of_gyro_name(of_accelerometer.effect, given.first)) { return refusal; }
+    }
+    for (const auto& given : of_accelerometer.table) {
+        if (auto refusal = refusal_of_gyro_name(of_accelerometer.effect, given.first)) { return refusal; }
+    }
+    const auto refusal = effect_refusal(as_gyro_effect(of_accelerometer, 1.0));
+    return refusal ? std::optional(in_accelerometer_names(*refusal)) : std::nullopt;
 }
 
 std::string accelerometer_param_name(const std::string& of_gyro) { return renamed(of_gyro, "dps", "g"); }

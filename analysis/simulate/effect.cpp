@@ -67,6 +67,32 @@ std::optional<std::string> refusal_of_columns(const EffectDefinition& definition
     return definition.table ? table_refusal(*definition.table, effect) : std::nullopt;
 }
 
+std::string names_of(std::span<const EffectParam> params) {
+    std::string names;
+    for (const EffectParam& param : params) { names.append(names.empty() ? "" : ", ").append(param.name); }
+    return names;
+}
+
+// A misspelt name comes first: the one that was meant is then missing as well.
+std::optional<std::string> refusal_of_params(const EffectDefinition& definition, const EffectModel& effect) {
+    for (const auto& given : effect.params) {
+        if (find_param(definition, given.first) != nullptr) { continue; }
+        return " has no parameter " + name_in_quotes(given.first) +
+               (definition.params.empty() ? "" : "; it has " + names_of(definition.params));
+    }
+    for (const EffectParam& param : definition.params) {
+        const auto given = effect.params.find(std::string(param.name));
+        if (given == effect.params.end()) {
+            if (param.otherwise || param.from_model) { continue; }
+            return " lacks its parameter " + name_in_quotes(param.name);
+        }
+        if (const auto refusal = range_refusal(param, given->second)) {
+            return ": " + std::string(param.name) + " " + *refusal;
+        }
+    }
+    return std::nullopt;
+}
+
 Course course_of(const EffectTable& table, const EffectModel& effect) {
     return {effect.table.at(std::string(table.at)), effect.table.at(std::string(table.value))};
 }
@@ -103,21 +129,7 @@ std::optional<std::string> effect_refusal(const EffectModel& effect) {
     const EffectDefinition* definition = find_effect(effect.effect);
     const std::string name = "effect " + name_in_quotes(effect.effect);
     if (definition == nullptr) { return name + " cannot be simulated by this version"; }
-    for (const EffectParam& param : definition->params) {
-        const auto given = effect.params.find(std::string(param.name));
-        if (given == effect.params.end()) {
-            if (!param.otherwise && !param.from_model) {
-                return name + " lacks its parameter " + name_in_quotes(param.name);
-            }
-        } else if (const auto refusal = range_refusal(param, given->second)) {
-            return name + ": " + std::string(param.name) + " " + *refusal;
-        }
-    }
-    for (const auto& given : effect.params) {
-        if (find_param(*definition, given.first) == nullptr) {
-            return name + " has no parameter " + name_in_quotes(given.first);
-        }
-    }
+    if (const auto refusal = refusal_of_params(*definition, effect)) { return name + *refusal; }
     if (const auto refusal = refusal_of_columns(*definition, effect)) { return name + " " + *refusal; }
     if (definition->refusal != nullptr) {
         if (const auto refusal = definition->refusal(effect)) { return name + " " + *refusal; }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "analysis/simulate/accelerometer_effect.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/converter.hpp"
-#include "analysis/simulate/resting_accelerometer.hpp"
 
 namespace gyrolog {
 
@@ -12,8 +12,9 @@ std::optional<std::string> simulation_refusal(const SensorModel& model) {
     for (const EffectModel& effect : model.effects) {
         if (auto refusal = effect_refusal(effect)) { return refusal; }
     }
-    if (model.accelerometer) {
-        if (auto refusal = simulation_refusal(resting_accelerometer(model))) {
+    if (!model.accelerometer) { return std::nullopt; }
+    for (const EffectModel& effect : model.accelerometer->effects) {
+        if (const auto refusal = accelerometer_effect_refusal(effect)) {
             return "accelerometer: " + *refusal;
         }
     }

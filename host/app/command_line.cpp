@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "host/app/command.hpp"
-#include "host/app/nearest_name.hpp"
+#include "host/base/nearest_name.hpp"
 #include "host/base/printable.hpp"
 #include "host/base/program_name.hpp"
 

@@ -78,6 +78,8 @@ public:
 
     // What was not asked for, as an object.
     Json left_over() const;
+    // What was, whether it is there or not.
+    const std::set<std::string>& asked_for() const { return known_; }
     // For a schema that carries nothing it does not know: a misspelt key would else be silently without
     // effect.
     void refuse_left_over();

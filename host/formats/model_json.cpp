@@ -15,6 +15,7 @@
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recorded_converter.hpp"
 #include "host/base/file_output.hpp"
+#include "host/base/nearest_name.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/datasheet_json.hpp"
 #include "host/formats/gyroparams_json.hpp"
@@ -70,6 +71,35 @@ private:
     std::vector<std::string> absent_;
 };
 
+// Keys that nobody asked for, each with the one that may have been meant.
+class UnknownKeys {
+public:
+    void add(const Keys& keys) {
+        const std::vector<std::string> known(keys.asked_for().begin(), keys.asked_for().end());
+        const Json rest = keys.left_over();
+        for (const auto& item : rest.items()) {
+            if (++number_ > told_most) { continue; }
+            const std::string meant = nearest_name(item.key(), known);
+            told_.push_back(in_quotes(keys.name(item.key())) +
+                            (meant.empty() ? "" : " (did you mean '" + meant + "'?)"));
+        }
+    }
+
+    void note(std::vector<std::string>& notes) const {
+        if (told_.empty()) { return; }
+        const std::string more =
+            number_ > told_most ? fmt::format(" and {} more", number_ - told_most) : std::string();
+        notes.push_back(fmt::format("the model has keys of no effect, which this version does not know: {}{}",
+                                    fmt::join(told_, ", "), more));
+    }
+
+private:
+    static constexpr std::size_t told_most = 8;
+
+    std::vector<std::string> told_;
+    std::size_t number_ = 0;
+};
+
 // `unit`: of the file's numbers, in SI.
 AxisModel read_axis(Keys& keys, double unit, double factor, StatedNumbers& stated) {
     AxisModel axis;
@@ -87,7 +117,7 @@ AxisModel read_axis(Keys& keys, double unit, double factor, StatedNumbers& state
 }
 
 // Gives back what of `axes` is not known.
-Json read_axes(Keys& keys, double unit, double factor, StatedNumbers& stated,
+Json read_axes(Keys& keys, double unit, double factor, StatedNumbers& stated, UnknownKeys& unknown,
                std::array<AxisModel, 3>& axes) {
     Keys axes_keys = keys.inside(keys.need("axes"), "axes");
     Json carried = Json::object();
@@ -95,8 +125,10 @@ Json read_axes(Keys& keys, double unit, double factor, StatedNumbers& stated,
         const std::string axis = axis_names[i];
         Keys axis_keys = axes_keys.inside(axes_keys.need(axis), axis);
         axes[i] = read_axis(axis_keys, unit, factor, stated);
+        unknown.add(axis_keys);
         carry(carried, axis, axis_keys.left_over());
     }
+    unknown.add(axes_keys);
     carried.update(axes_keys.left_over());
     return carried;
 }
@@ -147,7 +179,7 @@ std::string named_form(Keys& keys) {
     return effect;
 }
 
-EffectModel read_effect(Keys& keys, EffectNamer name_of) {
+EffectModel read_effect(Keys& keys, EffectNamer name_of, UnknownKeys& unknown) {
     EffectModel effect;
     effect.effect = name_of(keys);
     if (const Json* axes = keys.find("axes")) {
@@ -165,13 +197,15 @@ EffectModel read_effect(Keys& keys, EffectNamer name_of) {
             if (!params->is_object() || !item.value().is_number()) { continue; }  // carried: of another kind
             effect.params[item.key()] = inside.number(item.key(), Range::any);
         }
+        unknown.add(inside);
         carry(carried, "params", inside.left_over());
     }
+    unknown.add(keys);
     if (!carried.empty()) { effect.carried_json = carried.dump(); }
     return effect;
 }
 
-void read_effects(Keys& keys, const std::string& key, EffectNamer name_of,
+void read_effects(Keys& keys, const std::string& key, EffectNamer name_of, UnknownKeys& unknown,
                   std::vector<EffectModel>& effects) {
     static const Json none = Json::array();
     const Json* given = keys.find(key);
@@ -179,7 +213,7 @@ void read_effects(Keys& keys, const std::string& key, EffectNamer name_of,
     if (!list.is_array()) { keys.fail(key, "is not a list"); }
     for (std::size_t i = 0; list.is_array() && i < list.size(); ++i) {
         Keys effect_keys = keys.inside(list[i], key + "[" + std::to_string(i) + "]");
-        effects.push_back(read_effect(effect_keys, name_of));
+        effects.push_back(read_effect(effect_keys, name_of, unknown));
     }
 }
 
@@ -213,12 +247,12 @@ void read_sensor(Keys& keys, SensorModel& model, StatedNumbers& stated) {
 }
 
 // Gives back what of it is not known.
-Json read_accelerometer(Keys& keys, double factor, std::vector<std::string>& notes,
+Json read_accelerometer(Keys& keys, double factor, std::vector<std::string>& notes, UnknownKeys& unknown,
                         AccelerometerModel& model) {
     constexpr double g = standard_gravity_m_s2;
     StatedNumbers stated("accelerometer.");
     Json carried = Json::object();
-    carry(carried, "axes", read_axes(keys, g, factor, stated, model.axes));
+    carry(carried, "axes", read_axes(keys, g, factor, stated, unknown, model.axes));
     model.lsb_m_s2 = keys.number_or("lsb_g", Range::not_negative, 0.0) * g;
     if (const auto range_g = keys.optional_number("full_scale_g", Range::positive)) {
         model.full_scale_m_s2 = *range_g * g;
@@ -228,9 +262,10 @@ Json read_accelerometer(Keys& keys, double factor, std::vector<std::string>& not
     if (keys.find("M") != nullptr) { model.M = keys.matrix("M"); }
     if (const Json* sd = keys.find("sd_rel")) { model.sd_rel = keys.uncertainties(*sd, "sd_rel"); }
     if (const Json* sd = keys.find("sd_abs")) { model.sd_abs = keys.uncertainties(*sd, "sd_abs"); }
-    read_effects(keys, "effects", named_effect, model.effects);
-    read_effects(keys, "unnamed", named_form, model.effects);
+    read_effects(keys, "effects", named_effect, unknown, model.effects);
+    read_effects(keys, "unnamed", named_form, unknown, model.effects);
     stated.note(notes);
+    unknown.add(keys);
     carried.update(keys.left_over());
     return carried;
 }
@@ -239,6 +274,7 @@ ModelFile read_document(const Json& document, std::optional<std::string>& proble
     ModelFile file;
     SensorModel& model = file.model;
     StatedNumbers stated;
+    UnknownKeys unknown;
     Keys keys(document, "", problem);
     keys.find("schema");  // judged by the caller
     file.unstated = read_sampling(keys, model);
@@ -246,21 +282,24 @@ ModelFile read_document(const Json& document, std::optional<std::string>& proble
 
     Json carried = Json::object();
     const double factor = coefficient_factor(keys);
-    carry(carried, "axes", read_axes(keys, rad_per_deg, factor, stated, model.axes));
+    carry(carried, "axes", read_axes(keys, rad_per_deg, factor, stated, unknown, model.axes));
 
     if (const Json* temperature = keys.find("temperature")) {
         Keys temperature_keys = keys.inside(*temperature, "temperature");
         model.temperature = read_temperature(temperature_keys);
+        unknown.add(temperature_keys);
         carry(carried, "temperature", temperature_keys.left_over());
     }
     stated.note(file.notes);
     if (const Json* accelerometer = keys.find("accelerometer")) {
         Keys inside = keys.inside(*accelerometer, "accelerometer");
         carry(carried, "accelerometer",
-              read_accelerometer(inside, factor, file.notes, model.accelerometer.emplace()));
+              read_accelerometer(inside, factor, file.notes, unknown, model.accelerometer.emplace()));
     }
-    read_effects(keys, "effects", named_effect, model.effects);
-    read_effects(keys, "unnamed", named_form, model.effects);
+    read_effects(keys, "effects", named_effect, unknown, model.effects);
+    read_effects(keys, "unnamed", named_form, unknown, model.effects);
+    unknown.add(keys);
+    unknown.note(file.notes);
     carried.update(keys.left_over());
     if (!carried.empty()) { model.carried_json = carried.dump(); }
     return file;

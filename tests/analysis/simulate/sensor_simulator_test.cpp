@@ -173,6 +173,26 @@ EffectModel effect_of(std::string name, std::map<std::string, double> params) {
     return {.effect = std::move(name), .axes = {"x"}, .params = std::move(params), .carried_json = {}};
 }
 
+std::optional<std::string> accelerometer_refusal(const std::string& name,
+                                                 const std::map<std::string, double>& params) {
+    SensorModel model = quiet_model();
+    model.accelerometer.emplace().effects = {effect_of(name, params)};
+    return simulation_refusal(model);
+}
+
+TEST(Effects, AnAccelerometersParametersAreInItsOwnUnitAndSoNamed) {
+    EXPECT_EQ(accelerometer_refusal("bias_step", {{"at_s", 1.0}, {"step_g", 0.1}}), std::nullopt);
+    EXPECT_EQ(accelerometer_refusal("bias_step", {{"at_s", 1.0}, {"step_dps", 1.0}}),
+              "accelerometer: effect 'bias_step' has no parameter 'step_dps', which is of a gyro; it has "
+              "step_g");
+    EXPECT_EQ(accelerometer_refusal("bias_step", {{"at_s", 1.0}}),
+              "accelerometer: effect 'bias_step' lacks its parameter 'step_g'");
+    EXPECT_EQ(accelerometer_refusal("saturation", {{"limit_mg", 1.0}}),
+              "accelerometer: effect 'saturation' has no parameter 'limit_mg'; it has limit_g");
+    EXPECT_EQ(accelerometer_refusal("saturation", {{"limit_g", -1.0}}),
+              "accelerometer: effect 'saturation': limit_g is not above zero");
+}
+
 TEST(Effects, AnUnknownEffectOrAMissingParameterIsRefusedByName) {
     SensorModel model = quiet_model();
     EXPECT_EQ(simulation_refusal(model), std::nullopt);
@@ -180,6 +200,9 @@ TEST(Effects, AnUnknownEffectOrAMissingParameterIsRefusedByName) {
     EXPECT_EQ(simulation_refusal(model), "effect 'phase_of_the_moon' cannot be simulated by this version");
     model.effects = {effect_of("bias_step", {{"at_s", 1.0}})};
     EXPECT_EQ(simulation_refusal(model), "effect 'bias_step' lacks its parameter 'step_dps'");
+    model.effects = {effect_of("bias_step", {{"at_s", 1.0}, {"step_g", 1.0}})};
+    EXPECT_EQ(simulation_refusal(model),
+              "effect 'bias_step' has no parameter 'step_g'; it has step_dps, at_s");
     model.effects = {effect_of("bias_step", {{"at_s", 1.0}, {"step_dps", 1.0}})};
     model.effects[0].axes = {"w"};
     EXPECT_EQ(simulation_refusal(model), "effect 'bias_step' names an axis 'w' that is not x, y or z");

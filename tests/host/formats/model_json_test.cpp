@@ -172,6 +172,36 @@ TEST(ModelJson, UnknownKeysAreKeptWhereTheyStood) {
     EXPECT_EQ(Json::parse(format_model(model_of(json))), json);
 }
 
+std::vector<std::string> notes_of(const Json& json) {
+    const auto file = parse_model_file(json.dump(), "m.json", 1);
+    EXPECT_TRUE(file.ok()) << (file.ok() ? "" : file.error().message);
+    return file.ok() ? file->notes : std::vector<std::string>{};
+}
+
+TEST(ModelJson, KeysOfNoEffectAreToldWithThoseThatWereMeant) {
+    EXPECT_THAT(notes_of(example()), ::testing::IsEmpty());
+    Json json = example();
+    json["efects"] = Json::array();
+    json["lot"] = 7;
+    json["axes"]["x"]["k"] = 1.0;
+    json["effects"][0]["parms"] = Json::object();
+    const std::vector<std::string> notes = notes_of(json);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_EQ(notes[0],
+              "the model has keys of no effect, which this version does not know: "
+              "'axes.x.k' (did you mean 'K'?), 'effects[0].parms' (did you mean 'params'?), "
+              "'efects' (did you mean 'effects'?), 'lot'");
+}
+
+TEST(ModelJson, OfManyKeysOfNoEffectAFewAreTold) {
+    Json json = example();
+    for (int i = 0; i < 1000; ++i) { json["key_" + std::to_string(i)] = i; }
+    const std::vector<std::string> notes = notes_of(json);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes[0], HasSubstr(" and 992 more"));
+    EXPECT_LT(notes[0].size(), 1000U);
+}
+
 TEST(ModelJson, AMissingNeededKeyIsNamed) {
     for (const char* key : {"rate_hz", "axes", "schema"}) {
         Json json = example();

@@ -1,4 +1,4 @@
-#include "host/app/nearest_name.hpp"
+#include "host/base/nearest_name.hpp"
 
 #include <vector>
 
@@ -14,6 +14,13 @@ TEST(NearestName, IsTheOneThatWasMeant) {
     EXPECT_EQ(nearest_name("chek", names), "check");
     EXPECT_EQ(nearest_name("ifno", names), "info");
     EXPECT_EQ(nearest_name("compare", names), "compare");
+}
+
+TEST(NearestName, LettersMayBeSmallOrCapital) {
+    const std::vector<std::string> names = {"N", "B", "K", "bias"};
+    EXPECT_EQ(nearest_name("k", names), "K");
+    EXPECT_EQ(nearest_name("BIAS", names), "bias");
+    EXPECT_EQ(nearest_name("R", names), "");
 }
 
 TEST(NearestName, IsNoneOfWhatIsFarFromAll) {

@@ -1,4 +1,4 @@
-#include "host/app/nearest_name.hpp"
+#include "host/base/nearest_name.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,6 +6,8 @@
 
 namespace gyrolog {
 namespace {
+
+char small(char letter) { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter; }
 
 // Neither is long: a word of the command line, and one of ours.
 std::size_t edits_between(std::string_view a, std::string_view b) {
@@ -16,9 +18,10 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
     for (std::size_t j = 0; j <= b.size(); ++j) { at(0, j) = j; }
     for (std::size_t i = 1; i <= a.size(); ++i) {
         for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t changed = at(i - 1, j - 1) + (a[i - 1] == b[j - 1] ? 0 : 1);
+            const std::size_t changed = at(i - 1, j - 1) + (small(a[i - 1]) == small(b[j - 1]) ? 0 : 1);
             at(i, j) = std::min({at(i - 1, j) + 1, at(i, j - 1) + 1, changed});
-            const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            const bool swapped =
+                i > 1 && j > 1 && small(a[i - 1]) == small(b[j - 2]) && small(a[i - 2]) == small(b[j - 1]);
             if (swapped) { at(i, j) = std::min(at(i, j), at(i - 2, j - 2) + 1); }
         }
     }
