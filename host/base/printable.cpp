@@ -92,7 +92,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string shell_word(std::string_view text) {
-    const std::string shown = printable(text);
+    std::string shown = printable(text);
     constexpr std::string_view plain =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:=,+@%-";
     if (!shown.empty() && shown.find_first_not_of(plain) == std::string::npos) { return shown; }

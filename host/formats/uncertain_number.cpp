@@ -8,6 +8,8 @@
 namespace gyrolog {
 namespace {
 
+constexpr int decimals_most = 9;
+
 int decade_of(double x) { return static_cast<int>(std::floor(std::log10(x))); }
 
 // To a multiple of 10^-decimals; never a negative zero.
@@ -29,7 +31,7 @@ struct Scaled {
         const int digits_after_first = 1 - decade_of(uncertainty / unit());
         const bool rounds_to_the_next_decade =
             std::round(uncertainty / unit() * std::pow(10.0, digits_after_first)) >= 100.0;
-        return std::min(digits_after_first - (rounds_to_the_next_decade ? 1 : 0), 9);
+        return std::min(digits_after_first - (rounds_to_the_next_decade ? 1 : 0), decimals_most);
     }
 };
 
@@ -38,10 +40,16 @@ Scaled scaled(double value, double uncertainty) {
     return {larger < 1e-3 || larger >= 1e6 ? decade_of(larger) : 0};
 }
 
+// An uncertainty that decimals_most would show as zero.
+bool is_beyond_digits(double value, double uncertainty) {
+    return uncertainty / scaled(value, uncertainty).unit() < std::pow(10.0, -decimals_most);
+}
+
 }  // namespace
 
 std::string with_uncertainty(double value, double uncertainty) {
     if (!(uncertainty > 0.0)) { return fmt::format("{:.6g}", value); }
+    if (is_beyond_digits(value, uncertainty)) { return fmt::format("{:.9g}", value); }
     const Scaled of = scaled(value, uncertainty);
     const int decimals = of.decimals(uncertainty);
     const std::string text =
@@ -51,6 +59,7 @@ std::string with_uncertainty(double value, double uncertainty) {
 
 std::string in_short_form(double value, double uncertainty) {
     if (!(uncertainty > 0.0)) { return fmt::format("{:.6g}", value); }
+    if (is_beyond_digits(value, uncertainty)) { return fmt::format("{:.9g}", value); }
     Scaled of = scaled(value, uncertainty);
     // No digit may stand in the brackets that the value does not show.
     if (of.decimals(uncertainty) < 0) { of.exponent = decade_of(std::max(std::abs(value), uncertainty)); }

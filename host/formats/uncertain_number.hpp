@@ -6,7 +6,8 @@
 namespace gyrolog {
 
 // "0.01314 ± 0.00002", or "(1.579 ± 0.010)e-04" for very small and large values: the uncertainty to two
-// digits, the value to the same place. An uncertainty of 0 is not written.
+// digits, the value to the same place. An uncertainty of 0, or one that nine decimals
+// do not show, is not written.
 std::string with_uncertainty(double value, double uncertainty);
 
 // For tables, the short form of GUM:2008 7.2.2 example 2: "0.013144(21)", "1.579(10)e-04". In brackets are

@@ -99,12 +99,13 @@ Status BoardControl::refusal(std::uint8_t result) const {
         case glp_result_ok:
             return {};
         case glp_result_bad_value:
-            return Error{ErrorCode::invalid_argument, "the board on " + source_.identity().uri +
-                                                          " does not have this rate, full scale or "
-                                                          "low-pass (an MPU-9250 has 4 Hz to 1000 Hz in "
-                                                          "whole divisions of 1 kHz, or 8000 Hz; 250, "
-                                                          "500, 1000 or 2000 °/s; 5, 10, 20, 41, 92, "
-                                                          "184, 250 or 3600 Hz or off)"};
+            return Error{ErrorCode::invalid_argument,
+                         "the board on " + source_.identity().uri +
+                             " does not have this rate, full scale or "
+                             "low-pass (an MPU-9250 has 4 Hz to 1000 Hz in "
+                             "whole divisions of 1 kHz, or 8000 Hz with "
+                             "--dlpf 250, 3600 or off; 250, 500, 1000 or 2000 °/s; 5, 10, 20, 41, 92, "
+                             "184, 250 or 3600 Hz or off)"};
         case glp_result_sensor_fault:
             return Error{ErrorCode::failed,
                          "the board on " + source_.identity().uri + " cannot talk to its sensor"};

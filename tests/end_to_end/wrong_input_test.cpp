@@ -299,7 +299,7 @@ TEST_F(WrongInput, OfCapture) {
         {"capture -o x.pcapng --device sim: --rate -1", 2, "--rate: -1 must be a finite number above 0"},
         {"capture -o x.pcapng --device sim: --rate \"\"", 2, "--rate: '' is no number"},
         {"capture -o x.pcapng --device sim: --rate 1e9", 2, "--rate 1e+09: out of range"},
-        {"capture -o x.pcapng --device sim: --rate 8000 --samples 9", 2, "does not have this rate"},
+        {"capture -o x.pcapng --device sim: --rate 8000 --samples 9", 2, "or 8000 Hz with --dlpf 250, 3600 or off"},
         {"capture -o x.pcapng --device sim: --dlpf wide", 2,
          "--dlpf 'wide': write a bandwidth in Hz (5, 10,"},
         {"capture -o x.pcapng --device sim: --min-free lots", 2, "'lots' is no size: write 64k, 500M, 2G"},

@@ -90,6 +90,31 @@ TEST(KalibrYaml, LeavesOutARandomWalkThatIsNotIdentified) {
     EXPECT_THAT(yaml, HasSubstr("# gyroscope_random_walk: not identified, at most 4.0e-06 (at 68.3 %)"));
 }
 
+TEST(KalibrYaml, HasTheUpperLimitInItsPlaceWhereThatIsAskedFor) {
+    ExportSource source = made_source();
+    source.gyro.pop_back();
+    source.upper_limits = true;
+    const std::string yaml = filter_text(kalibr_format, source);
+    EXPECT_THAT(yaml, HasSubstr("\ngyroscope_random_walk: 4.0e-06\n"));
+    EXPECT_THAT(yaml, HasSubstr("# not identified: this is its upper limit at 68.3 %\n"));
+    EXPECT_THAT(yaml, HasSubstr("# UPPER LIMITS at 68.3 % stand in the place of what is not identified"));
+    EXPECT_EQ(numbers_at_upper_limit(kalibr_format, source), "gyroscope_random_walk");
+    EXPECT_EQ(numbers_at_upper_limit(kalibr_format, made_source()), "") << "it is identified";
+    source.inflate = 2.0;
+    EXPECT_THAT(filter_text(kalibr_format, source), HasSubstr("\ngyroscope_random_walk: 8.0e-06\n"));
+}
+
+TEST(KalibrYaml, SaysThatAnAccelerometerHasCounts) {
+    std::string text = "t_s,gx_dps,ax_lsb\n";
+    for (int i = 0; i < 100; ++i) { text += fmt::format("{},{},{}\n", i * 0.01, i % 3, i % 5); }
+    const auto recording = parse_recording_csv(text, "imu.csv");
+    ASSERT_TRUE(recording.ok());
+    const std::string yaml = filter_text(kalibr_format, export_source(*recording, analyze(*recording)));
+    EXPECT_THAT(yaml,
+                HasSubstr("# accelerometer_noise_density: the accelerometer has counts, --lsb-g gives"));
+    EXPECT_THAT(yaml, Not(HasSubstr("not measured")));
+}
+
 TEST(KalibrYaml, HasTheNumbersOfTheAnalysisForTheAccelerometer) {
     const Recording recording = made_imu_recording();
     const AnalysisReport report = analyze(recording);

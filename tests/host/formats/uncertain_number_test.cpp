@@ -16,6 +16,7 @@ TEST(UncertainNumber, HasTwoDigitsOfTheUncertaintyAndTheValueToThem) {
     EXPECT_EQ(with_uncertainty(2.5e7, 1.2e5), "(2.500 ± 0.012)e+07");
     EXPECT_EQ(with_uncertainty(0.001952, 9.97e-5), "0.00195 ± 0.00010");
     EXPECT_EQ(with_uncertainty(0.25, 0.0), "0.25");
+    EXPECT_EQ(with_uncertainty(285.7142857142857, 1e-13), "285.714286") << "stamps that are computed";
 }
 
 TEST(UncertainNumber, LargerThanItsValueIsRoundedAsWell) {
