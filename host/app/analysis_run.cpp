@@ -85,7 +85,7 @@ Status write_fitted_model(const AnalysisRequest& request, const Recording& recor
         return Error{ErrorCode::invalid_argument,
                      "a model is of one sensor with axes x, y and z, and this recording has none of them"};
     }
-    GYROLOG_CHECK(refuse_motion(report, request.recording_path, "model"));
+    GYROLOG_CHECK(refuse_motion(report, recording, request.recording_path, "model"));
     return write_model(fitted_model(report, recording), request.model_path);
 }
 

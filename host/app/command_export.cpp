@@ -171,7 +171,8 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
         return Error{ErrorCode::failed, options.source + ": there is no gyro named gx, gy or gz"};
     }
     if (format.needs == ExportFormat::Needs::noise) {
-        GYROLOG_CHECK(refuse_motion(report, options.source, "noise parameters"));
+        GYROLOG_CHECK(
+            refuse_motion(report, recording, options.source, "noise parameters", {.touched_most = 0.0}));
     }
     return write_noise(console, options, format, source);
 }

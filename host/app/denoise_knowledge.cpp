@@ -9,9 +9,8 @@
 #include "host/formats/model_source.hpp"
 
 namespace gyrolog {
-namespace {}  // namespace
 
-TimeSpan still_part_of(const Recording& recording) {
+std::vector<std::vector<double>> gyro_means(const Recording& recording) {
     std::vector<std::vector<double>> means;
     for (const ArrayAxis& axis : array_axes(recording)) {
         std::vector<double> mean(recording.rows(), 0.0);
@@ -27,8 +26,10 @@ TimeSpan still_part_of(const Recording& recording) {
         }
         means.push_back(std::move(mean));
     }
-    return still_part(recording, means);
+    return means;
 }
+
+TimeSpan still_part_of(const Recording& recording) { return still_part(recording, gyro_means(recording)); }
 
 Result<Recording> rows_at_rest(const Recording& recording, const TimeSpan& still) {
     std::vector<const Column*> gyros;

@@ -12,6 +12,9 @@
 
 namespace gyrolog {
 
+// Of each gyro axis the mean over the units, a value a row.
+std::vector<std::vector<double>> gyro_means(const Recording& recording);
+
 // The longest part in which the units' mean is still on all axes; empty when there is none.
 TimeSpan still_part_of(const Recording& recording);
 

@@ -205,8 +205,10 @@ TEST(AnalyzeFiles, TheReportIsShownBeforeAFileThatCannotBeWritten) {
     }
 }
 
-// Turned by hand, quickly and now and then, for half a minute; after that half a minute at rest.
-std::string write_moving_recording(const TemporaryFolder& folder) {
+// Turned by hand at these times, in the first half of a minute.
+std::string write_moving_recording(const TemporaryFolder& folder,
+                                   const std::vector<double>& turned_at_s = {2.0, 3.1, 7.4, 12.0, 12.9, 19.3,
+                                                                             24.4, 27.7}) {
     std::string path = folder.path("turned.csv");
     std::ofstream text(path);
     text << "t_s,gx_dps,ax_g,ay_g,az_g\n";
@@ -215,7 +217,7 @@ std::string write_moving_recording(const TemporaryFolder& folder) {
     for (int row = 0; row < 6000; ++row) {
         const double t_s = row / 100.0;
         double rate_dps = 0.05 * noise(random);
-        for (const double at_s : {2.0, 3.1, 7.4, 12.0, 12.9, 19.3, 24.4, 27.7}) {
+        for (const double at_s : turned_at_s) {
             rate_dps += 90.0 * std::exp(-0.5 * std::pow((t_s - at_s) / 0.15, 2.0));
         }
         text << t_s << ',' << rate_dps << ',' << 1e-3 * noise(random) << ',' << 1e-3 * noise(random) << ','
@@ -244,6 +246,17 @@ TEST(AnalyzeFiles, NoModelIsMadeOfARecordingInMotion) {
     const CommandResult at_rest = run({"analyze", recording, "--still", "auto", "--model", model});
     EXPECT_EQ(at_rest.exit_code, ExitCode::ok) << at_rest.err;
     EXPECT_TRUE(std::filesystem::exists(model));
+}
+
+TEST(AnalyzeFiles, AModelIsMadeOfARecordingThatWasTouchedOnce) {
+    const TemporaryFolder folder;
+    const std::string recording = write_moving_recording(folder, {2.0});
+    const std::string model = folder.path("m.json");
+    const CommandResult result = run({"analyze", recording, "--model", model});
+    EXPECT_EQ(result.exit_code, ExitCode::ok) << result.err;
+    EXPECT_TRUE(std::filesystem::exists(model));
+    EXPECT_NE(result.out.find("the coefficients mean nothing"), std::string::npos) << result.out;
+    EXPECT_EQ(run({"export", recording, "-o", folder.path("imu.yaml")}).exit_code, ExitCode::failed);
 }
 
 TEST(ExportFiles, NoNoiseParametersAreMadeOfARecordingInMotion) {
