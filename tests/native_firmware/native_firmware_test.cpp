@@ -193,6 +193,16 @@ TEST_F(NativeFirmware, CountsWhatAHostThatDoesNotReadLoses) {
     EXPECT_NEAR(static_cast<double>(stream.samples + stream.jumps), 8000 * 3.5, 8000 * 0.2);
 }
 
+TEST_F(NativeFirmware, NothingIsLostWhereTheHostGivesATransferUp) {
+    start_stream(8000);
+    for (int i = 0; i < 40; ++i) {
+        rig_.run_s(0.0501 + 0.0003 * i);  // wherever in a frame that is
+        rig_.read(false);
+        rig_.read(true);
+    }
+    expect_every_sample(accounts(rig_.take_frames()), 8000, 40 * 0.0501 + 0.0003 * 780);
+}
+
 // The sensor samples on while its FIFO is read for the last time.
 TEST_F(NativeFirmware, StoppingLosesNoSample) {
     start_stream(8000);

@@ -180,8 +180,10 @@ private:
 
     void carry_out(const usbip::Command& command) {
         if (const auto* unlink = std::get_if<usbip::Unlink>(&command)) {
-            usbip::append_unlink_reply(replies_, unlink->sequence,
-                                       host_.give_up(unlink->target) ? -ECONNRESET : 0);
+            const bool given_up = host_.give_up(unlink->target);
+            // First what the transfer ended with, if it has: by the other reply the kernel forgets it.
+            reply();
+            usbip::append_unlink_reply(replies_, unlink->sequence, given_up ? -ECONNRESET : 0);
             return;
         }
         const auto& submit = std::get<usbip::Submit>(command);

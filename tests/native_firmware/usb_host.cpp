@@ -54,6 +54,11 @@ bool UsbHost::give_up(std::uint32_t id) {
                                         [id](const UsbTransfer& one) { return one.id == id; });
         if (found == pipe.waiting.end()) { continue; }
         if (found == pipe.waiting.begin()) {
+            // The device has seen these packets acknowledged, and will not send them again.
+            if (endpoint != 0 && !pipe.in_data.empty()) {
+                end_front(pipe, 0);
+                return false;
+            }
             pipe.in_data.clear();
             pipe.out_bytes = 0;
             pipe.stage = Stage::setup;

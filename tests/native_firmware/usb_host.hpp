@@ -53,7 +53,7 @@ public:
     void reset();
     void suspend(bool on);
     void submit(UsbTransfer transfer);
-    // False when it has ended already.
+    // False when it has ended already, or ends now with the packets that had come.
     bool give_up(std::uint32_t id);
     std::vector<UsbTransferEnd> take_ended() { return std::exchange(ended_, {}); }
     // The device's address after reset() is 0; a SET_ADDRESS that passes changes it.

@@ -144,7 +144,9 @@ void UsbRig::configure(std::uint32_t rate_hz, std::uint8_t layout) {
 void UsbRig::read(bool on) {
     reading_ = on;
     if (on) { return; }
-    for (const std::uint32_t id : std::exchange(posted_, {})) { host_.give_up(id); }
+    for (const std::uint32_t id : posted_) { host_.give_up(id); }
+    collect();
+    posted_.clear();
 }
 
 void UsbRig::post() {
