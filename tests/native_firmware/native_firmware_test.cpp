@@ -272,6 +272,7 @@ TEST_F(NativeFirmware, ResetInMidFrameBeginsAnew) {
         EXPECT_EQ(stream.wrong_stamps, 0U) << "reset " << i;
         EXPECT_GT(stream.samples, 1000U) << "reset " << i;
     }
+    EXPECT_EQ(rig_.host().accounts().repeated, 0U);  // no packet came before the toggles began anew
 }
 
 TEST_F(NativeFirmware, TakesASetupInPlaceOfTheLastRequestsRest) {

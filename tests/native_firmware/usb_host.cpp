@@ -32,6 +32,7 @@ void UsbHost::plug(bool in) {
 void UsbHost::reset() {
     fail_all(-EPROTO);
     address_ = 0;
+    configured_ = false;
     pipes_.clear();
     device_.bus_reset();
     free_ticks_ = processor_.now_ticks() + us(reset_us);
@@ -85,11 +86,17 @@ void UsbHost::end_front(Pipe& pipe, int status) {
 
 // ---------------------------------------------------------------------------- time on the wire
 
+// A driver of the kernel's finds no endpoint but 0 before the configuration is set: a packet taken between
+// the device's end of that request and the host's would have its toggle forgotten.
+bool UsbHost::may_serve(std::uint8_t endpoint, const Pipe& pipe) const {
+    return (endpoint == 0 || configured_) && !pipe.waiting.empty();
+}
+
 std::uint64_t UsbHost::next_event_ticks() const {
     if (frame_ticks_ == never_ticks) { return never_ticks; }
     std::uint64_t next = frame_ticks_;
     for (const auto& [endpoint, pipe] : pipes_) {
-        if (!pipe.waiting.empty()) { next = std::min(next, std::max(free_ticks_, pipe.retry_ticks)); }
+        if (may_serve(endpoint, pipe)) { next = std::min(next, std::max(free_ticks_, pipe.retry_ticks)); }
     }
     return next;
 }
@@ -105,7 +112,7 @@ void UsbHost::pass_event(std::uint64_t now_ticks) {
     auto next = pipes_.upper_bound(last_served_);
     for (std::size_t i = 0; i < pipes_.size(); ++i, ++next) {
         if (next == pipes_.end()) { next = pipes_.begin(); }
-        if (next->second.waiting.empty() || next->second.retry_ticks > now_ticks) { continue; }
+        if (!may_serve(next->first, next->second) || next->second.retry_ticks > now_ticks) { continue; }
         last_served_ = next->first;
         transact(next->first, next->second);
         return;
@@ -251,6 +258,7 @@ void UsbHost::control_done(Pipe& pipe) {
         free_ticks_ += us(set_address_us);
     } else if (setup[0] == 0x00 && setup[1] == set_configuration) {
         for (auto& [endpoint, other] : pipes_) { other.toggle = 0; }
+        configured_ = true;
     } else if (setup[0] == 0x02 && setup[1] == clear_feature && pipes_.count(setup[4]) != 0) {
         pipes_[setup[4]].toggle = 0;
     }

@@ -79,6 +79,7 @@ private:
     };
 
     std::uint64_t us(std::uint64_t duration_us) const { return duration_us * processor_.ticks_per_us(); }
+    bool may_serve(std::uint8_t endpoint, const Pipe& pipe) const;
     void fail_all(int status);
     void end_front(Pipe& pipe, int status);
     void spend(std::size_t packet_bytes);
@@ -99,6 +100,7 @@ private:
     std::vector<UsbTransferEnd> ended_;
     UsbHostAccounts accounts_;
     unsigned address_ = 0;
+    bool configured_ = false;
     unsigned handshakes_to_lose_ = 0;
     std::uint64_t frame_ticks_ = never_ticks;  // of the next start of frame; never while the bus idles
     std::uint64_t free_ticks_ = 0;             // when the wire is free
