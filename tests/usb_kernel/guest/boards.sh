@@ -40,15 +40,13 @@ trace_line_state() {
     echo 1 > /sys/kernel/tracing/events/kprobes/line_state/enable
 }
 
-# native_serial N: the serial number of the Nth native board, 32 digits.
-native_serial() { printf 'A1B2C3D40102030405060708%08X' "$1"; }
-
-# plug_native_board PORT N [OPTION...]: the firmware of that port on vhci_hcd, as job board-native. Its accounts are in
+# plug_native_board [OPTION...]: the firmware of the port that the scenario's name ends in, on vhci_hcd, as job
+# board-native, until cdc_acm has it. Its serial number is in native_serial, another in each scenario; its accounts are in
 # board-native.json once it has been stopped.
 plug_native_board() {
-    native_port=$1
-    native_number=$(native_serial "$2")
-    shift 2
-    run_in_background board-native "native_${native_port}_on_vhci" --serial "$native_number" --report board-native.json "$@"
-    wait_for 20 usb_present "$native_number"
+    native_port=$(basename "$0" .sh)
+    native_port=${native_port##*_}
+    native_serial=$(basename "$0" | md5sum | cut -c 1-32 | tr a-f A-F)
+    run_in_background board-native "native_${native_port}_on_vhci" --serial "$native_serial" --report board-native.json "$@"
+    wait_for 20 terminal_of "$native_serial"
 }

@@ -40,8 +40,8 @@ def boot(work, kernel, archive, share, timeout_s):
 
 
 def run(programs, work, script, timeout_s, scenarios=None):
-    """Boots a guest with `programs` in /bin and the scenarios named (all, unless told) in /test/scenarios, runs `script`
-    and returns its exit status; None when the guest did not come to its end. Raises Unavailable when there is nothing to
+    """Boots a guest with `programs` in /bin and `scenarios` (a name: its file) in /test/scenarios, runs `script` and
+    returns its exit status; None when the guest did not come to its end. Raises Unavailable when there is nothing to
     boot."""
     tool("qemu-system-x86_64")
     kernel = kernel_package.obtain(work / "kernel")
@@ -50,8 +50,7 @@ def run(programs, work, script, timeout_s, scenarios=None):
     share.mkdir(parents=True)
     files = {"/test/script.sh": script}
     files |= {f"/test/{path.name}": path for path in HERE.glob("*.sh")}
-    files |= {f"/test/scenarios/{path.name}": path for path in sorted((HERE / "scenarios").glob("*.sh"))
-              if not scenarios or path.stem in scenarios}
+    files |= {f"/test/scenarios/{name}.sh": path for name, path in (scenarios or {}).items()}
     initramfs.write(work / "initramfs.cpio", kernel, HERE / "init", programs, files)
     boot(work, kernel, work / "initramfs.cpio", share, timeout_s)
     status = share / "status"

@@ -47,6 +47,12 @@ stop() {
 usb_present() { grep -qsx "$1" /sys/bus/usb/devices/*/serial; }
 usb_absent() { ! usb_present "$1"; }
 
+# terminal_of SERIAL: whether cdc_acm has made a terminal of the device.
+terminal_of() {
+    terminal_device=$(grep -lsx "$1" /sys/bus/usb/devices/*/serial)
+    ls "${terminal_device%/serial}":1.0/tty/ttyACM*/dev
+}
+
 # capture_is_running FILE: whether samples reach the file.
 capture_is_running() { [ "$(stat -c %s "$1")" -gt 4096 ]; }
 

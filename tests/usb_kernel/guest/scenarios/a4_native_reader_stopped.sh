@@ -2,8 +2,8 @@
 . /test/scenario.sh
 . /test/boards.sh
 
-plug_native_board lpcxpresso55s69 164
-run_in_background capture gyrolog capture --device "usb:$(native_serial 164)" --duration 10s --rate 1000 -o capture.pcapng
+plug_native_board
+run_in_background capture gyrolog capture --device "usb:$native_serial" --duration 5s --rate 1000 -o capture.pcapng
 wait_for 20 capture_is_running capture.pcapng
 kill -STOP "$(cat capture.pid)"
 sleep 2

@@ -2,6 +2,6 @@
 . /test/scenario.sh
 . /test/boards.sh
 
-plug_native_board lpc1769 177
-run conform gyrolog conform --device "usb:$(native_serial 177)"
+plug_native_board
+run conform gyrolog conform --device "usb:$native_serial"
 stop board-native

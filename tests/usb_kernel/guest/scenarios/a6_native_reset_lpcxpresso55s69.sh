@@ -1,8 +1,0 @@
-# The bus is reset in the middle of a capture, wherever in a frame that is.
-. /test/scenario.sh
-. /test/boards.sh
-
-plug_native_board lpcxpresso55s69 166 --reset-after 8
-run capture gyrolog capture --device "usb:$(native_serial 166)" --duration 20s --rate 8000 --dlpf 250 -o capture.pcapng
-judge capture.pcapng
-stop board-native

@@ -1,8 +1,0 @@
-# The cable is pulled out in the middle of a capture and put back; the board keeps its power.
-. /test/scenario.sh
-. /test/boards.sh
-
-plug_native_board lpc1769 178 --unplug-after 6 --replug-after 3
-run capture gyrolog capture --device "usb:$(native_serial 178)" --duration 20s --rate 1000 -o capture.pcapng
-judge capture.pcapng
-stop board-native
