@@ -71,33 +71,31 @@ private:
     std::vector<std::string> absent_;
 };
 
-// Keys that nobody asked for, each with the one that may have been meant.
+// Keys that nobody asked for and that resemble one that is, which was meant perhaps. Others describe the
+// model to whoever wrote it.
 class UnknownKeys {
 public:
     void add(const Keys& keys) {
         const std::vector<std::string> known(keys.asked_for().begin(), keys.asked_for().end());
         const Json rest = keys.left_over();
         for (const auto& item : rest.items()) {
-            if (++number_ > told_most) { continue; }
+            if (told_.size() >= told_most) { return; }
             const std::string meant = nearest_name(item.key(), known);
-            told_.push_back(in_quotes(keys.name(item.key())) +
-                            (meant.empty() ? "" : " (did you mean '" + meant + "'?)"));
+            if (meant.empty()) { continue; }
+            told_.push_back(in_quotes(keys.name(item.key())) + " (did you mean '" + meant + "'?)");
         }
     }
 
     void note(std::vector<std::string>& notes) const {
         if (told_.empty()) { return; }
-        const std::string more =
-            number_ > told_most ? fmt::format(" and {} more", number_ - told_most) : std::string();
-        notes.push_back(fmt::format("the model has keys of no effect, which this version does not know: {}{}",
-                                    fmt::join(told_, ", "), more));
+        notes.push_back(fmt::format("the model has keys of no effect: {}{}", fmt::join(told_, ", "),
+                                    told_.size() < told_most ? "" : ", ..."));
     }
 
 private:
     static constexpr std::size_t told_most = 8;
 
     std::vector<std::string> told_;
-    std::size_t number_ = 0;
 };
 
 // `unit`: of the file's numbers, in SI.

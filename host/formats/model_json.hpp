@@ -2,7 +2,8 @@
 //
 // In the file angles are degrees and acceleration is g; in SensorModel everything is SI. Numbers read and
 // written back unchanged are the same text value: each is written with the fewest digits that give back the
-// SI number. Keys that this version does not know are kept and written back; a note names them.
+// SI number. Keys that this version does not know are kept and written back; a note names those that
+// resemble one that it knows.
 #pragma once
 
 #include <cstdint>
