@@ -326,7 +326,7 @@ void set_estimate(FittedCoefficient& fitted, double square, double square_sd) {
 std::string_view name_of(FitMethod method) { return method == FitMethod::curve ? "curve" : "likelihood"; }
 
 bool NoiseFit::is_of_motion() const {
-    // Half of the model: a sensor's filter, vibration or temperature leaves a tenth or two.
+    // Share of the model (model_error).
     constexpr double hopeless_error = 0.5;
     return method == FitMethod::likelihood && model_error > hopeless_error;
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "analysis/noise/analyze.hpp"
+#include "analysis/recording/disturbances.hpp"
 #include "analysis/recording/recording.hpp"
 #include "host/base/result.hpp"
 
@@ -12,7 +13,7 @@ namespace gyrolog {
 struct MotionRefusalOptions {
     // Of the rows: what moves for less is a touch, as a disturbance is (DisturbanceOptions::together_share).
     // The report warns of it.
-    double touched_most = 0.1;
+    double touched_most = DisturbanceOptions().together_share;
 };
 
 // Error: failed where the report is of a recording in motion (AnalysisReport::is_of_motion()), with what to

@@ -3,34 +3,15 @@
 #include <cerrno>
 #include <system_error>
 
+#include "host/base/storage_error.hpp"
+
 namespace gyrolog {
-namespace {
-
-ErrorCode code_of(int error_number) {
-    switch (error_number) {
-        case ENOSPC:
-        case EDQUOT:
-        case EFBIG:
-            return ErrorCode::disk_full;
-        case ENOENT:
-        case ENOTDIR:
-            return ErrorCode::not_found;
-        case EACCES:
-        case EPERM:
-        case EROFS:
-            return ErrorCode::permission_denied;
-        case EEXIST:
-            return ErrorCode::invalid_argument;
-        default:
-            return ErrorCode::storage_failed;
-    }
-}
-
-}  // namespace
 
 Error errno_error(const std::string& what) {
     const int error_number = errno;
-    return {code_of(error_number), what + ": " + std::generic_category().message(error_number)};
+    const ErrorCode code =
+        error_number == EEXIST ? ErrorCode::invalid_argument : storage_error(error_number).code;
+    return {code, what + ": " + std::generic_category().message(error_number)};
 }
 
 }  // namespace gyrolog

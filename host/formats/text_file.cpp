@@ -31,7 +31,6 @@ Error error_of(archive* file) {
         case ENOENT:
             return {ErrorCode::not_found, "no such file"};
         case EACCES:
-            return {ErrorCode::permission_denied, "permission denied"};
         case ENOSPC:
         case EDQUOT:
         case EFBIG:
