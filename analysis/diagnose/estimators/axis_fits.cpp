@@ -46,17 +46,42 @@ const EffectParam& param_of(const EffectDefinition& effect, std::string_view nam
     return *std::ranges::find(effect.params, name, &EffectParam::name);
 }
 
-double occam_cost_nats(const EffectParam& param, double value, double sd) {
+PlausibleRange::PlausibleRange(const EffectParam& param, double value) {
     const double from = param.plausible_from;
     const double to = param.plausible_to;
     const bool logarithmic = from > 0.0 && to > from && value > 0.0;
     const double range = logarithmic ? std::log(to / from) : to - from;
-    double cost = parameter_cost_nats(range, logarithmic ? sd / value : sd);
-    // What is plausible ends as a normal distribution does, a sigma of half the range, not at a wall.
+    width = logarithmic ? value * range : range;
     const double beyond = logarithmic ? std::max(std::log(value / to), std::log(from / value))
                                       : std::max(value - to, from - value);
-    if (beyond > 0.0 && range > 0.0) { cost += 2.0 * beyond * beyond / (range * range); }
-    return cost;
+    if (beyond > 0.0 && range > 0.0) { beyond_nats = 2.0 * beyond * beyond / (range * range); }
+}
+
+double occam_cost_nats(const EffectParam& param, double value, double sd) {
+    const PlausibleRange range(param, value);
+    return parameter_cost_nats(range.width, sd) + range.beyond_nats;
+}
+
+double joint_occam_cost_nats(std::span<const EffectParam* const> params, std::span<const double> values,
+                             const Matrix& information) {
+    std::vector<double> widths;
+    double beyond_nats = 0.0;
+    for (std::size_t i = 0; i < params.size(); ++i) {
+        const PlausibleRange range(*params[i], values[i]);
+        widths.push_back(range.width);
+        beyond_nats += range.beyond_nats;
+    }
+    return joint_parameter_cost_nats(information, widths) + beyond_nats;
+}
+
+Matrix information_of_values(const Matrix& of_logarithms, std::span<const double> values) {
+    Matrix information(values.size(), values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        for (std::size_t j = 0; j < values.size(); ++j) {
+            information(i, j) = of_logarithms(i, j) / (values[i] * values[j]);
+        }
+    }
+    return information;
 }
 
 std::optional<Finding> best_of(const EffectDefinition& effect, const std::vector<AxesFit>& single,

@@ -4,10 +4,12 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/diagnose/report.hpp"
+#include "analysis/numerics/matrix.hpp"
 #include "analysis/simulate/effect.hpp"
 
 namespace gyrolog {
@@ -25,10 +27,23 @@ struct AxesFit {
     double evidence_nats() const { return total_gain_nats() - cost_nats; }
 };
 
+// What is plausible about a value of a parameter: uniform over the range, log-uniform where the range lies on
+// one side of zero. It ends as a normal distribution does, a sigma of half the range, not at a wall.
+struct PlausibleRange {
+    PlausibleRange(const EffectParam& param, double value);
+
+    double width = 0.0;  // in the parameter's unit, of a logarithmic range as it is at the value
+    double beyond_nats = 0.0;
+};
+
 // The function returns what it costs, in nats, that a parameter could be anywhere in its plausible range
-// (likelihood/occam.hpp): log-uniform where the range lies on one side of zero, with normal ends beyond it.
-// The cost is at least half a nat.
+// (likelihood/occam.hpp). The cost is at least half a nat.
 double occam_cost_nats(const EffectParam& param, double value, double sd);
+// The same of several parameters that are known together. `information`: the inverse of their covariance.
+double joint_occam_cost_nats(std::span<const EffectParam* const> params, std::span<const double> values,
+                             const Matrix& information);
+// The information about values, from that about their logarithms.
+Matrix information_of_values(const Matrix& of_logarithms, std::span<const double> values);
 const EffectParam& param_of(const EffectDefinition& effect, std::string_view name);
 
 // The function returns those single-axis fits that pay for themselves (the best one if none does), or the fit

@@ -273,12 +273,9 @@ private:
 
     double linear_cost(const NormalEquations& equations, const std::vector<double>& c) const {
         if (signature_.linear.empty()) { return 0.0; }
-        const std::vector<double> sd = equations.sd();
-        double cost = 0.0;
-        for (std::size_t j = 0; j < signature_.linear.size(); ++j) {
-            cost += occam_cost_nats(param_of(effect_, signature_.linear[j]), c[j], sd[j]);
-        }
-        return cost;
+        std::vector<const EffectParam*> params;
+        for (const std::string_view name : signature_.linear) { params.push_back(&param_of(effect_, name)); }
+        return joint_occam_cost_nats(params, c, equations.A);
     }
 
     static double quick_evidence(const std::vector<Quick>& axes) {

@@ -1,6 +1,5 @@
 #include "analysis/diagnose/estimators/narrow_band.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,6 +14,7 @@
 #include "analysis/diagnose/likelihood/noise_nuisance.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
+#include "analysis/numerics/peak_curvature.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog::resolution {
@@ -25,8 +25,6 @@ constexpr std::size_t narrowest = 8;
 constexpr double bins_per_width = 8.0;
 // To either side of the middle, in widths: beyond, a Lorentzian has a fiftieth of itself.
 constexpr double finely_within_widths = 16.0;
-// Of the logarithm of a parameter, to see the curvature by.
-constexpr double step_least = 0.002;
 
 }  // namespace gyrolog::resolution
 
@@ -133,49 +131,10 @@ struct BandFit {
 
 using Objective = std::function<double(const std::vector<double>&)>;
 
-// Standard deviations about a maximum, from the curvature in all variables together.
 std::vector<double> deviations(const Objective& objective, const SimplexMaximum& maximum) {
-    const auto count = static_cast<Eigen::Index>(maximum.at.size());
-    const auto at = [&](Eigen::Index i, double by_i, Eigen::Index j, double by_j) {
-        std::vector<double> moved = maximum.at;
-        moved[static_cast<std::size_t>(i)] += by_i;
-        moved[static_cast<std::size_t>(j)] += by_j;
-        return objective(moved);
-    };
-    // Steps that change the gain by about half a nat, so that neither rounding nor a flat top misleads.
-    Eigen::VectorXd step = Eigen::VectorXd::Constant(count, resolution::step_least);
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        for (int doubling = 0; doubling < 10; ++doubling) {
-            const double by = std::ldexp(resolution::step_least, doubling);
-            const double up = maximum.value - at(i, by, i, 0.0);
-            const double down = maximum.value - at(i, -by, i, 0.0);
-            // At the end of what is allowed one side tells.
-            const double fall = std::isfinite(up + down) ? up + down : 2.0 * std::min(up, down);
-            if (!std::isfinite(fall)) { break; }
-            step[i] = by;
-            information(i, i) = fall / (by * by);
-            if (fall > 0.5) { break; }
-        }
-    }
-    for (Eigen::Index i = 0; i < count; ++i) {
-        for (Eigen::Index j = 0; j < i; ++j) {
-            const double mixed = at(i, step[i], j, step[j]) - at(i, step[i], j, -step[j]) -
-                                 at(i, -step[i], j, step[j]) + at(i, -step[i], j, -step[j]);
-            information(i, j) = information(j, i) = -mixed / (4.0 * step[i] * step[j]);
-        }
-    }
-    const Eigen::LLT<Eigen::MatrixXd> factor(information);
-    const bool is_maximum = information.allFinite() && factor.info() == Eigen::Success;
-    const Eigen::VectorXd variance =
-        is_maximum ? Eigen::VectorXd(factor.solve(Eigen::MatrixXd::Identity(count, count)).diagonal())
-                   : Eigen::VectorXd(information.diagonal().cwiseInverse());
-    std::vector<double> sd(static_cast<std::size_t>(count), resolution::sd_log_most);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        if (!(variance[i] > 0.0)) { continue; }
-        sd[static_cast<std::size_t>(i)] = std::min(std::sqrt(variance[i]), resolution::sd_log_most);
-    }
-    return sd;
+    return peak_curvature(objective, maximum.at, maximum.value, resolution::step_log,
+                          resolution::sd_log_most)
+        .sd;
 }
 
 class NarrowBandEstimator final : public Estimator {

@@ -1,8 +1,8 @@
 #include "analysis/diagnose/estimators/noise_spectrum.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
@@ -11,6 +11,7 @@
 #include "analysis/diagnose/estimators/trial_grid.hpp"
 #include "analysis/diagnose/likelihood/whittle.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
+#include "analysis/numerics/peak_curvature.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog::resolution {
@@ -194,30 +195,17 @@ private:
     // From the curvature of the gain about its maximum.
     void add_uncertainty(const std::function<double(const std::vector<double>&)>& objective,
                          const SimplexMaximum& maximum, AxesFit& fit) const {
-        const std::size_t count = maximum.at.size();
-        for (std::size_t i = 0; i < count; ++i) {
-            // A step that changes the gain by about half a nat, so that neither rounding nor a flat top
-            // misleads.
-            double curvature = 0.0;
-            for (int doubling = 0; doubling < 10; ++doubling) {
-                const double step = std::ldexp(0.002, doubling);
-                std::vector<double> less = maximum.at;
-                std::vector<double> more = maximum.at;
-                less[i] -= step;
-                more[i] += step;
-                const double fall = 2.0 * maximum.value - objective(less) - objective(more);
-                if (!(fall < 1e300)) { break; }
-                curvature = fall / (step * step);
-                if (fall > 0.5) { break; }
-            }
-            const double sd_log = curvature > 0.0
-                                      ? std::min(1.0 / std::sqrt(curvature), resolution::sd_log_most)
-                                      : resolution::sd_log_most;
-            const std::string name(signature_.spectral[i]);
-            const double value = std::exp(maximum.at[i]);
-            fit.sd[name] = value * sd_log;
-            fit.cost_nats += occam_cost_nats(param_of(effect_, name), value, value * sd_log);
+        const PeakCurvature curvature = peak_curvature(objective, maximum.at, maximum.value,
+                                                       resolution::step_log, resolution::sd_log_most);
+        std::vector<const EffectParam*> params;
+        std::vector<double> values;
+        for (std::size_t i = 0; i < maximum.at.size(); ++i) {
+            params.push_back(&param_of(effect_, signature_.spectral[i]));
+            values.push_back(std::exp(maximum.at[i]));
+            fit.sd[std::string(signature_.spectral[i])] = values[i] * curvature.sd[i];
         }
+        fit.cost_nats +=
+            joint_occam_cost_nats(params, values, information_of_values(curvature.information, values));
     }
 
     // The band in which nine tenths of the gain arise.

@@ -12,7 +12,9 @@
 #include "analysis/diagnose/estimators/gain_band.hpp"
 #include "analysis/diagnose/estimators/resolutions.hpp"
 #include "analysis/diagnose/estimators/telegraph_filter.hpp"
+#include "analysis/numerics/cholesky.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
+#include "analysis/numerics/peak_curvature.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 
 namespace gyrolog::resolution {
@@ -322,35 +324,29 @@ private:
         return fit;
     }
 
-    // From the curvature of the gain in each logarithm.
+    // From the curvature of the gain in the logarithms.
     void add_uncertainty(const std::function<double(const Point&)>& objective, const SimplexMaximum& maximum,
                          AxesFit& fit) const {
         constexpr std::array<const char*, 3> names = {"amplitude_dps", "dwell_high_s", "dwell_low_s"};
+        const PeakCurvature curvature = peak_curvature(objective, maximum.at, maximum.value,
+                                                       resolution::step_log, resolution::sd_log_most);
         const Telegraph telegraph = telegraph_at(maximum.at);
         const double dwells = static_cast<double>(fit.axes.size()) * prediction_->duration_s() /
                               (telegraph.high_s + telegraph.low_s);
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            double curvature = 0.0;
-            double step = 0.01;
-            for (int doubling = 0; doubling < 6; ++doubling) {
-                step *= 2.0;
-                Point less = maximum.at;
-                Point more = maximum.at;
-                less[i] -= step;
-                more[i] += step;
-                const double fall = 2.0 * maximum.value - objective(less) - objective(more);
-                if (!(fall < 1e300)) { break; }
-                curvature = fall / (step * step);
-                if (fall > 0.5) { break; }
-            }
-            double sd_log = curvature > 0.0 ? std::min(1.0 / std::sqrt(curvature), resolution::sd_log_most)
-                                            : resolution::sd_log_most;
-            // Exponential dwell times that were all seen have a mean no better known than this.
-            if (i > 0) { sd_log = std::max(sd_log, 1.0 / std::sqrt(dwells)); }
-            const double value = fit.params.at(names[i]);
-            fit.sd[names[i]] = value * sd_log;
-            fit.cost_nats += occam_cost_nats(param_of(effect_, names[i]), value, value * sd_log);
+        Matrix covariance = CholeskyFactor(curvature.information).inverse();
+        // Exponential dwell times that were all seen have a mean no better known than this.
+        for (std::size_t i = 1; i < names.size(); ++i) {
+            covariance(i, i) = std::max(covariance(i, i), 1.0 / dwells);
         }
+        std::vector<const EffectParam*> params;
+        std::vector<double> values;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            params.push_back(&param_of(effect_, names[i]));
+            values.push_back(fit.params.at(names[i]));
+            fit.sd[names[i]] = values[i] * std::sqrt(covariance(i, i));
+        }
+        fit.cost_nats += joint_occam_cost_nats(
+            params, values, information_of_values(CholeskyFactor(covariance).inverse(), values));
     }
 
     // The band in which nine tenths of the spectrum's part of the gain arise.

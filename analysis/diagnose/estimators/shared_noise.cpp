@@ -13,6 +13,7 @@
 #include "analysis/diagnose/likelihood/occam.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
+#include "analysis/numerics/peak_curvature.hpp"
 #include "analysis/numerics/simplex_search.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 
@@ -20,7 +21,10 @@ namespace gyrolog::resolution {
 
 // Coefficients with more than this times the expected power are a line's.
 constexpr double line_power = 25.0;
+// Of the logarithm of the density and of ratios of gains: the least step over which a curvature is taken, and
+// the sd of what is not known.
 constexpr double curvature_step = 0.01;
+constexpr double ratio_sd_most = 1.0;
 
 }  // namespace gyrolog::resolution
 
@@ -253,7 +257,8 @@ private:
     AxesFit axes_fit(const Observation& observation, const Statistics& sum,
                      const std::vector<std::size_t>& axes, const SimplexMaximum& maximum,
                      const Objective& objective) const {
-        const std::vector<double> sd = deviations(maximum, objective);
+        const PeakCurvature curvature = peak_curvature(
+            objective, maximum.at, maximum.value, resolution::curvature_step, resolution::ratio_sd_most);
         const Eigen::Vector3d h = shared(sum, axes, maximum.at);
         AxesFit fit;
         fit.axes = axes;
@@ -276,52 +281,19 @@ private:
         const EffectParam& density = effect_.params[0];
         const std::string name(density.name);
         fit.params[name] = std::exp(maximum.at[0]) * largest * deg_per_rad;
-        fit.sd[name] = fit.params[name] * sd[0];
-        fit.cost_nats = occam_cost_nats(density, fit.params[name], fit.sd[name]);
-        if (maximum.at.size() == 1) { return fit; }
-        for (std::size_t i = 0; i < axes.size(); ++i) {
+        fit.sd[name] = fit.params[name] * curvature.sd[0];
+        const PlausibleRange of_density(density, fit.params[name]);
+        std::vector<double> ranges = {of_density.width / fit.params[name]};
+        for (std::size_t i = 0; maximum.at.size() > 1 && i < axes.size(); ++i) {
             const EffectParam& param = effect_.params[1 + axes[i]];
             fit.params[std::string(param.name)] = (i == 0 ? 1.0 : maximum.at[i]) / largest;
             if (i == 0) { continue; }
-            fit.sd[std::string(param.name)] = sd[i] / largest;
+            fit.sd[std::string(param.name)] = curvature.sd[i] / largest;
             // Of either sign.
-            fit.cost_nats +=
-                parameter_cost_nats(2.0 * (param.plausible_to - param.plausible_from), sd[i] / largest);
+            ranges.push_back(2.0 * (param.plausible_to - param.plausible_from) * largest);
         }
+        fit.cost_nats = joint_parameter_cost_nats(curvature.information, ranges) + of_density.beyond_nats;
         return fit;
-    }
-
-    // From the curvature about the maximum, each parameter with the others where they are best.
-    template <typename Objective>
-    static std::vector<double> deviations(const SimplexMaximum& maximum, const Objective& objective) {
-        const auto size = static_cast<Eigen::Index>(maximum.at.size());
-        const auto at = [&](Eigen::Index i, double by_i, Eigen::Index j, double by_j) {
-            std::vector<double> place = maximum.at;
-            place[static_cast<std::size_t>(i)] += by_i;
-            place[static_cast<std::size_t>(j)] += by_j;
-            return objective(place);
-        };
-        Eigen::MatrixXd information(size, size);
-        for (Eigen::Index i = 0; i < size; ++i) {
-            for (Eigen::Index j = 0; j <= i; ++j) {
-                const double second =
-                    i == j ? at(i, resolution::curvature_step, i, 0.0) +
-                                 at(i, -resolution::curvature_step, i, 0.0) - 2.0 * maximum.value
-                           : 0.25 * (at(i, resolution::curvature_step, j, resolution::curvature_step) +
-                                     at(i, -resolution::curvature_step, j, -resolution::curvature_step) -
-                                     at(i, resolution::curvature_step, j, -resolution::curvature_step) -
-                                     at(i, -resolution::curvature_step, j, resolution::curvature_step));
-                information(i, j) = information(j, i) =
-                    -second / (resolution::curvature_step * resolution::curvature_step);
-            }
-        }
-        const Eigen::MatrixXd covariance = information.inverse();
-        std::vector<double> sd;
-        for (Eigen::Index i = 0; i < size; ++i) {
-            const double variance = covariance(i, i);
-            sd.push_back(variance > 0.0 && variance < 1.0 ? std::sqrt(variance) : 1.0);
-        }
-        return sd;
     }
 
     const EffectDefinition& effect_;
