@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -179,17 +181,30 @@ std::vector<Finding> CauseSet::rivals_of(const Finding& cause, const std::vector
     return rivals;
 }
 
-std::vector<Finding> CauseSet::best_rivals(const FoundCause& cause) const {
+std::vector<Finding> CauseSet::rivals_to_try(const FoundCause& cause) const {
     const EstimatorTraits& own = traits_of(cause.finding.effect);
     if (own.is_of_codes || own.recurs) { return {}; }
+    const auto is_simpler = [&](const Finding& rival) {
+        return rival.parameters < cause.finding.parameters &&
+               rival.evidence_nats > cause.finding.evidence_nats - decisions.strong_nats;
+    };
     std::map<EvidenceMethod, Finding> best;
+    std::map<EvidenceMethod, Finding> simpler;
     for (const Finding& rival : cause.rivals) {
         const EstimatorTraits& traits = traits_of(rival.effect, *first_.prediction);
         if (rival.effect == cause.finding.effect || traits.is_beside_spectra || traits.recurs) { continue; }
         if (axes_explained_by(rival, cause.finding, decisions.nearly_all).empty()) { continue; }
-        best.try_emplace(traits.method, rival);
+        if (best.try_emplace(traits.method, rival).second || !is_simpler(rival)) { continue; }
+        simpler.try_emplace(traits.method, rival);
     }
-    return best_first(std::move(best));
+    std::vector<Finding> rivals = best_first(std::move(best));
+    for (auto& [method, rival] : simpler) { rivals.push_back(std::move(rival)); }
+    return rivals;
+}
+
+int CauseSet::parameters(const std::vector<FoundCause>& some) {
+    return std::accumulate(some.begin(), some.end(), 0,
+                           [](int sum, const FoundCause& cause) { return sum + cause.finding.parameters; });
 }
 
 bool CauseSet::give_to_rival(std::size_t place, const Finding& rival) {

@@ -285,12 +285,13 @@ private:
     // Each cause was chosen before those that were found after it, and these were fitted to what it left. So
     // each cause once gives its axes to the best rival of each estimator that explains them nearly as well.
     // All causes are refitted, and the best further cause is added. The first exchange stays that raises the
-    // worth of all measures, or keeps it with fewer causes. The function returns whether any exchange stays;
-    // no value when it was ended early.
+    // worth of all measures by strong evidence, or that has fewer parameters and is not strongly worse: of
+    // what the data cannot tell apart, the simpler stays. The function returns whether any exchange stays; no
+    // value when it was ended early.
     std::optional<bool> exchange() {
         bool any = false;
         for (std::size_t i = 0; !was_exchanged_ && i < set_.causes.size(); ++i) {
-            for (const Finding& rival : set_.best_rivals(set_.causes[i])) {
+            for (const Finding& rival : set_.rivals_to_try(set_.causes[i])) {
                 const std::optional<bool> is_better = exchange_for(i, rival);
                 if (!is_better) { return std::nullopt; }
                 if (!*is_better) { continue; }
@@ -312,7 +313,8 @@ private:
         const double more_nats = decisions.strong_nats;
         const bool were_weighed = std::exchange(are_weighed_, true);
         if (!add_next_if_worth(before_nats + more_nats)) { return std::nullopt; }
-        const double least_nats = before_nats + (set_.causes.size() < before.size() ? -more_nats : more_nats);
+        const bool is_simpler = CauseSet::parameters(set_.causes) < CauseSet::parameters(before);
+        const double least_nats = before_nats + (is_simpler ? -more_nats : more_nats);
         const bool is_better =
             CauseSet::change_likelihood_among(set_.causes) == CauseSet::change_likelihood_among(before) &&
             set_.worth_nats(set_.observed()) > least_nats;

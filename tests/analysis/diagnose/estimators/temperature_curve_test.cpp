@@ -102,6 +102,28 @@ TEST(TemperatureCurve, IsFittedTogetherWithTheWalkThatStoodForIt) {
     EXPECT_GT(beside->evidence_nats, 10.0);
 }
 
+// Within half a degree on one side of the reference a line and a parabola are one curve: each coefficient of
+// the parabola is hardly known, and its curve as well as the line's. The simpler one stands first, the other
+// beside it.
+TEST(TemperatureCurve, ThatIsALineOverANarrowRangeIsALine) {
+    auto world = std::make_shared<FormulaWorld>();
+    world->temperature_C = [](double t_s) { return 25.4 + 0.25 * triangle(t_s / 1800.0); };
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const SensorModel sensor =
+            with_effect(calibrated_sensor(), "temp_linear", {{"c1_dps_per_C", 0.06}}, {"x"});
+        const auto recording = recorded(sensor, half_an_hour, 300 + seed, world);
+        const Hypotheses first = examine(prediction_of(recording, calibrated_sensor()), recording, 1, 1);
+        const std::optional<CauseSelection> selection = select_causes(first, recording, {});
+        ASSERT_TRUE(selection);
+        ASSERT_EQ(selection->causes.size(), 1U) << seed;
+        const FoundCause& cause = selection->causes.front();
+        EXPECT_EQ(cause.finding.effect, "temp_linear") << seed;
+        const auto parabola = std::ranges::find(cause.rivals, "temp_quadratic", &Finding::effect);
+        ASSERT_NE(parabola, cause.rivals.end()) << seed;
+        EXPECT_NEAR(parabola->evidence_nats, cause.finding.evidence_nats, 3.0) << seed;
+    }
+}
+
 TEST(TemperatureCurve, IsNoneWhereNothingFollowsTheTemperature) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         for (const auto& [curve, nats] : evidences(calibrated_sensor(), 200 + seed)) {
