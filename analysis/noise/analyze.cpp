@@ -105,6 +105,7 @@ void find_coefficients(Work& work, const AnalysisOptions& options) {
     LikelihoodFitOptions fit;
     fit.confidence = options.confidence;
     fit.step = converter_step(*work.read);
+    fit.bandwidth_hz = column.bandwidth_hz;
     for (const SpectralLine& line : axis.lines) {
         fit.lines.push_back({{line.amplitude, line.f_hz}, line.amplitude_sd, line.f_sd_hz});
     }
@@ -128,9 +129,9 @@ std::vector<std::string> refused_factors(const AnalysisOptions& options, const A
     return warnings;
 }
 
-std::string rounded(double value) {
+std::string rounded(double value, int digits = 2) {
     std::ostringstream text;
-    text << std::setprecision(2) << value;
+    text << std::setprecision(digits) << value;
     return text.str();
 }
 
@@ -138,7 +139,12 @@ std::string rounded(double value) {
 void warn_of_misfit(const AxisReport& axis, AxisWarnings& warnings) {
     constexpr double allowed_error = 0.05;
     const NoiseFit& fit = axis.fit;
-    if (fit.upper_frequency_hz > 0.0) {
+    if (fit.bandwidth_hz > 0.0) {
+        warnings.add(axis.axis,
+                     "the sensor's low-pass filter of " + rounded(fit.bandwidth_hz, 4) +
+                         " Hz is not part of the model; the coefficients are those of what lies far below it",
+                     "up to " + rounded(fit.upper_frequency_hz) + " Hz");
+    } else if (fit.upper_frequency_hz > 0.0) {
         warnings.add(axis.axis,
                      "at high frequencies the spectrum does not follow the model (a filter or vibration "
                      "does that); the coefficients are those of what lies below",
@@ -246,7 +252,9 @@ void warn_of_axes(SensorKind sensor, const SensorUnit& unit, const std::list<Wor
         if (axis.sensor != sensor) { continue; }
         warn_of_misfit(axis.report, warnings);
         warn_of_drift(axis.report, unit, warnings);
-        if (is_clipped(*axis.read)) {
+        const double filter_hz = axis.read->bandwidth_hz;
+        const double alike = filter_hz > 0.0 ? axis.recording->rate_hz / (2.0 * filter_hz) : 1.0;
+        if (is_clipped(*axis.read, std::max(alike, 1.0))) {
             warnings.add(axis.report.axis,
                          "the samples are clipped: more lie at their limit than next to it, and "
                          "the noise is larger than these coefficients say");

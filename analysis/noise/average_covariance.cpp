@@ -1,6 +1,8 @@
 #include "analysis/noise/average_covariance.hpp"
 
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 namespace gyrolog {
 namespace {
@@ -53,6 +55,28 @@ AverageCovariance gauss_markov_covariance(double correlation_s) {
                 return within * within * std::exp(-static_cast<double>(lag - 1) * x);
             },
             false};
+}
+
+AverageCovariance filtered_white_covariance(double bandwidth_hz, double rate_hz) {
+    using Complex = std::complex<double>;
+    const double q = 2.0 * pi * bandwidth_hz / (std::numbers::sqrt2 * rate_hz);
+    const Complex z = std::exp(Complex(-q, q));
+    const Complex shape(1.0, -1.0);
+    // The sum of all covariances is the density at low frequencies, times the rate.
+    const double sum = 1.0 + 2.0 * (shape * z / (1.0 - z)).real();
+    const Complex C = shape * (rate_hz / sum);
+    return {[=](std::int64_t lag, double span_s) {
+                const double m = std::round(span_s * rate_hz);
+                const Complex z_m = std::exp(Complex(-q, q) * m);
+                if (lag == 0) {
+                    const Complex pairs = z * (m * (1.0 - z) - (1.0 - z_m)) / ((1.0 - z) * (1.0 - z));
+                    return (m * C.real() + 2.0 * (C * pairs).real()) / (m * m);
+                }
+                const Complex within = (1.0 - z_m) / (1.0 - z);
+                const double between = static_cast<double>(lag - 1) * m + 1.0;
+                return (C * within * within * std::exp(Complex(-q, q) * between)).real() / (m * m);
+            },
+            true};
 }
 
 AverageCovariance sinusoid_covariance(double frequency_hz, double rate_hz) {

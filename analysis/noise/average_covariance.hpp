@@ -29,6 +29,13 @@ AverageCovariance average_covariance(NoiseTerm term);
 // Of Gauss-Markov noise of variance 1.
 AverageCovariance gauss_markov_covariance(double correlation_s);
 
+// Of white noise that came through a Butterworth low-pass filter of the second order (effects/lowpass.cpp)
+// and was then sampled: its covariance is Re(C z^k), k samples apart, with
+//   q = 2 pi bandwidth / (sqrt 2 rate),  C proportional to 1 - i,  z = exp(-q + i q)
+// and those of averages of m samples are geometric series of it. The coefficient, 1, is the square root of
+// the samples' density at low frequencies.
+AverageCovariance filtered_white_covariance(double bandwidth_hz, double rate_hz);
+
 // Of a sinusoid of amplitude 1 and unknown phase, sampled without averaging within a sample.
 AverageCovariance sinusoid_covariance(double frequency_hz, double rate_hz);
 

@@ -6,11 +6,11 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::size_t enough = 20;
+constexpr double enough = 20.0;
 
 // `further(a, b)`: a lies further out than b.
 template <typename T, typename Further>
-bool piles_up(const std::vector<T>& data, const Further& further) {
+bool piles_up(const std::vector<T>& data, double alike, const Further& further) {
     const T end = *std::ranges::max_element(data, [&](T a, T b) { return further(b, a); });
     T beside = end;
     std::size_t at_end = 0;
@@ -28,15 +28,16 @@ bool piles_up(const std::vector<T>& data, const Further& further) {
             at_beside = 1;
         }
     }
-    return third && at_end >= enough && at_end > 2 * at_beside;
+    return third && static_cast<double>(at_end) >= enough * alike && at_end > 2 * at_beside;
 }
 
 }  // namespace
 
-bool is_clipped(const Column& column) {
+bool is_clipped(const Column& column, double alike) {
     return std::visit(
-        [](const auto& data) {
-            return !data.empty() && (piles_up(data, std::greater<>()) || piles_up(data, std::less<>()));
+        [&](const auto& data) {
+            return !data.empty() &&
+                   (piles_up(data, alike, std::greater<>()) || piles_up(data, alike, std::less<>()));
         },
         column.data);
 }

@@ -275,7 +275,7 @@ std::optional<NoiseFit> fit_likelihood(const Column& column, std::span<const Seg
                                        const LikelihoodFitOptions& options) {
     const ContrastPyramid pyramid = contrast_pyramid(column, segments, rate_hz);
     if (pyramid.top.size() < 32 || !varies(pyramid)) { return std::nullopt; }
-    const SearchResult found = search_terms(pyramid, start, options.lines);
+    const SearchResult found = search_terms(pyramid, start, options.lines, options.bandwidth_hz);
     const Fitted& fitted = found.fitted;
     if (!std::isfinite(fitted.value())) { return std::nullopt; }
     NoiseFit result;
@@ -285,6 +285,7 @@ std::optional<NoiseFit> fit_likelihood(const Column& column, std::span<const Seg
     result.worst_residual_sd = start.worst_residual_sd;
     result.model_error = fitted.model.error;
     if (std::isfinite(fitted.model.upper_hz)) { result.upper_frequency_hz = fitted.model.upper_hz; }
+    result.bandwidth_hz = fitted.model.bandwidth_hz;
     Report(pyramid, fitted, options).fill(result, found.ramp);
     return result;
 }

@@ -10,6 +10,11 @@
 // The size of that departure is estimated, and each contrast is weighted as its chance and this departure
 // together deserve. Where it is large because the upper end of the band is filtered or noisy, that end is
 // left out, and the fit says so.
+//
+// Where the sensor's own low-pass filter is known and acts below half the rate, the white noise is that
+// behind a Butterworth filter of the second order, and all above a fifth of the bandwidth is left out from
+// the start: of which order a sensor's filter is, is not known. Averages of neighbours see some of what lies
+// above.
 #pragma once
 
 #include <optional>
@@ -28,6 +33,7 @@ struct LikelihoodFitOptions {
     // (Widrow and Kollar, Quantization Noise, 2008, where the noise spans some 0.4 of the step or more) and
     // is not part of N. 0: not known or none.
     double step = 0.0;
+    double bandwidth_hz = 0.0;  // -3 dB of the sensor's low-pass filter; 0: not known or none
 };
 
 // `start`: a fit to the record's Allan curve. Nothing for fewer than 32 samples, or samples that do not vary:

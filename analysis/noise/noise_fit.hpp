@@ -95,6 +95,8 @@ struct NoiseFit {
     // the model; and the frequency above which the record was left out, 0 for none.
     double model_error = 0.0;
     double upper_frequency_hz = 0.0;
+    // -3 dB of the sensor's known low-pass filter, where the record was left out because of it; 0 otherwise.
+    double bandwidth_hz = 0.0;
     // Where the record's spectrum departs most significantly from the model, and measured over modelled
     // density there.
     double worst_frequency_hz = 0.0;

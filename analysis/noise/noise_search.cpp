@@ -18,7 +18,8 @@ constexpr double gauss_markov_gain = 8.0;
 // White noise behind a low pass has the spectrum of Gauss-Markov noise. A gyro's own filter is wider than 5
 // Hz (32 ms), and its drift slower than this.
 constexpr double fastest_drift_s = 0.1;
-constexpr double clear_error = 0.05;  // a departure beyond which the model is amended
+constexpr double clear_error = 0.05;    // a departure beyond which the model is amended
+constexpr double least_periods = 32.0;  // in the record, of the highest frequency that is left
 
 // ComponentSquares to begin with, from the curve's fit; white noise from the fastest contrasts, so that it is
 // never 0.
@@ -91,10 +92,10 @@ Fitted fit(const ContrastPyramid& pyramid, SpectrumModel model, ComponentSquares
 // Leaves out the upper end of the band, octave by octave, until what is left agrees with the model.
 Fitted without_upper_end(const ContrastPyramid& pyramid, const Fitted& whole) {
     Fitted best = whole;
-    constexpr double least_periods = 32.0;  // in the record, of the highest frequency that is left
     const int octaves = static_cast<int>(std::log2(pyramid.length() / least_periods));
     for (int octave = 2; octave < octaves; ++octave) {
         const double upper_hz = pyramid.rate_hz * std::exp2(-octave);
+        if (upper_hz >= whole.model.upper_hz) { continue; }
         SpectrumModel model = whole.model;
         model.upper_hz = upper_hz;
         Fitted next = fit(pyramid, model, best.maximum.squares);
@@ -201,11 +202,21 @@ RampFit with_ramp(const ContrastPyramid& pyramid, const Fitted& base) {
 
 }  // namespace
 
+double passband_hz(const ContrastPyramid& pyramid, double bandwidth_hz) {
+    constexpr double acts_below = 0.4;  // of the rate
+    constexpr double flat_up_to = 0.2;  // of the bandwidth
+    if (bandwidth_hz <= 0.0 || bandwidth_hz >= acts_below * pyramid.rate_hz) {
+        return std::numeric_limits<double>::infinity();
+    }
+    return std::clamp(least_periods / pyramid.length_s(), flat_up_to * bandwidth_hz, bandwidth_hz);
+}
+
 NoiseLikelihood likelihood_of(const ContrastPyramid& pyramid, const SpectrumModel& model) {
     NoiseLikelihood likelihood(pyramid, model.ramp);
-    for (const NoiseTerm term : {NoiseTerm::N, NoiseTerm::B, NoiseTerm::K}) {
-        likelihood.add(average_covariance(term));
-    }
+    likelihood.add(model.bandwidth_hz > 0.0 ? filtered_white_covariance(model.bandwidth_hz, pyramid.rate_hz)
+                                            : average_covariance(NoiseTerm::N));
+    likelihood.add(average_covariance(NoiseTerm::B));
+    likelihood.add(average_covariance(NoiseTerm::K));
     if (model.angle_noise) { likelihood.add(average_covariance(NoiseTerm::Q)); }
     for (const double correlation_s : model.correlations_s) {
         likelihood.add(gauss_markov_covariance(correlation_s));
@@ -249,9 +260,11 @@ LikelihoodMaximum with_needed_terms(const ContrastPyramid& pyramid, const Fitted
 }
 
 SearchResult search_terms(const ContrastPyramid& pyramid, const NoiseFit& start,
-                          const std::vector<FittedSinusoid>& lines) {
+                          const std::vector<FittedSinusoid>& lines, double bandwidth_hz) {
     SpectrumModel model;
     model.lines = lines;
+    model.upper_hz = passband_hz(pyramid, bandwidth_hz);
+    if (std::isfinite(model.upper_hz)) { model.bandwidth_hz = bandwidth_hz; }
     SearchResult result{fit(pyramid, model, first_guess(pyramid, model, start)), {}};
     if (!std::isfinite(result.fitted.value())) { return result; }
     result.fitted = amended(pyramid, with_angle_noise(pyramid, result.fitted));

@@ -24,6 +24,7 @@ struct SpectrumModel {
     std::vector<double> correlations_s;  // of Gauss-Markov terms
     std::vector<FittedSinusoid> lines;
     double upper_hz = std::numeric_limits<double>::infinity();
+    double bandwidth_hz = 0.0;  // of the filter that the white noise came through; 0: none that is known
     double error = 0.0;
 
     std::size_t angle_noise_at() const { return 3; }
@@ -52,10 +53,14 @@ struct SearchResult {
     RampFit ramp;   // with the ramp in any case
 };
 
+// The frequency up to which a filter of this bandwidth leaves the noise as it is, for this record; infinity
+// where the filter, or none (0), does not act below half the rate.
+double passband_hz(const ContrastPyramid& pyramid, double bandwidth_hz);
+
 // `start`: squares to begin with come from its coefficients. The value of `fitted` is -inf where no
 // likelihood could be worked out.
 SearchResult search_terms(const ContrastPyramid& pyramid, const NoiseFit& start,
-                          const std::vector<FittedSinusoid>& lines);
+                          const std::vector<FittedSinusoid>& lines, double bandwidth_hz);
 
 // Whether a ramp is called for.
 bool is_significant(const RampFit& ramp);

@@ -88,7 +88,7 @@ Column mean_column(const Column& column, const std::vector<MeanRow>& rows, std::
         }
         means.push_back(known > 0.0 ? sum / known : std::nan(""));
     }
-    return {column.name, column.unit, std::move(means), 1.0, 0.0, ""};
+    return {column.name, column.unit, std::move(means), 1.0, 0.0, "", column.bandwidth_hz};
 }
 
 }  // namespace

@@ -25,6 +25,8 @@ struct Column {
     double offset = 0.0;  // value at 0; only a temperature has one
     std::string
         source_unit{};  // of data, as a text column's name ends: "dps", "rad_s", "lsb", "g"; may be empty
+    double bandwidth_hz =
+        0.0;  // -3 dB of the low-pass filter that the samples came through; 0: not known, or none
 
     std::size_t size() const;
     bool is_counts() const { return data.index() == 0; }

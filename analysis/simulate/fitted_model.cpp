@@ -62,6 +62,19 @@ void add_drift(const AxisReport& axis, const EffectNames& names, std::vector<Eff
                        {}});
 }
 
+// The sensor's known filter, on the axes that came through it.
+void add_filter(double bandwidth_hz, const std::string& axis, std::vector<EffectModel>& effects) {
+    if (bandwidth_hz == 0.0) { return; }
+    const auto filter = std::ranges::find_if(effects, [&](const EffectModel& effect) {
+        return effect.effect == "lowpass" && effect.params.at("fc_hz") == bandwidth_hz;
+    });
+    if (filter != effects.end()) {
+        filter->axes.push_back(axis);
+    } else {
+        effects.push_back({"lowpass", {axis}, {{"fc_hz", bandwidth_hz}}, {}});
+    }
+}
+
 // What the models of a gyro and of an accelerometer have in common, in the columns' unit.
 struct FittedSensor {
     std::array<AxisModel, 3> axes;
@@ -84,6 +97,7 @@ FittedSensor fitted_sensor(const std::vector<AxisReport>& reports, SensorKind se
         for (const NoiseTerm term : all_noise_terms) { add_relative_sd(found->fit, term, model.sd_rel); }
         add_effects(found->fit, axis_names[axis], effect_names(sensor), fitted.effects);
         add_drift(*found, effect_names(sensor), fitted.effects);
+        add_filter(found->fit.bandwidth_hz, axis_names[axis], fitted.effects);
         const char* prefix = sensor == SensorKind::gyro ? "g" : "a";
         const Column* column = recording.find(std::string(prefix) + axis_names[axis]);
         if (column != nullptr && fitted.converter.step_rad_s == 0.0) {

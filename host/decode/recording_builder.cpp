@@ -1,6 +1,7 @@
 #include "host/decode/recording_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -36,19 +37,32 @@ struct Quantity {
     const char* unit;
     double scale;
     double offset;
+    double bandwidth_hz;
 };
+
+// -3 dB of the accelerometer's filter, by ACCEL_CONFIG2 (RM-MPU-9250A-00 rev. 1.4, register 29); 0: bypassed.
+double accelerometer_bandwidth_hz(const glp_config& config) {
+    constexpr std::array by_setting_hz{460.0, 184.0, 92.0, 41.0, 20.0, 10.0, 5.0, 460.0};
+    constexpr unsigned bypass = 0x08;
+    const unsigned accel_config2 = config.registers[4];
+    return (accel_config2 & bypass) != 0 ? 0.0 : by_setting_hz[accel_config2 & 7U];
+}
 
 std::vector<Quantity> quantities(std::uint8_t layout, const glp_config& config) {
     const double rad_s = config.gyro_ndps_per_lsb * 1e-9 * std::numbers::pi / 180.0;
     const double m_s2 = config.accel_pg_per_lsb * 1e-12 * standard_gravity_m_s2;
     std::vector<Quantity> all;
     if ((layout & glp_layout_gyro) != 0) {
-        for (const char* name : {"gx", "gy", "gz"}) { all.push_back({name, "rad/s", rad_s, 0.0}); }
+        for (const char* name : {"gx", "gy", "gz"}) {
+            all.push_back({name, "rad/s", rad_s, 0.0, static_cast<double>(config.dlpf_hz)});
+        }
     }
     if ((layout & glp_layout_accel) != 0) {
-        for (const char* name : {"ax", "ay", "az"}) { all.push_back({name, "m/s^2", m_s2, 0.0}); }
+        for (const char* name : {"ax", "ay", "az"}) {
+            all.push_back({name, "m/s^2", m_s2, 0.0, accelerometer_bandwidth_hz(config)});
+        }
     }
-    all.push_back({"temp", "degC", config.temp_nC_per_lsb * 1e-9, config.temp_offset_mC * 1e-3});
+    all.push_back({"temp", "degC", config.temp_nC_per_lsb * 1e-9, config.temp_offset_mC * 1e-3, 0.0});
     return all;
 }
 
@@ -66,8 +80,8 @@ bool same_setting(const glp_config& a, const glp_config& b) {
 std::vector<Column> sample_columns(std::uint8_t layout, const glp_config& config) {
     std::vector<Column> columns;
     for (const Quantity& quantity : quantities(layout, config)) {
-        columns.push_back(
-            {quantity.name, quantity.unit, std::vector<std::int16_t>(), quantity.scale, quantity.offset});
+        columns.push_back({quantity.name, quantity.unit, std::vector<std::int16_t>(), quantity.scale,
+                           quantity.offset, "", quantity.bandwidth_hz});
     }
     return columns;
 }
@@ -342,7 +356,8 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
     for (const Quantity& quantity : quantities(stretch.layout, *stretch.config)) {
         const std::size_t field = next_field++;
         if (!keeps(stretch.layout, field)) { continue; }
-        Column column{quantity.name, quantity.unit, {}, quantity.scale, quantity.offset};
+        Column column{quantity.name,        quantity.unit, {}, quantity.scale, quantity.offset, "",
+                      quantity.bandwidth_hz};
         if (samples_per_row_ > 1) {
             column.data = std::move(stretch.means[field]);
         } else {

@@ -38,6 +38,7 @@ Json point_json(const AllanPoint& point, const SensorUnit& unit) {
 Json fit_json(const NoiseFit& fit) {
     Json json = {{"model_error", fit.model_error}};
     if (fit.upper_frequency_hz > 0.0) { json["upper_frequency_hz"] = fit.upper_frequency_hz; }
+    if (fit.bandwidth_hz > 0.0) { json["bandwidth_hz"] = fit.bandwidth_hz; }
     if (fit.worst_frequency_hz > 0.0) {
         json["worst_frequency_hz"] = fit.worst_frequency_hz;
         json["worst_ratio"] = fit.worst_ratio;

@@ -44,7 +44,12 @@ void add_lines(std::vector<std::string>& advice, const Sensor& sensor, const Axi
 
 void add_spectrum(std::vector<std::string>& advice, const Sensor& sensor, const AxisReport& axis) {
     const NoiseFit& fit = axis.fit;
-    if (fit.upper_frequency_hz > 0.0) {
+    if (fit.bandwidth_hz > 0.0) {
+        advice.push_back(fmt::format(
+            "The low-pass filter of the {}, axis {}, of {:.4g} Hz acts on the samples: N is that of the "
+            "frequencies below {:.4g} Hz.",
+            sensor.name, axis.axis, fit.bandwidth_hz, fit.upper_frequency_hz));
+    } else if (fit.upper_frequency_hz > 0.0) {
         advice.push_back(fmt::format(
             "The spectrum of the {}, axis {}, is not white above {:.4g} Hz (a filter of the sensor, or "
             "noise): N is that of the frequencies below.",

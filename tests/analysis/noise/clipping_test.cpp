@@ -47,6 +47,7 @@ TEST(Clipping, NeedsTwentySamplesAtTheWall) {
     EXPECT_FALSE(is_clipped(column()));
     data.push_back(5.0);
     EXPECT_TRUE(is_clipped(column()));
+    EXPECT_FALSE(is_clipped(column(), 2.0)) << "of which each stands for its neighbour";
     data.insert(data.end(), 9, 4.0);
     EXPECT_FALSE(is_clipped(column())) << "ten beside twenty are no wall";
 }

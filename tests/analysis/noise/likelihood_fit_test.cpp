@@ -155,6 +155,39 @@ TEST(LikelihoodFit, LeavesAFilteredUpperEndOut) {
     EXPECT_FALSE(report.warnings.empty());
 }
 
+// Through a first-order filter at a hundredth of the rate, of which nothing but the bandwidth is known.
+TEST(LikelihoodFit, FindsTheWhiteNoiseBeforeAKnownFilter) {
+    constexpr double rate_hz = 500.0;
+    constexpr double bandwidth_hz = 5.0;
+    const double kept = std::exp(-2.0 * pi * bandwidth_hz / rate_hz);
+    for (const std::size_t samples : {50'000U, 500'000U}) {
+        for (const std::uint64_t seed : {1U, 2U, 3U}) {
+            auto values = test::sensor_noise({0.0, 0.01, 0.0, 0.0, 0.0}, samples, rate_hz, seed);
+            double state = 0.0;
+            for (double& x : values) { x = state = kept * state + (1.0 - kept) * x; }
+            Recording recording = recording_of(values, rate_hz);
+            recording.columns[0].bandwidth_hz = bandwidth_hz;
+            const AnalysisReport report = analyze(recording);
+            const NoiseFit& fit = report.axes.at(0).fit;
+            EXPECT_EQ(fit.bandwidth_hz, bandwidth_hz);
+            EXPECT_TRUE(within(fit[NoiseTerm::N], 0.01, 3.0)) << fit[NoiseTerm::N].value << ' ' << seed;
+            EXPECT_LT(fit[NoiseTerm::N].sd, samples > 100'000U ? 0.0003 : 0.001);
+            ASSERT_EQ(report.warnings.size(), 1U);
+            EXPECT_NE(report.warnings[0].find("low-pass filter of 5 Hz"), std::string::npos);
+        }
+    }
+}
+
+TEST(LikelihoodFit, AKnownFilterAboveTheBandChangesNothing) {
+    const auto samples = test::sensor_noise({0.0, 0.01, 0.002, 0.0, 0.0}, 30'000, 100.0, 3);
+    Recording recording = recording_of(samples, 100.0);
+    const NoiseFit without = fit_of(recording);
+    recording.columns[0].bandwidth_hz = 41.0;
+    const NoiseFit with = fit_of(recording);
+    EXPECT_EQ(with[NoiseTerm::N].value, without[NoiseTerm::N].value);
+    EXPECT_EQ(with.upper_frequency_hz, 0.0);
+}
+
 // Coloured noise that is none of the model's terms. Intervals are profiles of the likelihood, standard
 // deviations its curvature: where both belong to the same departure they are alike.
 TEST(LikelihoodFit, HasIntervalsAsWideAsItsStandardDeviationsWhereTheSpectrumDeparts) {

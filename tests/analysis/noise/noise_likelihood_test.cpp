@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -57,6 +58,32 @@ TEST(AverageCovariance, GivesTheAllanVariance) {
     const auto c = sinusoid_covariance(0.03, 1000.0).of_unit_square;
     const Sinusoid line{1.0, 0.03};
     EXPECT_NEAR((c(0, 7.0) - c(1, 7.0)) / line.allan_variance(7.0), 1.0, 1e-6);
+}
+
+// Sums over the samples' own covariance, which is that of white noise behind a Butterworth filter.
+TEST(AverageCovariance, OfFilteredWhiteNoiseIsTheSumOverItsSamples) {
+    constexpr double sampled_hz = 200.0;
+    for (const double bandwidth_hz : {1.0, 20.0, 70.0}) {
+        const auto c = filtered_white_covariance(bandwidth_hz, sampled_hz).of_unit_square;
+        const double a_T = std::sqrt(2.0) * pi * bandwidth_hz / sampled_hz;
+        const auto sample = [&](std::int64_t k) {
+            const double x = a_T * static_cast<double>(std::abs(k));
+            return std::exp(-x) * (std::cos(x) + std::sin(x));
+        };
+        double density = 0.0;
+        for (std::int64_t k = -5000; k <= 5000; ++k) { density += sample(k) / sampled_hz; }
+        for (const std::int64_t m : {1, 3, 16}) {
+            for (const std::int64_t lag : {0, 1, 2, 5}) {
+                double sum = 0.0;
+                for (std::int64_t i = 0; i < m; ++i) {
+                    for (std::int64_t j = 0; j < m; ++j) { sum += sample(lag * m + j - i); }
+                }
+                const double expected = sum / static_cast<double>(m * m) / density;
+                EXPECT_NEAR(c(lag, static_cast<double>(m) / sampled_hz), expected, 1e-12 * sampled_hz)
+                    << bandwidth_hz << ' ' << m << ' ' << lag;
+            }
+        }
+    }
 }
 
 TEST(AverageCovariance, OfFlickerGoesOnSmoothlyWhereItsSeriesBegins) {

@@ -48,6 +48,19 @@ TEST(DecodedRecording, GivesValuesInTheirUnits) {
     EXPECT_NEAR(recording->find("temp")->value(0), 100 / 333.87 + 21.0, 1e-6);
 }
 
+TEST(DecodedRecording, KnowsTheSensorsFilters) {
+    Listening link;
+    link.board.config.dlpf_hz = 20;
+    link.board.config.registers[4] = 5;  // ACCEL_CONFIG2
+    link.begin();
+    link.hear_samples(9);
+    const auto recording = link.decoder.take_recording("bench");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_EQ(recording->find("gx")->bandwidth_hz, 20.0);
+    EXPECT_EQ(recording->find("az")->bandwidth_hz, 10.0);
+    EXPECT_EQ(recording->find("temp")->bandwidth_hz, 0.0);
+}
+
 TEST(DecodedRecording, LeavesAHoleOfTheTrueLengthForADropout) {
     Listening link;
     link.begin();
