@@ -35,9 +35,12 @@ std::optional<double> nominal_rate_near(double rate_hz) {
     return nominal_hz;
 }
 
-// A filter setting that has the rate; 0 leaves the firmware's own, which has every rate up to 1 kHz.
-unsigned dlpf_for(double rate_hz) {
-    if (rate_hz <= 1000.0) { return 0; }
+// The narrowest filter setting that has the rate and leaves the output as it is; 0 is the firmware's own,
+// 41 Hz. Of the settings that keep the FIFO in use there is none for more than 460 Hz: `fifo` then takes the
+// widest of them.
+unsigned dlpf_for(double rate_hz, bool fifo) {
+    if (SimulatedMpu9250::widest_filter * rate_hz <= 41.0) { return 0; }
+    if (SimulatedMpu9250::widest_filter * rate_hz <= 184.0 || (fifo && rate_hz <= 1000.0)) { return 184; }
     return rate_hz <= 8000.0 ? 3600 : GLP_DLPF_OFF;
 }
 
@@ -89,7 +92,9 @@ Result<std::unique_ptr<SimSource>> SimSource::create(const SimOptions& options, 
                                                       std::to_string(model.rate_hz) +
                                                       " is no rate of an MPU-9250; add rate=HZ"};
     }
-    board_options.dlpf_hz = options.dlpf_hz.value_or(dlpf_for(board_options.rate_hz));
+    // What captures a given model is to be the signal that it simulates.
+    board_options.dlpf_hz =
+        options.dlpf_hz.value_or(dlpf_for(board_options.rate_hz, options.model_path.empty()));
     board_options.full_scale_dps = options.full_scale_dps.value_or(full_scale_for(model));
     board_options.first_tick = options.first_tick;
     board_options.first_sequence = options.first_sequence;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analysis/recording/standard_gravity.hpp"
+#include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/converter.hpp"
 #include "analysis/simulate/resting_accelerometer.hpp"
 #include "firmware_protocol/device/mpu9250.h"
@@ -51,6 +53,35 @@ double inside_rate_hz(std::uint8_t gyro_config, std::uint8_t config) {
     return dlpf_cfg == 0 || dlpf_cfg == 7 ? 8000.0 : 1000.0;
 }
 
+// -3 dB, by DLPF_CFG and by A_DLPF_CFG (RM-MPU-9250A-00 rev. 1.4, tables of registers 26 and 29).
+constexpr std::array gyro_bandwidths_hz{250.0, 184.0, 92.0, 41.0, 20.0, 10.0, 5.0, 3600.0};
+constexpr std::array accel_bandwidths_hz{460.0, 184.0, 92.0, 41.0, 20.0, 10.0, 5.0, 460.0};
+constexpr unsigned accel_dlpf_mask = 0x07;
+
+// The model as it shows behind a filter of this bandwidth, at this output rate.
+SensorModel filtered(SensorModel model, double bandwidth_hz, double rate_hz) {
+    if (bandwidth_hz == 0.0) { return model; }
+    const EffectDefinition& lowpass = *find_effect("lowpass");
+    EffectModel filter;
+    filter.effect = lowpass.name;
+    filter.params = {{"fc_hz", bandwidth_hz}};
+    constexpr std::array slowest_hz{0.0};
+    std::array density{SpectralParts{.white = 1.0}};
+    lowpass.signature->spectrum(slowest_hz, rate_hz, EffectValues(filter), density);
+    for (AxisModel& axis : model.axes) { axis.noise.N_rad_per_sqrt_s /= std::sqrt(density[0].white); }
+    model.effects.push_back(std::move(filter));
+    return model;
+}
+
+// Of a model without an accelerometer: the white noise of its samples, in m/s^2 where a gyro has rad/s.
+SensorModel accelerometer_noise(const SensorModel& model, double rate_hz) {
+    SensorModel sensor;
+    for (AxisModel& axis : sensor.axes) {
+        axis.noise.N_rad_per_sqrt_s = model.acc_noise_m_s2 / std::sqrt(rate_hz);
+    }
+    return sensor;
+}
+
 }  // namespace
 
 SimulatedMpu9250::SimulatedMpu9250(const SensorModel& model, std::uint64_t seed, double clock_error,
@@ -84,6 +115,20 @@ bool SimulatedMpu9250::samples_wanted() const {
     const bool fifo_on =
         (registers_[glp_mpu_user_ctrl] & glp_mpu_user_ctrl_fifo_en) != 0 && registers_[glp_mpu_fifo_en] != 0;
     return fifo_on || (registers_[glp_mpu_int_enable] & glp_mpu_int_raw_rdy) != 0;
+}
+
+SimulatedMpu9250::Bandwidths SimulatedMpu9250::bandwidths() const {
+    const double widest_hz = widest_filter * nominal_rate_hz();
+    const auto acting = [&](double bandwidth_hz) { return bandwidth_hz < widest_hz ? bandwidth_hz : 0.0; };
+    Bandwidths found;
+    if ((registers_[glp_mpu_gyro_config] & glp_mpu_gyro_fchoice_b_mask) == 0) {
+        found.gyro_hz = acting(gyro_bandwidths_hz[registers_[glp_mpu_config] & glp_mpu_config_dlpf_mask]);
+    }
+    const std::uint8_t accel_config = registers_[glp_mpu_accel_config2];
+    if ((accel_config & glp_mpu_accel_fchoice_b) == 0) {
+        found.accel_hz = acting(accel_bandwidths_hz[accel_config & accel_dlpf_mask]);
+    }
+    return found;
 }
 
 void SimulatedMpu9250::restart_clock(std::int64_t now_ns) {
@@ -127,11 +172,12 @@ void SimulatedMpu9250::write(std::uint8_t address, std::uint8_t value, std::int6
     }
     const double rate_before_hz = nominal_rate_hz();
     const bool wanted_before = samples_wanted();
+    const Bandwidths filters_before = bandwidths();
     registers_[address] = value;
     if ((address == glp_mpu_gyro_config || address == glp_mpu_accel_config) && simulator_) { convert(); }
     if (nominal_rate_hz() != rate_before_hz) {
         restart_clock(now_ns);
-    } else if (samples_wanted() != wanted_before) {
+    } else if (samples_wanted() != wanted_before || bandwidths() != filters_before) {
         schedule(now_ns);
     }
 }
@@ -244,22 +290,27 @@ void SimulatedMpu9250::go_to_next_slot() {
 
 void SimulatedMpu9250::prepare_simulator() {
     const double rate_hz = true_rate_hz();
-    if (simulator_ && simulated_rate_hz_ == rate_hz) { return; }
+    const Bandwidths filters = bandwidths();
+    if (simulator_ && simulated_rate_hz_ == rate_hz && simulated_bandwidths_ == filters) { return; }
     // What the chip converts is the rate before any converter: the registers may change while it runs.
     SensorModel unconverted = model_;
     unconverted.lsb_rad_s = 0.0;
     unconverted.saturation_rad_s = std::numeric_limits<double>::infinity();
     // The first simulation is the seed's own, as anyone may repeat it; later ones must not repeat it.
     const std::uint64_t seed = seed_ + (simulations_ << 32U);
-    simulator_.emplace(unconverted, rate_hz, seed);
-    if (model_.accelerometer) {
-        SensorModel accelerometer = resting_accelerometer(model_);
+    simulator_.emplace(filtered(unconverted, filters.gyro_hz, rate_hz), rate_hz, seed);
+    accelerometer_.reset();
+    if (model_.accelerometer || filters.accel_hz > 0.0) {
+        SensorModel accelerometer =
+            model_.accelerometer ? resting_accelerometer(model_) : accelerometer_noise(model_, rate_hz);
         accelerometer.lsb_rad_s = 0.0;
         accelerometer.saturation_rad_s = std::numeric_limits<double>::infinity();
-        accelerometer_.emplace(accelerometer, rate_hz, accelerometer_seed(seed));
+        accelerometer_.emplace(filtered(accelerometer, filters.accel_hz, rate_hz), rate_hz,
+                               accelerometer_seed(seed));
     }
     ++simulations_;
     simulated_rate_hz_ = rate_hz;
+    simulated_bandwidths_ = filters;
     next_block();
 }
 
@@ -283,8 +334,10 @@ void SimulatedMpu9250::convert() {
         const StageContext context{model_, simulated_rate_hz_, seed_ + ((simulations_ - 1) << 32U)};
         context.stream({'A', '0'}, axis).normals(block_->first_index, noise);
         for (std::size_t i = 0; i < block_samples; ++i) {
-            const double force_m_s2 = block_->specific_force_m_s2[axis][i] + model_.acc_noise_m_s2 * noise[i];
-            counts_[i][axis] = accel(accelerometer_ ? accelerometer_block_->rate_rad_s[axis][i] : force_m_s2);
+            const double simulated_m_s2 =
+                accelerometer_ ? accelerometer_block_->rate_rad_s[axis][i] : model_.acc_noise_m_s2 * noise[i];
+            const double force_m_s2 = model_.accelerometer ? 0.0 : block_->specific_force_m_s2[axis][i];
+            counts_[i][axis] = accel(force_m_s2 + simulated_m_s2);
             counts_[i][4 + axis] = gyro(block_->rate_rad_s[axis][i]);
         }
     }

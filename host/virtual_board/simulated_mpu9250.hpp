@@ -14,8 +14,10 @@
 //             the same rates.
 //   accel     That of the model's accelerometer; of a model without one, the specific force in the sensor's
 //             axes, with acc_noise_m_s2.
-//   DLPF_CFG  Chooses the rates only. The model's noise holds at the output; what filters is the model's own
-//             `lowpass` effect.
+//   DLPF      A filter whose bandwidth lies below 0.4 of the output rate acts: it is SensorSimulator's
+//             `lowpass` of the second order, behind the model's own. The register map gives bandwidths and
+//             delays, and no order. The model's N holds at the output, at low frequencies: what folds there
+//             behind the filter is not added. Filters that are wider leave the model's noise as it is.
 //
 // Simulated too: reset, sleep, identity, sample rate and divider, full scales, the 512-byte FIFO with both of
 // its overflow modes, the data-ready interrupt and its status bits, the data registers, the die's
@@ -42,6 +44,8 @@ class SimulatedMpu9250 {
 public:
     static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
     static constexpr double clock_error_max = 0.01;  // PS-MPU-9250A-01, table 1: total rate variation
+    // Of the output rate: what is wider than this the output shows nothing of.
+    static constexpr double widest_filter = 0.4;
 
     // `clock_error`: how much faster than nominal the chip's own clock runs, relative, within
     // clock_error_max.
@@ -72,6 +76,14 @@ private:
     using Fields =
         std::array<std::int16_t, 7>;  // accel x y z, temperature, gyro x y z: the order of the registers
 
+    // Of a sensor's filter, in Hz; 0 of one that does not act on the output.
+    struct Bandwidths {
+        double gyro_hz = 0.0;
+        double accel_hz = 0.0;
+        bool operator==(const Bandwidths&) const = default;
+    };
+
+    Bandwidths bandwidths() const;
     void restart_clock(std::int64_t now_ns);
     void schedule(std::int64_t after_ns);
     bool samples_wanted() const;
@@ -98,11 +110,12 @@ private:
     std::int64_t stamps_start_ns_ = 0;  // time 0 of the simulator's stamps
     std::int64_t next_instant_ns_ = never_ns;
 
-    // Samples ahead of time, a block at once. A new rate begins a new simulation.
+    // Samples ahead of time, a block at once. A new rate or filter begins a new simulation.
     std::optional<SensorSimulator> simulator_;
-    std::optional<SensorSimulator> accelerometer_;  // of a model that has one
+    std::optional<SensorSimulator> accelerometer_;  // of a model that has one, or of its filtered noise
     const SampleBlock* accelerometer_block_ = nullptr;
     double simulated_rate_hz_ = 0.0;
+    Bandwidths simulated_bandwidths_;
     std::uint64_t simulations_ = 0;
     const SampleBlock* block_ = nullptr;
     std::size_t place_ = block_samples;  // of the sample at next_instant_ns_

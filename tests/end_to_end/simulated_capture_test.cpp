@@ -1,7 +1,9 @@
 // A capture of the virtual board and a simulation of the same model are one signal.
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -58,7 +60,7 @@ protected:
     Recording captured() {
         const ProgramResult result =
             run_gyrolog({"capture", "--device", "sim:model=" + model_path + ",seed=7", "--duration", "2m",
-                         "-o", folder.path("a.pcapng")});
+                         "--force", "-o", folder.path("a.pcapng")});
         EXPECT_EQ(result.exit_code, 0) << result.err;
         auto capture = load_capture(folder.path("a.pcapng"), true);
         EXPECT_TRUE(capture.ok());
@@ -87,6 +89,64 @@ protected:
 
 TEST_F(SimulatedCapture, HasTheCountsOfTheSimulationSampleBySample) {
     expect_same_counts(captured(), simulated);
+}
+
+// Whatever the rate, the board starts with a filter that leaves a given model's signal as it is.
+TEST_F(SimulatedCapture, HasTheCountsOfTheSimulationAtEachRate) {
+    for (const double rate_hz : {100.0, 500.0, 1000.0}) {
+        SensorModel at_rate = model;
+        at_rate.rate_hz = rate_hz;
+        std::ofstream(model_path) << format_model(at_rate);
+        SimulationRequest request;
+        request.samples = static_cast<std::size_t>(rate_hz) * 120;
+        request.seed = 7;
+        simulated = simulate_recording(at_rate, request);
+        const Recording capture = captured();
+        for (const char* axis : {"gx", "gy", "gz"}) {
+            const auto& a = std::get<std::vector<std::int16_t>>(capture.find(axis)->data);
+            const auto& b = std::get<std::vector<std::int16_t>>(simulated.find(axis)->data);
+            const std::size_t rows = std::min(a.size(), b.size());
+            ASSERT_GT(rows, 11'000U);
+            EXPECT_TRUE(std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(rows), b.begin()))
+                << axis << " at " << rate_hz << " Hz";
+        }
+    }
+}
+
+// The sensor's filter shows, and the analysis finds the noise before it.
+TEST(FilteredCapture, HasTheNoiseOfTheSensorFarBelowTheFilter) {
+    constexpr double N_dps = 0.01;  // typical_mpu9250()
+    const TemporaryFolder folder;
+    for (const auto& [rate, dlpf, variance_share] :
+         {std::tuple{"1000", "5", 0.0111}, std::tuple{"1000", "41", 0.0911}, std::tuple{"1000", "184", 0.409},
+          std::tuple{"200", "41", 0.455}, std::tuple{"200", "184", 1.0}}) {
+        const std::string path = folder.path(std::string(rate) + "-" + dlpf + ".pcapng");
+        ASSERT_EQ(run_gyrolog({"capture", "--device", std::string("sim:seed=5,rate=") + rate, "--dlpf", dlpf,
+                               "--duration", "20m", "-o", path})
+                      .exit_code,
+                  0);
+        const ProgramResult result = run_gyrolog(
+            {"analyze", path, "--json", folder.path("a.json"), "--model", folder.path("model.json")});
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        std::ifstream file(folder.path("a.json"));
+        const json report = json::parse(file);
+        const bool acts = variance_share < 1.0;
+        for (const char* axis : {"x", "y", "z"}) {
+            const json& of_axis = report["axes"][axis];
+            const json& N = of_axis["coefficients"]["N"];
+            EXPECT_NEAR(N["value"].get<double>(), N_dps, 4.0 * N["sd"].get<double>()) << rate << ' ' << dlpf;
+            EXPECT_LT(N["sd"].get<double>(), 0.02 * N_dps) << rate << ' ' << dlpf;
+            // Neighbours, the first point: their differences are less still behind a filter.
+            const double first = of_axis["allan"][0]["value"].get<double>();
+            const double unfiltered = N_dps * std::sqrt(std::stod(rate));
+            if (acts) { EXPECT_LT(first, unfiltered * std::sqrt(variance_share)) << rate << ' ' << dlpf; }
+            EXPECT_EQ(of_axis["fit"].contains("bandwidth_hz"), acts) << rate << ' ' << dlpf;
+        }
+        const std::string text = result.out + result.err;
+        EXPECT_EQ(text.find("low-pass filter of") != std::string::npos, acts) << text;
+        std::ifstream model_file(folder.path("model.json"));
+        EXPECT_EQ(json::parse(model_file)["effects"].size(), acts ? 1U : 0U);
+    }
 }
 
 TEST_F(SimulatedCapture, IsReadNoFurtherThanWanted) {

@@ -1,6 +1,8 @@
 #include "host/virtual_board/simulated_mpu9250.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -159,6 +161,90 @@ TEST_F(Mpu9250, AnotherRangeHoldsFromTheNextSampleOnAndSkipsNone) {
         EXPECT_NEAR(gyro_x() / (i < 4 ? 131.0 : 16.4), unchanged_dps[static_cast<std::size_t>(i)],
                     0.51 / 16.4);
     }
+}
+
+// Counts of `samples` at 1 kHz / (1 + divider): gyro x and accelerometer x.
+class FilteredMpu9250 : public Mpu9250 {
+protected:
+    struct Counts {
+        std::vector<int> gyro;
+        std::vector<int> accel;
+        bool operator==(const Counts&) const = default;
+    };
+    Counts take(std::uint8_t config, std::uint8_t accel_config2, std::uint8_t divider, int samples) {
+        set(glp_mpu_int_enable, 0);
+        set(glp_mpu_config, config);
+        set(glp_mpu_accel_config2, accel_config2);
+        set(glp_mpu_smplrt_div, divider);
+        set(glp_mpu_int_enable, glp_mpu_int_raw_rdy);
+        Counts counts;
+        for (int i = 0; i < samples; ++i) {
+            take_samples(1);
+            counts.gyro.push_back(count_at(glp_mpu_gyro_xout_h));
+            counts.accel.push_back(count_at(glp_mpu_accel_xout_h));
+        }
+        return counts;
+    }
+    Counts taken_anew(std::uint8_t config, std::uint8_t accel_config2, std::uint8_t divider, int samples) {
+        chip = SimulatedMpu9250(model, 1, 0.0);
+        now_ns = 0;
+        return take(config, accel_config2, divider, samples);
+    }
+    int count_at(std::uint8_t address) {
+        std::array<std::uint8_t, 2> bytes{};
+        chip.read(address, bytes);
+        return static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[0] * 256U + bytes[1]));
+    }
+    static double variance(const std::vector<int>& counts) {
+        double mean = 0.0;
+        double square = 0.0;
+        for (const int count : counts) { mean += count / static_cast<double>(counts.size()); }
+        for (const int count : counts) {
+            square += (count - mean) * (count - mean) / static_cast<double>(counts.size());
+        }
+        return square;
+    }
+
+    SensorModel model = [] {
+        SensorModel white = typical_mpu9250();
+        for (AxisModel& axis : white.axes) { axis.noise = {.N_rad_per_sqrt_s = 0.1 * rad_per_deg}; }
+        white.acc_noise_m_s2 *= 10.0;
+        return white;
+    }();
+};
+
+// White noise of density N^2 has the variance N^2 rate; behind the filter, N^2 pi f / sqrt 2.
+TEST_F(FilteredMpu9250, TheFilterTakesAsMuchOfTheNoiseAsItsBandwidthSays) {
+    constexpr int samples = 100'000;
+    const Counts wide = taken_anew(3, 3, 9, samples);  // 41 Hz at 100 Hz: it does not act
+    for (const auto& [config, bandwidth_hz] : {std::pair{6, 5.0}, std::pair{5, 10.0}, std::pair{4, 20.0}}) {
+        const auto setting = static_cast<std::uint8_t>(config);
+        const Counts narrow = taken_anew(setting, setting, 9, samples);
+        const double expected = pi * bandwidth_hz / std::sqrt(2.0) / 100.0;
+        EXPECT_NEAR(variance(narrow.gyro) / variance(wide.gyro), expected, 0.06 * expected) << bandwidth_hz;
+        EXPECT_NEAR(variance(narrow.accel) / variance(wide.accel), expected, 0.06 * expected) << bandwidth_hz;
+    }
+}
+
+TEST_F(FilteredMpu9250, AFilterFarAboveTheBandLeavesEveryCount) {
+    const Counts counts = taken_anew(3, 3, 9, 2000);
+    EXPECT_EQ(taken_anew(2, 2, 9, 2000), counts);
+    EXPECT_EQ(taken_anew(1, 1, 9, 2000), counts);
+    EXPECT_NE(taken_anew(4, 4, 9, 2000).gyro, counts.gyro);
+}
+
+TEST_F(FilteredMpu9250, AnotherFilterAtTheSameRateActsFromTheNextStartOn) {
+    const double wide = variance(taken_anew(3, 3, 9, 20'000).gyro);
+    EXPECT_LT(variance(take(6, 6, 9, 20'000).gyro), 0.2 * wide);
+    EXPECT_NEAR(variance(take(3, 3, 9, 20'000).gyro), wide, 0.1 * wide);
+}
+
+TEST_F(FilteredMpu9250, TheModelsOwnFilterActsToo) {
+    model.effects.push_back({"lowpass", {}, {{"fc_hz", 5.0}}, {}});
+    const double once = variance(taken_anew(3, 3, 9, 50'000).gyro);
+    const double twice = variance(taken_anew(6, 3, 9, 50'000).gyro);
+    // integral of 1 / (1 + f^4)^2 over that of 1 / (1 + f^4): 3 / 4
+    EXPECT_NEAR(twice / once, 0.75, 0.06);
 }
 
 TEST_F(Mpu9250, GravityLiesAlongTheAxisThatTheOrientationTurnsUpward) {
