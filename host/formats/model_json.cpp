@@ -98,6 +98,37 @@ private:
     std::vector<std::string> told_;
 };
 
+// The keys of an axis with the units that this schema has, `rate` that of the sensor: "dps" or "g".
+Json axis_units(const std::string& rate) {
+    Json units;
+    units["N"] = rate + "/sqrt(Hz)";
+    units["B"] = rate;
+    units["K"] = rate + "*sqrt(Hz)";
+    units["Q"] = rate + "*s";
+    units["R"] = rate + "/s";
+    units["bias"] = rate;
+    units["sd"] = "relative";
+    units["sd_rel"] = "relative";
+    return units;
+}
+
+// What a file says of its units converts nothing: numbers are in the schema's units, and a file that says
+// others is told so. Gives back what it says besides.
+Json read_units(Keys& keys, const std::string& rate, std::vector<std::string>& notes) {
+    const Json* given = keys.find("units");
+    if (given == nullptr || !given->is_object()) { return Json::object(); }
+    Keys units = keys.inside(*given, "units");
+    const Json known = axis_units(rate);
+    for (const auto& [key, unit] : known.items()) {
+        const Json* said = units.find(key);
+        if (said == nullptr || *said == unit) { continue; }
+        notes.push_back(fmt::format("the model says {} of {}: the number is read in {} all the same",
+                                    said->is_string() ? in_quotes(said->get<std::string>()) : "no unit",
+                                    in_quotes(units.name(key)), unit.get<std::string>()));
+    }
+    return units.left_over();
+}
+
 // `unit`: of the file's numbers, in SI.
 AxisModel read_axis(Keys& keys, double unit, double factor, StatedNumbers& stated) {
     AxisModel axis;
@@ -262,6 +293,7 @@ Json read_accelerometer(Keys& keys, double factor, std::vector<std::string>& not
     if (const Json* sd = keys.find("sd_abs")) { model.sd_abs = keys.uncertainties(*sd, "sd_abs"); }
     read_effects(keys, "effects", named_effect, unknown, model.effects);
     read_effects(keys, "unnamed", named_form, unknown, model.effects);
+    carry(carried, "units", read_units(keys, "g", notes));
     stated.note(notes);
     unknown.add(keys);
     carried.update(keys.left_over());
@@ -281,6 +313,7 @@ ModelFile read_document(const Json& document, std::optional<std::string>& proble
     Json carried = Json::object();
     const double factor = coefficient_factor(keys);
     carry(carried, "axes", read_axes(keys, rad_per_deg, factor, stated, unknown, model.axes));
+    carry(carried, "units", read_units(keys, "dps", file.notes));
 
     if (const Json* temperature = keys.find("temperature")) {
         Keys temperature_keys = keys.inside(*temperature, "temperature");
@@ -412,6 +445,7 @@ Json format_accelerometer(const AccelerometerModel& model) {
     json["lsb_g"] = in_unit(model.lsb_m_s2, g);
     json["saturation_g"] = in_unit(model.saturation_m_s2, g);
     for (std::size_t i = 0; i < 3; ++i) { json["axes"][axis_names[i]] = format_axis(model.axes[i], g); }
+    json["units"] = axis_units("g");
     json["M"] = format_matrix(model.M);
     json["sd_rel"] = format_map(model.sd_rel);
     json["sd_abs"] = format_map(model.sd_abs);
@@ -512,6 +546,7 @@ std::string format_model(const SensorModel& model) {
     for (std::size_t i = 0; i < 3; ++i) {
         json["axes"][axis_names[i]] = format_axis(model.axes[i], rad_per_deg);
     }
+    json["units"] = axis_units("dps");
     json["M"] = format_matrix(model.M);
     json["latency_s"] = model.latency_s;
     json["timestamp_jitter_s"] = model.timestamp_jitter_s;

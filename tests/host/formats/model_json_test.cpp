@@ -37,6 +37,18 @@ constexpr const char* full_example = R"({
 
 Json example() { return Json::parse(full_example); }
 
+Json units_of(const std::string& rate) {
+    return {{"N", rate + "/sqrt(Hz)"}, {"B", rate},    {"K", rate + "*sqrt(Hz)"}, {"Q", rate + "*s"},
+            {"R", rate + "/s"},        {"bias", rate}, {"sd", "relative"},        {"sd_rel", "relative"}};
+}
+
+// The same as it is written.
+Json with_units(Json json) {
+    json["units"] = units_of("dps");
+    if (json.contains("accelerometer")) { json["accelerometer"]["units"] = units_of("g"); }
+    return json;
+}
+
 SensorModel model_of(const Json& json) {
     auto model = parse_model(json.dump(), "m.json");
     EXPECT_TRUE(model.ok()) << (model.ok() ? "" : model.error().message);
@@ -72,7 +84,7 @@ TEST(ModelJson, EveryKeyArrivesInSiUnits) {
 }
 
 TEST(ModelJson, WhatIsReadIsWrittenBackWithTheSameNumbers) {
-    EXPECT_EQ(Json::parse(format_model(model_of(example()))), example());
+    EXPECT_EQ(Json::parse(format_model(model_of(example()))), with_units(example()));
 }
 
 Json with_accelerometer() {
@@ -105,12 +117,12 @@ TEST(ModelJson, AnAccelerometerArrivesInMetresPerSecondSquared) {
 
 TEST(ModelJson, AnAccelerometerIsWrittenBackWithTheSameNumbersAndUnknownKeys) {
     Json json = with_accelerometer();
-    EXPECT_EQ(Json::parse(format_model(model_of(json))), json);
+    EXPECT_EQ(Json::parse(format_model(model_of(json))), with_units(json));
     json["accelerometer"]["lot"] = 7;
     json["accelerometer"]["axes"]["x"]["colour"] = "red";
     json["accelerometer"]["unnamed"] = {
         {{"form", "density"}, {"axes", {"z"}}, {"table", {{"f_hz", {0.0, 50.0}}, {"factor", {1.0, 2.5}}}}}};
-    EXPECT_EQ(Json::parse(format_model(model_of(json))), json);
+    EXPECT_EQ(Json::parse(format_model(model_of(json))), with_units(json));
 }
 
 TEST(ModelJson, OfAnAccelerometerAFewNumbersAreEnoughAndAWrongOneIsNamed) {
@@ -169,7 +181,31 @@ TEST(ModelJson, UnknownKeysAreKeptWhereTheyStood) {
     json["temperature"]["hysteresis"] = 0.5;
     json["effects"][0]["note"] = "seen in June";
     json["effects"][0]["params"]["shape"] = "exponential";
+    EXPECT_EQ(Json::parse(format_model(model_of(json))), with_units(json));
+}
+
+std::vector<std::string> notes_of(const Json& json);
+
+TEST(ModelJson, ItsUnitsAreReadBackWithoutANote) {
+    Json json = with_units(with_accelerometer());
+    json["units"]["colour"] = "nm";
     EXPECT_EQ(Json::parse(format_model(model_of(json))), json);
+    EXPECT_TRUE(notes_of(json).empty());
+}
+
+TEST(ModelJson, AnotherUnitIsToldOfAndNotWrittenBack) {
+    Json json = with_units(with_accelerometer());
+    const Json right = json;
+    json["units"]["N"] = "rad/s/sqrt(Hz)";
+    json["accelerometer"]["units"]["B"] = "m/s^2";
+    EXPECT_EQ(Json::parse(format_model(model_of(json))), right);
+    EXPECT_EQ(notes_of(json),
+              (std::vector<std::string>{"the model says 'rad/s/sqrt(Hz)' of 'units.N': the number is read in "
+                                        "dps/sqrt(Hz) all the same",
+                                        "the model says 'm/s^2' of 'accelerometer.units.B': the number is "
+                                        "read in g all the same"}));
+    json["units"] = "SI";  // a key of one's own, before there was this one
+    EXPECT_EQ(Json::parse(format_model(model_of(json))), right);
 }
 
 std::vector<std::string> notes_of(const Json& json) {
@@ -287,7 +323,7 @@ TEST(ModelJson, WhatTheModelStatesARecordingDoesNotChange) {
     auto file = parse_model_file(example().dump(), "m.json", 1);
     ASSERT_TRUE(file.ok());
     complete_from(of_rates_dps({1.0, 1.5, 0.5, -2.5, 1.5, 1.0}, 0.02), *file);
-    EXPECT_EQ(Json::parse(format_model(file->model)), example());
+    EXPECT_EQ(Json::parse(format_model(file->model)), with_units(example()));
     EXPECT_TRUE(file->notes.empty());
 }
 
@@ -306,7 +342,7 @@ TEST(ModelJson, OptionalKeysMayBeMissing) {
     const SensorModel model = model_of(json);
     EXPECT_EQ(model.orientation, std::nullopt);
     EXPECT_EQ(model.axes[0].noise.Q_rad, 0.0);
-    EXPECT_EQ(Json::parse(format_model(model)), json);
+    EXPECT_EQ(Json::parse(format_model(model)), with_units(json));
 }
 
 TEST(ModelJson, AWrongTypeOrAnImpossibleNumberIsNamed) {
@@ -392,7 +428,7 @@ TEST(ModelJson, FilesAreReadAndWritten) {
     ASSERT_TRUE(write_model(model_of(example()), path).ok());
     const auto model = read_model(path);
     ASSERT_TRUE(model.ok()) << model.error().message;
-    EXPECT_EQ(Json::parse(format_model(*model)), example());
+    EXPECT_EQ(Json::parse(format_model(*model)), with_units(example()));
     EXPECT_EQ(std::remove(path.c_str()), 0);
     const auto missing = read_model(path);
     ASSERT_FALSE(missing.ok());
