@@ -192,7 +192,14 @@ private:
                     fmt::format("--still {}: the recording has no sample there, it lasts {:.6g} s",
                                 request_.still, recording_.duration_s()));
             }
-            still_.to_s = std::min(still_.to_s, recording_.duration_s());
+            const double duration_s = recording_.duration_s();
+            // A board's clock may make a minute that much shorter.
+            constexpr double clock_rel = 0.02;
+            if (still_.to_s > duration_s * (1.0 + clock_rel)) {
+                return invalid_argument(
+                    fmt::format("--still {}: the recording lasts only {:.6g} s", request_.still, duration_s));
+            }
+            still_.to_s = std::min(still_.to_s, duration_s);
             return {};
         }
         still_ = still_part_of(recording_);

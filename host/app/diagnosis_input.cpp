@@ -13,6 +13,7 @@
 #include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "analysis/simulate/known_motion.hpp"
 #include "host/app/quantity.hpp"
+#include "host/base/counted.hpp"
 
 namespace gyrolog {
 namespace {
@@ -26,12 +27,21 @@ bool moves(const Recording& recording) {
                                [](const Column& column) { return column.name.starts_with("ref_"); });
 }
 
+// The most of one row that still leaves enough rows for a diagnosis.
+std::string longest_average(std::size_t samples) {
+    const std::size_t most = samples / resolution::diagnosable_samples_min;
+    return most == 0 ? fmt::format("a diagnosis needs {} at least", resolution::diagnosable_samples_min)
+                     : fmt::format("`--average {}` is the most that it can be looked at with", most);
+}
+
 std::optional<Error> refused(const Recording& recording, const std::string& path) {
     const auto refusal = diagnosis_refusal(recording);
     if (!refusal) { return std::nullopt; }
     const std::size_t samples = recording.samples_per_row;
     const std::string as = samples > 1 ? fmt::format(": in means of {} samples it", samples) : "";
-    return Error{ErrorCode::failed, fmt::format("'{}'{} {}", path, as, *refusal)};
+    const bool averaged_away = samples > 1 && recording.rows() < resolution::diagnosable_samples_min;
+    const std::string advice = averaged_away ? "; " + longest_average(recording.rows() * samples) : "";
+    return Error{ErrorCode::failed, fmt::format("'{}'{} {}{}", path, as, *refusal, advice)};
 }
 
 // Sampling instants, whether or not a sample is there.
@@ -66,6 +76,26 @@ std::string most_warning(const Recording& beginning, const std::string& path, st
                   10 * samples));
 }
 
+// A recording that is shorter than one row of means is none: then the reader says that it has no samples.
+Error not_read(const RecordingInput& means, Error error) {
+    if (means.samples_per_row == 1 || error.code != ErrorCode::malformed) { return error; }
+    RecordingInput input = means;
+    input.samples_per_row = 1;
+    input.samples_most = means.samples_per_row;
+    const auto samples = read_recording(input);
+    if (!samples.ok() || samples->rows() == 0) { return error; }
+    const std::size_t rows = samples->rows();
+    if (rows >= means.samples_per_row) {
+        return Error{ErrorCode::failed,
+                     fmt::format("'{}' has nowhere {} samples without one that is missing, as --average asks "
+                                 "for",
+                                 means.path, means.samples_per_row)};
+    }
+    return Error{ErrorCode::failed,
+                 fmt::format("`--average {}` is longer than '{}', which has {}; {}", means.samples_per_row,
+                             means.path, counted(rows, "sample"), longest_average(rows))};
+}
+
 struct Read {
     Recording samples;
     bool is_long = false;  // there are more than these
@@ -73,8 +103,9 @@ struct Read {
 
 Result<Read> read_samples(RecordingInput input, std::size_t most) {
     input.samples_most = (most + 1) * input.samples_per_row;
-    GYROLOG_TRY(Recording samples, read_recording(input));
-    Read read{std::move(samples)};
+    Result<Recording> samples = read_recording(input);
+    if (!samples.ok()) { return not_read(input, std::move(samples).error()); }
+    Read read{std::move(samples).value()};
     read.is_long = slots(read.samples) > most;
     if (read.is_long) { read.samples = first_slots(std::move(read.samples), most); }
     if (auto refusal = refused(read.samples, input.path)) { return *std::move(refusal); }

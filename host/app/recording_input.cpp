@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/noise/sensor_columns.hpp"
 #include "host/app/sensor_choice.hpp"
 #include "host/base/counted.hpp"
 #include "host/formats/recording_file.hpp"
@@ -32,6 +33,24 @@ std::string what_is_wrong_with_the_end(const LoadedCapture& capture, const Recor
     return {};
 }
 
+// A scale that nothing is scaled by was meant for something.
+void warn_of_unused_scales(Recording& recording, const RecordingInput& input, const std::string& why) {
+    const auto has_counts = [&](SensorKind sensor) {
+        return why.empty() && std::ranges::any_of(recording.columns, [&](const Column& column) {
+                   return is_of(sensor, column) && column.source_unit == "lsb";
+               });
+    };
+    const auto warn = [&](const char* option, const char* sensor) {
+        recording.warnings.push_back(
+            fmt::format("{} is ignored: {}", option,
+                        why.empty() ? fmt::format("no {} column holds counts", sensor) : why));
+    };
+    if (input.lsb_dps && !has_counts(SensorKind::gyro)) { warn("--lsb-dps", "gyro"); }
+    if (input.lsb_g && input.with_accelerometer && !has_counts(SensorKind::accelerometer)) {
+        warn("--lsb-g", "accelerometer");
+    }
+}
+
 Result<TimedRecording> read_capture(const RecordingInput& input) {
     GYROLOG_TRY(
         LoadedCapture capture,
@@ -47,6 +66,7 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
         recording->warnings.emplace_back(
             "--columns, --unit and --acc-unit are ignored: a capture says itself what it holds");
     }
+    warn_of_unused_scales(*recording, input, "a capture says itself what its counts are");
     if (input.rate_hz) {
         const double told_hz = recording->rate_hz * static_cast<double>(input.samples_per_row);
         if (std::abs(*input.rate_hz / told_hz - 1.0) > 1e-3) {
@@ -137,6 +157,7 @@ Result<TimedRecording> read_whole(const RecordingInput& input) {
     options.choice = input.text;
     GYROLOG_TRY(Recording recording, read_recording_file(input.path, options));
     if (input.lsb_dps) { GYROLOG_CHECK(check_scale(recording, *input.lsb_dps, input.path)); }
+    warn_of_unused_scales(recording, input, "");
     return TimedRecording{std::move(recording)};
 }
 

@@ -164,6 +164,8 @@ TEST_F(DenoiseCommand, SaysWhatIsWrong) {
     EXPECT_THAT(err.str(), HasSubstr("FROM,TO"));
     EXPECT_EQ(denoise({recording, "--still", "900,1000"}), ExitCode::usage);
     EXPECT_THAT(err.str(), HasSubstr("it lasts 30 s"));
+    EXPECT_EQ(denoise({recording, "--still", "0,1000"}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("--still 0,1000: the recording lasts only 30 s"));
     EXPECT_EQ(denoise({recording, "-o", folder.path("fused.mat")}), ExitCode::usage);
     EXPECT_EQ(denoise({recording, "-o", recording}), ExitCode::usage);
     EXPECT_EQ(denoise({recording, "--method", "wavelet", "--bandwidth", "5"}), ExitCode::usage);

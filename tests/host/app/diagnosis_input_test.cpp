@@ -49,6 +49,21 @@ TEST_F(DiagnosisInputTest, IsTheWholeOfWhatOneLookTakes) {
     }
 }
 
+// A mean of more samples than there are is no empty recording.
+TEST_F(DiagnosisInputTest, SaysThatAMeanIsLongerThanTheRecording) {
+    RecordingInput input = written("short.csv", "gx_dps", "", 5000);
+    input.samples_per_row = 100'000;
+    const auto none = read_for_diagnosis(input);
+    ASSERT_FALSE(none.ok());
+    EXPECT_THAT(none.error().message, HasSubstr("`--average 100000` is longer than '"));
+    EXPECT_THAT(none.error().message, HasSubstr("which has 5,000 samples; `--average 2` is the most"));
+    input.samples_per_row = 100;
+    const auto few = read_for_diagnosis(input);
+    ASSERT_FALSE(few.ok());
+    EXPECT_THAT(few.error().message, HasSubstr("it has 50 samples; a diagnosis needs at least 2048; "
+                                               "`--average 2` is the most"));
+}
+
 TEST_F(DiagnosisInputTest, IsTheBeginningAndMeansOfAllOfALongRecordingAtRest) {
     const RecordingInput long_one = written("long.csv", "gx_dps", "", rows_of_long);
     const DiagnosisInput input = read(long_one);
