@@ -15,8 +15,13 @@ namespace {
 
 using Needs = ExportFormat::Needs;
 
+// Counts with the digits that their step needs; what came as text, as it came.
 Status write_csv(const ExportSource& source, const std::string& path) {
-    return write_recording_csv(*source.recording, path);
+    CsvWriteOptions options;
+    for (const Column& column : source.recording->columns) {
+        if (column.is_counts()) { options.resolved.push_back(column.name); }
+    }
+    return write_recording_csv(*source.recording, path, options);
 }
 
 template <std::string (*text_of)(const ExportSource&)>

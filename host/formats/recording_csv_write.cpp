@@ -108,8 +108,11 @@ public:
     Formatter(OutputColumn column, bool exact) : column_(std::move(column)), exact_(exact) {
         if (exact_) { return; }
         constexpr double thermometer_step_C = 0.1;
-        if (column_.column->is_counts()) { fixed_.emplace(column_.column->scale * column_.per_si); }
-        if (column_.column->unit == "degC") { fixed_.emplace(thermometer_step_C); }
+        if (column_.column->is_counts()) {
+            fixed_.emplace(column_.column->scale * column_.per_si);
+        } else if (column_.column->unit == "degC") {
+            fixed_.emplace(thermometer_step_C);
+        }
     }
 
     const std::string& header() const { return column_.header; }

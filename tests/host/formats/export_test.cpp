@@ -255,6 +255,36 @@ TEST(ExportCsv, ComesBackToTheLastBit) {
     }
 }
 
+// As a capture has them: 16 bits with the scale of a data sheet, and a temperature with an offset.
+TEST(ExportCsv, OfCountsHasTheDigitsThatTheirStepNeedsAndGivesTheCountsBack) {
+    std::vector<std::int16_t> counts;
+    for (int count = -32768; count <= 32767; ++count) { counts.push_back(static_cast<std::int16_t>(count)); }
+    Recording recording;
+    recording.rate_hz = 1000.0;
+    recording.segments = {{0, counts.size(), 0}};
+    recording.columns = {{"gx", "rad/s", counts, 15.267176e-3 * rad_per_deg, 0.0, ""},
+                         {"gy", "rad/s", counts, 7.633588e-3 * rad_per_deg, 0.0, ""},
+                         {"az", "m/s^2", counts, 9.80665 / 16384.0, 0.0, ""},
+                         {"temp", "degC", counts, 1.0 / 333.87, 21.0, ""}};
+    ExportSource source;
+    source.recording = &recording;
+    const std::string path = temporary("counts.csv");
+    ASSERT_TRUE(write_export(*export_format_of(path), source, path).ok());
+    const auto bytes = std::filesystem::file_size(path);
+    const auto back = read_recording_csv(path);
+    std::filesystem::remove(path);
+    ASSERT_TRUE(back.ok());
+    EXPECT_LT(bytes / counts.size(), 50U);  // with all 17 digits of each: 80
+    for (const Column& column : recording.columns) {
+        const Column* read = back->find(column.name);
+        ASSERT_NE(read, nullptr) << column.name;
+        for (std::size_t row = 0; row < counts.size(); ++row) {
+            const double in_counts = (read->value(row) - column.offset) / column.scale;
+            ASSERT_NEAR(in_counts, counts[row], 1e-3) << column.name;
+        }
+    }
+}
+
 struct FreeVariable {
     void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
 };
