@@ -138,11 +138,19 @@ bool has_rates(const Recording& recording) {
     });
 }
 
+bool has_rates_or_force(const Recording& recording) {
+    return has_rates(recording) || std::ranges::any_of(recording.columns, [](const Column& column) {
+               return column.name.starts_with('a') && column.unit == "m/s^2";
+           });
+}
+
 Status export_recording(Console& console, const ExportOptions& options, const ExportFormat& format) {
     RecordingInput input{options.source, options.rate_hz, options.lsb_dps};
     input.part = options.part;
     input.text = options.text;
     input.lsb_g = options.lsb_g;
+    input.needs_gyro = format.needs == ExportFormat::Needs::noise;
+    input.instead_of_gyro = "this format is of a gyro's noise";
     std::optional<ProgressLine> progress(std::in_place, console);
     input.on_share = progress->of_reading();
     GYROLOG_TRY(const Recording recording, read_recording(input));
@@ -157,7 +165,7 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     ExportSource samples;
     samples.recording = &recording;
     if (format.needs == ExportFormat::Needs::samples) { return format.write(samples, options.output); }
-    if (!has_rates(recording)) {
+    if (input.needs_gyro ? !has_rates(recording) : !has_rates_or_force(recording)) {
         return Error{ErrorCode::invalid_argument,
                      options.source + ": there is no angular rate; give the scale of counts with --lsb-dps"};
     }

@@ -136,7 +136,9 @@ void warn_of_axes(const Recording& recording, const std::string& name, std::vect
 }
 
 Result<std::shared_ptr<const RecordedWorld>> read_like(const SimulateOptions& options, Story& story) {
-    auto read = read_recording({options.like, options.rate_hz, std::nullopt});
+    RecordingInput like{options.like, options.rate_hz, std::nullopt};
+    like.needs_gyro = false;  // its rates are not taken
+    auto read = read_recording(like);
     if (!read.ok()) { return in_context("--like", std::move(read).error()); }
     auto recording = std::make_shared<const Recording>(std::move(read).value());
     if (recording->rows() == 0) { return invalid_argument("--like '" + options.like + "' has no samples"); }

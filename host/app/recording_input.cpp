@@ -33,6 +33,33 @@ std::string what_is_wrong_with_the_end(const LoadedCapture& capture, const Recor
     return {};
 }
 
+bool has_sensor(SensorKind sensor, const Recording& recording) {
+    return std::ranges::any_of(recording.columns,
+                               [&](const Column& column) { return is_of(sensor, column); });
+}
+
+Status check_gyro(const Recording& recording, const RecordingInput& input) {
+    if (!input.needs_gyro || input.sensor != SensorKind::gyro || has_sensor(SensorKind::gyro, recording) ||
+        !has_sensor(SensorKind::accelerometer, recording)) {
+        return {};
+    }
+    return invalid_argument(
+        fmt::format("'{}' has an accelerometer and no gyro: {}", input.path, input.instead_of_gyro));
+}
+
+// Text without a gyro is refused before it is known what else it holds.
+Error without_gyro(Error error, const RecordingInput& input, RecordingReadOptions options) {
+    if (!options.needs_gyro) { return error; }
+    options.needs_gyro = false;
+    options.with_accelerometer = true;
+    options.samples_per_row = 1;
+    options.rows_most = 2;
+    const auto beginning = read_recording_file(input.path, options);
+    if (!beginning.ok()) { return error; }
+    Status gyro = check_gyro(*beginning, input);
+    return gyro.ok() ? error : std::move(gyro).error();
+}
+
 // A scale that nothing is scaled by was meant for something.
 void warn_of_unused_scales(Recording& recording, const RecordingInput& input, const std::string& why) {
     const auto has_counts = [&](SensorKind sensor) {
@@ -59,6 +86,7 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
     input.on_stage("place");
     auto recording = capture.decoder->take_recording(std::filesystem::path(input.path).filename().string());
     if (!recording.ok()) { return in_context("read '" + input.path + "'", std::move(recording).error()); }
+    GYROLOG_CHECK(check_gyro(*recording, input));
     const std::string hurt = what_is_wrong_with_the_end(capture, input);
     if (!hurt.empty()) { recording->warnings.push_back(hurt); }
     const TextChoice& text = input.text;
@@ -155,7 +183,9 @@ Result<TimedRecording> read_whole(const RecordingInput& input) {
     options.with_accelerometer = input.with_accelerometer;
     options.needs_gyro = input.needs_gyro && input.sensor == SensorKind::gyro;
     options.choice = input.text;
-    GYROLOG_TRY(Recording recording, read_recording_file(input.path, options));
+    auto read = read_recording_file(input.path, options);
+    if (!read.ok()) { return without_gyro(std::move(read).error(), input, options); }
+    Recording recording = std::move(read).value();
     if (input.lsb_dps) { GYROLOG_CHECK(check_scale(recording, *input.lsb_dps, input.path)); }
     warn_of_unused_scales(recording, input, "");
     return TimedRecording{std::move(recording)};

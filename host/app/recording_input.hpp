@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "analysis/noise/sensor_unit.hpp"
 #include "analysis/recording/recording.hpp"
@@ -28,15 +29,18 @@ struct RecordingInput {
     std::size_t samples_per_row = 1;
     std::optional<double> lsb_g{};   // scale of accelerometer columns in counts
     bool with_accelerometer = true;  // without it, its columns are not read
-    bool needs_gyro = true;          // else text with an accelerometer alone is a recording, too
-    TextChoice text{};               // what the columns of text are where their names do not say it
+    bool needs_gyro = true;          // else an accelerometer alone is a recording, too
+    // What to do with an accelerometer alone where a gyro is needed.
+    std::string_view instead_of_gyro = "`--sensor accelerometer` takes that";
+    TextChoice text{};  // what the columns of text are where their names do not say it
     PartChoice part{};
     // The accelerometer: read_recording() gives it as accelerometer_as_gyro() has it.
     SensorKind sensor = SensorKind::gyro;
 };
 
 // Errors: those of load_capture(), read_recording_file(), take_part() and recording_of_sensor(), and
-// invalid_argument where counts, scaled by lsb_dps, are rates that no gyro has.
+// invalid_argument where counts, scaled by lsb_dps, are rates that no gyro has, and where a gyro is needed
+// and there is an accelerometer alone.
 Result<Recording> read_recording(const RecordingInput& input);
 
 // The same with the times of its part at rest, for a file that is read more than once.

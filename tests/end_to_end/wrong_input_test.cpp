@@ -134,6 +134,11 @@ protected:
         write("curve.csv", "tau_s,x_dps\n1,0.01\n2,0.007\n4,0.005\n8,0.0035\n16,0.0025\n32,0.0018\n");
         write("fewpoints.csv", "tau_s,x_dps\n1,0.01\n2,0.007\n");
         write("counts.csv", "t_s,gx_lsb\n0,1\n1,2\n2,1\n3,2\n4,1\n");
+        std::string force = "t_s,ax_g,az_g\n";
+        for (int row = 0; row < 100; ++row) {
+            force += std::to_string(row) + (row % 3 == 0 ? ",0.01,1\n" : ",0.02,1.01\n");
+        }
+        write("force.csv", force);
     }
 
     static void write_models() {
@@ -507,6 +512,23 @@ TEST_F(WrongInput, OfCompareDiagnoseAndDenoise) {
     });
 }
 
+// An accelerometer alone: the way to go on, or what needs no gyro.
+TEST_F(WrongInput, OfRecordingsWithoutAGyro) {
+    const char* const way =
+        "'force.csv' has an accelerometer and no gyro: `--sensor accelerometer` takes that";
+    expect_told({
+        {"analyze force.csv --sensor gyro", 2, way},
+        {"diagnose force.csv --model m.json", 2, way},
+        {"compare force.csv m.json", 2, way},
+        {"denoise force.csv -o out/d.csv", 2, way},
+        {"export force.csv -o out/f.yaml", 2,
+         "'force.csv' has an accelerometer and no gyro: this format is of a gyro's noise"},
+        {"export force.csv -o out/f.csv", 0, "written: out/f.csv"},
+        {"export force.csv -o out/f.mat", 0, "written: out/f.mat"},
+        {"simulate m.json --like force.csv -o out/like.csv", 0, "has no gx, gy, gz; simulated all the same"},
+    });
+}
+
 TEST_F(WrongInput, OfExportAndConform) {
     expect_told({
         {"export", 2, "RECORDING is required"},
@@ -514,7 +536,7 @@ TEST_F(WrongInput, OfExportAndConform) {
         {"export none.csv -o e.csv", 1, "read 'none.csv': no such file"},
         {"export dir -o e.csv", 1, "read 'dir': it is a directory"},
         {"export unit.csv -o e.csv", 1,
-         "line 1: no gyro column, but t_s, gx_furlong: name columns by --columns"},
+         "line 1: no gyro column and none of an accelerometer, but t_s, gx_furlong: name columns by"},
         {"export counts.csv -o out/e.csv --lsb-dps 16.4", 0,
          "makes each count 16.4 deg/s, coarser than any gyro's; a data sheet's 16.4 LSB per deg/s is "
          "--lsb-dps"},
