@@ -129,4 +129,8 @@ ExportedTerm largest(const std::vector<ExportedAxis>& axes, ExportedTerm Exporte
     return most;
 }
 
+std::vector<std::string> warnings_of(const ExportSource& source) {
+    return source.report == nullptr ? std::vector<std::string>() : source.report->warnings;
+}
+
 }  // namespace gyrolog

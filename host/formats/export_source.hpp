@@ -51,6 +51,9 @@ struct ExportSource {
 ExportSource export_source(const Recording& recording, const AnalysisReport& report);
 ExportSource export_source(const SensorModel& model, const std::string& name);
 
+// Those of the analysis; none of a model.
+std::vector<std::string> warnings_of(const ExportSource& source);
+
 // The largest of the axes' values, and whether any is identified: for formats that have one number for all
 // axes, so that no axis is trusted too much.
 ExportedTerm largest(const std::vector<ExportedAxis>& axes, ExportedTerm ExportedAxis::*term);

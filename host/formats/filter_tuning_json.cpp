@@ -96,6 +96,7 @@ std::string filter_tuning_json(const ExportSource& source) {
     json["rate_hz"] = source.rate_hz;
     json["dt_s"] = dt_s;
     json["process"] = "d(angle)/dt = measured rate - bias; d(bias)/dt = drive";
+    for (const std::string& warning : warnings_of(source)) { json["warnings"].push_back(warning); }
     json["axes"] = Json::object();
     for (const ExportedAxis& axis : source.gyro) {
         Json& one = json["axes"][axis.name];

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -64,6 +66,9 @@ std::string gyroparams_script(const ExportSource& source) {
         "% From {}, by gyrolog. For imuSensor('SampleRate', {:.9g}, 'Gyroscope', params).\n"
         "params = gyroparams;\n",
         source.name, source.rate_hz);
+    for (const std::string& warning : warnings_of(source)) {
+        script += "% Warning: " + printable(warning) + "\n";
+    }
     if (source.full_scale_rad_s) {
         script += fmt::format("params.MeasurementRange = {:.9g};  % rad/s\n", *source.full_scale_rad_s);
     }

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <matio.h>
 #include <unistd.h>
 
@@ -165,6 +167,9 @@ std::string write_all(mat_t* file, const ExportSource& source, std::size_t& writ
     MatWriter writer(file);
     writer.write(text("source", source.name));
     writer.write(scalar("rate_hz", source.rate_hz));
+    if (const auto warnings = warnings_of(source); !warnings.empty()) {
+        writer.write(text("warnings", fmt::format("{}", fmt::join(warnings, "\n"))));
+    }
     const std::vector<double> t_s = times_of(*source.recording);
     writer.write(matrix("t", t_s), t_s.size() * sizeof(double));
     write_columns(writer, *source.recording);

@@ -224,6 +224,19 @@ TEST(FilterTuning, GaussMarkovOfBTouchesTheFlatOfTheCurve) {
                 1e-6 * noise.sigma_rad_per_s * noise.sigma_rad_per_s);
 }
 
+// A file goes where the report does not.
+TEST(Exports, CarryTheWarningsOfTheAnalysis) {
+    AnalysisReport report;
+    report.warnings = {"axis x: the samples are clipped", "a second\none"};
+    ExportSource source = made_source();
+    source.report = &report;
+    EXPECT_THAT(gyroparams_script(source), HasSubstr("\n% Warning: axis x: the samples are clipped\n"));
+    EXPECT_THAT(gyroparams_script(source), HasSubstr("\n% Warning: a second"));
+    EXPECT_THAT(gyroparams_script(source), Not(HasSubstr("\none")));
+    EXPECT_EQ(json::parse(filter_tuning_json(source))["warnings"], report.warnings);
+    EXPECT_FALSE(json::parse(filter_tuning_json(made_source())).contains("warnings"));
+}
+
 TEST(FilterTuning, WhatIsNotIdentifiedHasNoNumbersToMistakeForIt) {
     const json tuning = json::parse(filter_tuning_json(made_source()));
     const json& x = tuning["axes"]["x"];
