@@ -6,10 +6,12 @@
 
 #include "analysis/calibrate/calibrated_model.hpp"
 #include "analysis/calibrate/calibration.hpp"
+#include "analysis/noise/sensor_columns.hpp"
 #include "host/app/command.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
+#include "host/base/printable.hpp"
 #include "host/formats/calibration_ardupilot.hpp"
 #include "host/formats/calibration_c_header.hpp"
 #include "host/formats/calibration_json.hpp"
@@ -40,6 +42,22 @@ Status check_scales(const Recording& recording, const std::string& path) {
     return {};
 }
 
+// A calibration is of one sensor of each kind.
+Status check_single(const Recording& recording, const std::string& path) {
+    std::string numbered;
+    for (const Column& column : recording.columns) {
+        const bool is_sensor = is_of(SensorKind::gyro, column) || is_of(SensorKind::accelerometer, column);
+        if (!is_sensor) { continue; }
+        if (column.name.size() == 2) { return {}; }
+        if (numbered.empty()) { numbered = column.name; }
+    }
+    if (numbered.empty()) { return {}; }
+    return invalid_argument(fmt::format(
+        "'{}' is of an array ({} ...), and a calibration is of one unit: choose it with --columns, "
+        "such as t,gx,gy,gz,ax,ay,az and _ for what is left out",
+        path, numbered));
+}
+
 Result<std::vector<Recording>> read_recordings(const CalibrationRequest& request) {
     std::vector<Recording> recordings;
     for (const std::string& path : request.recordings) {
@@ -51,6 +69,7 @@ Result<std::vector<Recording>> read_recordings(const CalibrationRequest& request
         input.text = request.text;
         input.needs_gyro = false;
         GYROLOG_TRY(Recording recording, read_recording(input));
+        GYROLOG_CHECK(check_single(recording, path));
         GYROLOG_CHECK(check_scales(recording, path));
         recordings.push_back(std::move(recording));
     }
@@ -67,9 +86,18 @@ std::string refusal_of(const Calibration& calibration) {
             "moves",
             calibration.recordings.front());
     }
-    text += "\n" + undetermined_text(calibration);
-    text.pop_back();  // an error is a clause without an end of line
     return text;
+}
+
+// In lines of its own: an error is one clause.
+ExitCode refuse(Console& console, const Calibration& calibration) {
+    const ExitCode code =
+        report_error(console, "calibrate", Error{ErrorCode::failed, refusal_of(calibration)});
+    console.err << undetermined_text(calibration);
+    for (const std::string& warning : calibration.warnings) {
+        console.err << "gyrolog calibrate: warning: " << printable(warning) << '\n';
+    }
+    return code;
 }
 
 Status check_paths(const CalibrationRequest& request) {
@@ -127,9 +155,7 @@ ExitCode run_calibration(Console& console, const CalibrationRequest& request) {
                   "--turn needs an accelerometer with three axes, which tells the turn's axis; "
                   "without one, record a reference rate (ref_x_dps ref_y_dps ref_z_dps)"});
     }
-    if (!calibration.determines_anything()) {
-        return report_error(console, "calibrate", Error{ErrorCode::failed, refusal_of(calibration)});
-    }
+    if (!calibration.determines_anything()) { return refuse(console, calibration); }
     const Status written = write_results(console, request, calibration, first);
     return written.ok() ? ExitCode::ok : report_error(console, "calibrate", written.error());
 }

@@ -139,6 +139,25 @@ TEST_F(CalibrateCommand, CountsNeedTheirScale) {
     EXPECT_THAT(err.str(), HasSubstr("--lsb-g"));
 }
 
+TEST_F(CalibrateCommand, AnArrayIsRefusedWithTheOptionThatChoosesAUnit) {
+    std::ofstream(folder.path("array.csv")) << "t_s,gx1_dps,gx2_dps,ax1_g\n0,1,2,3\n0.01,2,2,3\n0.02,2,2,4\n";
+    EXPECT_EQ(calibrate({folder.path("array.csv")}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("is of an array (gx1 ...), and a calibration is of one unit: choose it "
+                                     "with --columns"));
+}
+
+// Beside a gyro an accelerometer whose columns have no unit is left out, and that is why nothing is found.
+TEST_F(CalibrateCommand, ARefusalSaysWhatWasLeftOutInLinesOfItsOwn) {
+    std::ofstream file(folder.path("unit.csv"));
+    file << "t_s,gx_dps,gy_dps,gz_dps,acc_x,acc_y,acc_z\n";
+    for (int row = 0; row < 50; ++row) { file << 0.01 * row << ",50,-50,9,0,0,1\n"; }
+    file.close();
+    EXPECT_EQ(calibrate({folder.path("unit.csv")}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("\nnot determined: accelerometer"));
+    EXPECT_THAT(err.str(), HasSubstr("warning: "));
+    EXPECT_THAT(err.str(), HasSubstr("--acc-unit"));
+}
+
 TEST_F(CalibrateCommand, WrongArgumentsAreRefused) {
     EXPECT_EQ(calibrate({}), ExitCode::usage);
     EXPECT_EQ(calibrate({folder.path("none.csv")}), ExitCode::failed);
