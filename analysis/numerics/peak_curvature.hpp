@@ -15,9 +15,9 @@ struct PeakCurvature {
 };
 
 // `at`: the maximum, of `value`. Central differences over steps that begin with `step_least` and double until
-// the function falls by a quarter of a unit on each side, so that neither rounding nor a flat top misleads. The
-// function may be -infinity where it is not defined; at such an end one side tells. A direction that is known
-// worse than `sd_most` is known as well as that.
+// the function falls by a quarter of a unit on each side, so that neither rounding nor a flat top misleads.
+// The function may be -infinity where it is not defined; at such an end one side tells. A direction that is
+// known worse than `sd_most` is known as well as that.
 PeakCurvature peak_curvature(const std::function<double(const std::vector<double>&)>& log_likelihood,
                              const std::vector<double>& at, double value, double step_least, double sd_most);
 

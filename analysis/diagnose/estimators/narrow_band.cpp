@@ -132,8 +132,7 @@ struct BandFit {
 using Objective = std::function<double(const std::vector<double>&)>;
 
 std::vector<double> deviations(const Objective& objective, const SimplexMaximum& maximum) {
-    return peak_curvature(objective, maximum.at, maximum.value, resolution::step_log,
-                          resolution::sd_log_most)
+    return peak_curvature(objective, maximum.at, maximum.value, resolution::step_log, resolution::sd_log_most)
         .sd;
 }
 

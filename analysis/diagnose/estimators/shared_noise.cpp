@@ -257,8 +257,8 @@ private:
     AxesFit axes_fit(const Observation& observation, const Statistics& sum,
                      const std::vector<std::size_t>& axes, const SimplexMaximum& maximum,
                      const Objective& objective) const {
-        const PeakCurvature curvature = peak_curvature(
-            objective, maximum.at, maximum.value, resolution::curvature_step, resolution::ratio_sd_most);
+        const PeakCurvature curvature = peak_curvature(objective, maximum.at, maximum.value,
+                                                       resolution::curvature_step, resolution::ratio_sd_most);
         const Eigen::Vector3d h = shared(sum, axes, maximum.at);
         AxesFit fit;
         fit.axes = axes;
