@@ -1,6 +1,7 @@
-"""The board's core as Cortex-M3 code in QEMU, its UART behind a pseudo-terminal: it conforms, it is captured without a
-loss, and it conforms again after a program that was killed left it streaming. Exit code 77: QEMU or the ARM compiler is
-not installed."""
+"""The board's core as ARM code in QEMU, its UART behind a pseudo-terminal: it conforms, it is captured without a loss,
+and it conforms again after a program that was killed left it streaming.
+
+usage: emulated_board_test.py an385|an521 [TEST]... Exit code 77: QEMU or the ARM compiler is not installed."""
 
 import json
 import os
@@ -28,8 +29,8 @@ NOT_SHOWN = {"2.2", "8.1", "8.2", "8.7", "8.10", "8.11", "10.1", "10.2"}
 class Board:
     """tools/arm_board from its start to its end."""
 
-    def __init__(self, folder):
-        self.process = subprocess.Popen([SOURCE / "tools/arm_board", folder], stdout=subprocess.PIPE,
+    def __init__(self, board, folder):
+        self.process = subprocess.Popen([SOURCE / "tools/arm_board", "--board", board, folder], stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True)
         self.uri = self.process.stdout.readline().strip()
         if not self.uri:
@@ -53,7 +54,7 @@ class EmulatedBoard(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        cls.board = Board(cls.folder.name)
+        cls.board = Board(BOARD, cls.folder.name)
 
     @classmethod
     def tearDownClass(cls):
@@ -99,4 +100,5 @@ class EmulatedBoard(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    BOARD = sys.argv.pop(1)
     unittest.main()

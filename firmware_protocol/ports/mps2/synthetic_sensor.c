@@ -87,12 +87,12 @@ bool synthetic_sensor_sample(void) {
     return (registers[glp_mpu_int_enable] & glp_mpu_int_raw_rdy) != 0;
 }
 
-uint32_t synthetic_sensor_period(uint32_t core_hz) {
+uint32_t synthetic_sensor_period(uint32_t timer_hz) {
     const bool wanted = ((registers[glp_mpu_int_enable] & glp_mpu_int_raw_rdy) != 0) ||
                         ((registers[glp_mpu_user_ctrl] & glp_mpu_user_ctrl_fifo_en) != 0);
     if (!wanted) { return 0; }
-    if ((registers[glp_mpu_gyro_config] & glp_mpu_gyro_fchoice_b_mask) != 0) { return core_hz / 32000U; }
+    if ((registers[glp_mpu_gyro_config] & glp_mpu_gyro_fchoice_b_mask) != 0) { return timer_hz / 32000U; }
     const uint8_t filter = registers[glp_mpu_config] & glp_mpu_config_dlpf_mask;
-    if ((filter == 0U) || (filter == 7U)) { return core_hz / 8000U; }
-    return core_hz / 1000U * (1U + registers[glp_mpu_smplrt_div]);
+    if ((filter == 0U) || (filter == 7U)) { return timer_hz / 8000U; }
+    return timer_hz / 1000U * (1U + registers[glp_mpu_smplrt_div]);
 }

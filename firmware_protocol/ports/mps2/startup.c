@@ -3,6 +3,7 @@
 
 #include "../../src/memory.h"
 #include "handlers.h"
+#include "registers.h"
 
 extern uint32_t stack_top[];
 extern uint8_t data_begin[];
@@ -26,10 +27,10 @@ typedef void (*handler)(void);
 typedef struct vectors {
     uint32_t* stack;
     handler core[15];
-    handler device[32];
+    handler device[64];
 } vectors;
 
 __attribute__((section(".vectors"), used)) static const vectors table = {
     .stack = stack_top,
     .core = {reset, halt, halt, halt, halt, halt, 0, 0, 0, 0, halt, halt, 0, halt, halt},
-    .device = {[0] = on_uart_receive, [9] = on_sample_timer}};
+    .device = {[irq_uart0_receive] = on_uart_receive, [irq_timer1] = on_sample_timer}};

@@ -2,8 +2,8 @@
 ///
 /// Invariant: bytes are taken in the order in which they came. What finds no room is counted, and its command
 /// is lost: the frame's checksum tells.
-#ifndef GYROLOG_PROTOCOL_PORTS_MPS2_AN385_UART_H
-#define GYROLOG_PROTOCOL_PORTS_MPS2_AN385_UART_H
+#ifndef GYROLOG_PROTOCOL_PORTS_MPS2_UART_H
+#define GYROLOG_PROTOCOL_PORTS_MPS2_UART_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -6,13 +6,14 @@
 #include "../../device/board.h"
 #include "handlers.h"
 #include "registers.h"
+#include "sample_clock.h"
 #include "synthetic_sensor.h"
 #include "uart.h"
 
 enum { RING_BYTES = 4096, RATE_MAX_mHz = 1000000 };
 
-// Set by whoever starts the emulator.
-#define BOOT_ID ((const volatile uint32_t*)0x203FFFF0U)
+// Set by whoever starts the emulator; the linker script says where.
+extern const volatile uint32_t loaded_boot_id;
 
 static glp_board board;
 static uint8_t ring[RING_BYTES];
@@ -22,25 +23,11 @@ static uint64_t ticks(void* context) {
     return UINT32_MAX - TIMER0->value;
 }
 
-static void set_sample_clock(void) {
-    static uint32_t period;
-    const uint32_t wanted = synthetic_sensor_period(CORE_HZ);
-    if (wanted == period) { return; }
-    period = wanted;
-    TIMER1->ctrl = 0;
-    TIMER1->intclear = 1U;
-    NVIC_ICPR[0] = 1U << irq_timer1;
-    if (period == 0U) { return; }
-    TIMER1->reload = period - 1U;
-    TIMER1->value = period - 1U;
-    TIMER1->ctrl = 1U | 8U;
-}
-
 static bool sensor_write(void* context, uint8_t address, uint8_t value) {
     (void)context;
     interrupts_off();
     synthetic_sensor_write(address, value);
-    set_sample_clock();
+    sample_clock_follow_sensor(TIMERS_HZ);
     interrupts_on();
     return true;
 }
@@ -55,7 +42,7 @@ static bool sensor_read(void* context, uint8_t address, uint8_t* bytes, size_t s
 
 static void delay_ms(void* context, uint32_t duration_ms) {
     const uint32_t begin = (uint32_t)ticks(context);
-    while ((uint32_t)ticks(context) - begin < duration_ms * (CORE_HZ / 1000U)) {}
+    while ((uint32_t)ticks(context) - begin < duration_ms * (TIMERS_HZ / 1000U)) {}
 }
 
 static size_t link_write(void* context, const uint8_t* bytes, size_t size) {
@@ -75,7 +62,7 @@ static void start_clocks(void) {
     TIMER0->reload = UINT32_MAX;
     TIMER0->value = UINT32_MAX;
     TIMER0->ctrl = 1U;
-    NVIC_ISER[0] = 1U << irq_timer1;
+    sample_clock_start();
 }
 
 void run(void) {
@@ -86,12 +73,12 @@ void run(void) {
                                 .delay_ms = delay_ms,
                                 .link_write = link_write,
                                 .link_flush = link_flush};
-    const glp_board_identity identity = {.uid = "mps2-an385",
-                                         .firmware = "gyrolog mps2-an385",
-                                         .tick_hz = CORE_HZ,
+    const glp_board_identity identity = {.uid = BOARD_NAME,
+                                         .firmware = "gyrolog " BOARD_NAME,
+                                         .tick_hz = TIMERS_HZ,
                                          .tick_bits = 32,
                                          .rate_max_mHz = RATE_MAX_mHz,
-                                         .boot_id = *BOOT_ID,
+                                         .boot_id = loaded_boot_id,
                                          .reset_cause = glp_reset_power_on};
     synthetic_sensor_reset();
     start_clocks();

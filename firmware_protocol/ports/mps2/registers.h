@@ -1,10 +1,10 @@
-/// The registers that the port uses, by AN385 and the Cortex-M System Design Kit (CMSDK).
-#ifndef GYROLOG_PROTOCOL_PORTS_MPS2_AN385_REGISTERS_H
-#define GYROLOG_PROTOCOL_PORTS_MPS2_AN385_REGISTERS_H
+/// The registers that the port uses, by the Cortex-M System Design Kit (CMSDK); where they are is the
+/// board's.
+#ifndef GYROLOG_PROTOCOL_PORTS_MPS2_REGISTERS_H
+#define GYROLOG_PROTOCOL_PORTS_MPS2_REGISTERS_H
 
+#include <mps2_board.h>
 #include <stdint.h>
-
-#define CORE_HZ 25000000U
 
 typedef struct cmsdk_timer {
     volatile uint32_t ctrl;  // 1: on, 8: interrupt
@@ -21,14 +21,14 @@ typedef struct cmsdk_uart {
     volatile uint32_t bauddiv;
 } cmsdk_uart;
 
-#define TIMER0 ((cmsdk_timer*)0x40000000U)  // counts down at CORE_HZ: the ticks
-#define TIMER1 ((cmsdk_timer*)0x40001000U)  // the sensor's sample clock
-#define UART0 ((cmsdk_uart*)0x40004000U)
+#define TIMER0 ((cmsdk_timer*)TIMER0_BASE)  // counts down at TIMERS_HZ: the ticks
+#define TIMER1 ((cmsdk_timer*)TIMER1_BASE)  // the sensor's sample clock
+#define UART0 ((cmsdk_uart*)UART0_BASE)
 #define NVIC_ISER ((volatile uint32_t*)0xE000E100U)
 #define NVIC_ICPR ((volatile uint32_t*)0xE000E280U)
 
-enum { irq_uart0_receive = 0, irq_timer1 = 9 };
-
+static inline void interrupt_enable(unsigned irq) { NVIC_ISER[irq / 32U] = 1U << (irq % 32U); }
+static inline void interrupt_forget(unsigned irq) { NVIC_ICPR[irq / 32U] = 1U << (irq % 32U); }
 static inline void interrupts_off(void) { __asm volatile("cpsid i" ::: "memory"); }
 static inline void interrupts_on(void) { __asm volatile("cpsie i" ::: "memory"); }
 

@@ -11,9 +11,9 @@ static volatile uint32_t received_out;  // the main loop's
 static volatile uint32_t overruns;
 
 void uart_start(void) {
-    UART0->bauddiv = CORE_HZ / 921600U;
+    UART0->bauddiv = TIMERS_HZ / 921600U;
     UART0->ctrl = 1U | 2U | 8U;
-    NVIC_ISER[0] = 1U << irq_uart0_receive;
+    interrupt_enable(irq_uart0_receive);
 }
 
 void on_uart_receive(void) {
