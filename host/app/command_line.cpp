@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "host/app/command.hpp"
+#include "host/app/help_text.hpp"
 #include "host/base/nearest_name.hpp"
 #include "host/base/printable.hpp"
 #include "host/base/program_name.hpp"
@@ -140,12 +141,12 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
         called = program_and(arguments.front().c_str());
     }
     CLI::App app{
-        "gyrolog: an inertial test bench. Without a command it finds the board, captures with a live view,\n"
+        "gyrolog: an inertial test bench. Without a command it finds the board, captures with a live view, "
         "and on Ctrl-C closes the file and analyses it.",
         "gyrolog"};
     app.set_version_flag("--version", program_name());
     app.require_subcommand(0, 1);
-    app.get_formatter()->column_width(34);
+    app.formatter(std::make_shared<HelpFormatter>());
     Action action = setup_bench_session(app);
     const auto add_quiet = [&](CLI::App& to) {
         to.add_flag("-q,--quiet", console.is_quiet, "No progress and no notices; warnings and errors remain");
@@ -155,11 +156,10 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
     actions.reserve(commands.size());
     for (const Command& command : commands) {
         CLI::App* sub = app.add_subcommand(command.name, command.summary);
-        sub->get_formatter()->column_width(34);
         actions.push_back(command.setup(*sub));
         add_quiet(*sub);
         const std::string said = sub->get_footer();
-        sub->footer((said.empty() ? "" : said + "\n\n") + "Examples:\n" + command.examples);
+        sub->footer((said.empty() ? "" : said + "\n\n") + "Examples:\n" + examples_text(command.examples));
         sub->callback([&action, &actions, i = actions.size() - 1] { action = actions[i]; });
     }
     const std::vector<std::string> words = arguments;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "host/app/command_line.hpp"
+#include "host/formats/text_width.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -54,6 +55,39 @@ TEST(Help, OfEveryCommandEndsInExamplesOfItsOwnOptions) {
             EXPECT_THAT(known, Contains(option)) << name;
         }
     }
+}
+
+TEST(Help, FitsEightyColumnsAndShowsNothingOfTheParser) {
+    std::vector<std::string> names = command_names();
+    names.emplace_back();  // the program's own
+    for (const std::string& name : names) {
+        const std::string help = output_of(name.empty() ? std::vector<std::string>{"--help"}
+                                                        : std::vector<std::string>{name, "--help"});
+        for (const std::string& line : all_of(help, "([^\n]*)\n")) {
+            EXPECT_LE(width_of(line), 80U) << name << ": " << line;
+        }
+        for (const char* word : {"Excludes:", "Needs:", "REQUIRED", " TEXT", ":{", ":DIR"}) {
+            EXPECT_THAT(help, Not(HasSubstr(word))) << name;
+        }
+    }
+}
+
+// The help of a command, without its line breaks.
+std::string running_help(const char* command) {
+    return std::regex_replace(output_of({command, "--help"}), std::regex("\\s+"), " ");
+}
+
+TEST(Help, SaysOfAnOptionWhatItTakesAndWhenItMayNotStand) {
+    EXPECT_THAT(running_help("analyze"), HasSubstr(" --curve FILE.csv Instead of a recording"));
+    EXPECT_THAT(running_help("analyze"),
+                HasSubstr("one of overlapping, standard, standard_halving, modified, hadamard, "
+                          "overlapping_hadamard, total; default: overlapping] --convention"));
+    EXPECT_THAT(running_help("diagnose"), HasSubstr("[needs --model-out] --verbose"));
+    EXPECT_THAT(running_help("capture"), HasSubstr("(.pcapng) [required]"));
+    EXPECT_THAT(running_help("compare"), HasSubstr("[OPTIONS] RECORDING... WITH Positionals"));
+    // What is longer than a line is still a command that one can copy.
+    EXPECT_THAT(output_of({"diagnose", "--help"}),
+                HasSubstr("--plot gap.png \\\n      --model-out better.json\n"));
 }
 
 // What bash offers for the last word.
