@@ -99,19 +99,25 @@ std::string command_meant(const std::string& word) {
     return suggestion(word, names);
 }
 
-// Of the first of the words that looks like an option and is none of the command's.
-std::string option_meant(const CLI::App& app, const std::vector<std::string>& words) {
+// The first of the words that the parser has left over and that looks like an option, with the one that may
+// be meant. Empty: there is none.
+std::string unknown_option(const CLI::App& app) {
     std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options()) {
         for (const std::string& name : option->get_lnames()) { names.push_back("--" + name); }
     }
-    for (const std::string& word : words) {
+    for (const std::string& word : app.remaining()) {
+        if (word.size() < 2 || !word.starts_with('-') || word == "--") { continue; }
         const std::string given = word.substr(0, word.find('='));
-        if (given.starts_with("--") && std::ranges::find(names, given) == names.end()) {
-            return suggestion(given, names);
-        }
+        return "there is no option " + printable(given) + suggestion(given, names);
     }
     return {};
+}
+
+// What the parser complains of first may be missing only because its name is misspelt.
+std::string problem_of(const CLI::App& app, const CLI::ParseError& wrong) {
+    const std::string unknown = unknown_option(app);
+    return unknown.empty() ? plain_words(wrong.what()) : unknown;
 }
 
 }  // namespace
@@ -162,17 +168,16 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
         sub->footer((said.empty() ? "" : said + "\n\n") + "Examples:\n" + examples_text(command.examples));
         sub->callback([&action, &actions, i = actions.size() - 1] { action = actions[i]; });
     }
-    const std::vector<std::string> words = arguments;
     try {
         std::reverse(arguments.begin(), arguments.end());  // CLI11 takes its vector back to front
         app.parse(std::move(arguments));
     } catch (const CLI::Success& wanted) {  // --help, --version
         app.exit(wanted, console.out, console.err);
         return ExitCode::ok;
-    } catch (const CLI::ExtrasError& wrong) {
+    } catch (const CLI::ParseError& wrong) {
         const std::vector<CLI::App*> chosen = app.get_subcommands();
-        return refuse(wrong.what() + option_meant(chosen.empty() ? app : *chosen.front(), words));
-    } catch (const CLI::ParseError& wrong) { return refuse(plain_words(wrong.what())); }
+        return refuse(problem_of(chosen.empty() ? app : *chosen.front(), wrong));
+    }
     if (const std::string name = name_of_empty(app); !name.empty()) {
         return refuse(name + " is given and empty: fill it in, or leave it out");
     }

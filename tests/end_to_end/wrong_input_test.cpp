@@ -210,7 +210,7 @@ TEST_F(WrongInput, OfTheProgramAndOfAnyCommand) {
         {"frobnicate", 2, "gyrolog: there is no command 'frobnicate'\nrun `gyrolog --help`"},
         {"analyse c.csv", 2, "there is no command 'analyse'; did you mean analyze?\nrun"},
         {"\"\"", 2, "there is no command ''"},
-        {"--plott", 2, "gyrolog: The following argument was not expected: --plott\nrun"},
+        {"--plott", 2, "gyrolog: there is no option --plott\nrun"},
         {"--device nonsense", 2, "nonsense has no ':'; a device is usb:"},
         {"-o x.csv", 2, "--output 'x.csv' has none of the endings of a capture: .pcapng"},
         {"--duration -5", 2, "it has to be longer than 0"},
@@ -218,7 +218,8 @@ TEST_F(WrongInput, OfTheProgramAndOfAnyCommand) {
         {"list --json", 2, "--json wants its FILE behind it"},
         {"list --json \"\"", 2, "--json is given and empty: fill it in, or leave it out"},
         {"list --json dir", 1, "write 'dir': it is a directory"},
-        {"analyze --plott", 2, "not expected: --plott; did you mean --plot?\nrun `gyrolog analyze --help`"},
+        {"analyze --plott", 2,
+         "analyze: there is no option --plott; did you mean --plot?\nrun `gyrolog analyze --help`"},
     });
 }
 
@@ -314,7 +315,13 @@ TEST_F(WrongInput, OfCapture) {
         {"capture -o x.pcapng --device sim: --rotate-every x", 2, "--rotate-every: 'x' is no duration"},
         {"capture -o x.pcapng --device sim: --on-unplug panic", 2, "'panic' is none of wait, exit"},
         {"capture -o x.pcapng --device sim: --denoise-out y.csv", 2, "add --denoise METHOD"},
-        {"capture -o x.pcapng --device sim: --nonsense", 2, "run `gyrolog capture --help`"},
+        {"capture -o x.pcapng --device sim: --nonsense", 2,
+         "there is no option --nonsense\nrun `gyrolog capture"},
+        {"capture --outptu x.pcapng", 2, "there is no option --outptu; did you mean --output?"},
+        {"capture --outptu=x.pcapng", 2, "there is no option --outptu; did you mean --output?"},
+        {"capture x.pcapng", 2, "--output is required"},
+        {"diagnose x.csv --unnamed --modle-out y.json", 2,
+         "there is no option --modle-out; did you mean --model-out?"},
         {"capture -o out/lost.pcapng --device sim:rate=100,unplug=1 --duration 9s --on-unplug exit", 4,
          "the board is lost, what came before is saved"},
         {"capture -o out/holes.pcapng --device sim:rate=1000,fault=drop_packet@1 --duration 9s", 5,
@@ -662,7 +669,8 @@ TEST_F(WrongInput, OfEveryCommandAndOption) {
     };
     const auto before = names_here();
     for (const std::string& command : commands) {
-        expect_usage_error(command, "--frobnicate", "");
+        // Whatever else is missing, too.
+        expect_usage_error(command, "--frobnicate", "there is no option --frobnicate\n");
         for (const std::string& option : all_of(run_gyrolog({command, "--help"}).out, option_with_value)) {
             const bool may_stand_alone = option == "--extcap-version" || option == "--extcap-capture-filter";
             if (may_stand_alone || !options.insert(option).second) { continue; }
