@@ -39,6 +39,7 @@ Action setup_export(CLI::App& app);
 Action setup_extcap(CLI::App& app);
 Action setup_info(CLI::App& app);
 Action setup_list(CLI::App& app);
+Action setup_manual(CLI::App& app);
 Action setup_recover(CLI::App& app);
 Action setup_report(CLI::App& app);
 Action setup_simulate(CLI::App& app);

@@ -55,6 +55,8 @@ constexpr std::array commands{
             setup_extcap,
             "  gyrolog extcap --extcap-interfaces\n"
             "  tshark -i gyrolog-sim -c 20    # Wireshark's own way to call it\n"},
+    Command{"manual", "Print the manual page of the program or of a command", setup_manual,
+            "  gyrolog manual diagnose | man -l -\n"},
     Command{"completion", "Print what lets a shell complete commands and options", setup_completion,
             "  gyrolog completion bash > ~/.local/share/bash-completion/completions/gyrolog\n"},
 };

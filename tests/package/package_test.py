@@ -34,6 +34,9 @@ FILES = {
     "usr/share/zsh/vendor-completions/_gyrolog": "-rw-r--r--",
     "usr/share/fish/vendor_completions.d/gyrolog.fish": "-rw-r--r--",
     "usr/share/man/man1/gyrolog.1.gz": "-rw-r--r--",
+    **{f"usr/share/man/man1/gyrolog-{name}.1.gz": "-rw-r--r--" for name in (
+        "analyze", "calibrate", "capture", "check", "compare", "completion", "conform", "denoise", "diagnose", "doctor",
+        "export", "extcap", "info", "list", "manual", "recover", "report", "simulate", "table")},
     "usr/share/doc/gyrolog/README.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/analysis/METHODS.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/firmware_protocol/SPEC.md": "-rw-r--r--",

@@ -90,6 +90,60 @@ TEST(Help, SaysOfAnOptionWhatItTakesAndWhenItMayNotStand) {
                 HasSubstr("--plot gap.png \\\n      --model-out better.json\n"));
 }
 
+// The names of options at the beginning of their entries.
+std::vector<std::string> long_options_in_help(const std::string& help) {
+    const std::string before_examples = help.substr(0, help.find("\nExamples:\n"));
+    return all_of(before_examples, "\n  (?:-\\w,)?(--[a-z0-9-]+)");
+}
+
+TEST(ManualPage, HasEveryOptionOfItsCommandAsAnEntry) {
+    std::vector<std::string> names = command_names();
+    names.emplace_back();  // the program's own
+    for (const std::string& name : names) {
+        std::vector<std::string> page{"manual"};
+        std::vector<std::string> help{"--help"};
+        if (!name.empty()) {
+            page.push_back(name);
+            help.insert(help.begin(), name);
+        }
+        const std::string manual = output_of(page);
+        const std::vector<std::string> options = long_options_in_help(output_of(help));
+        EXPECT_GE(options.size(), 2U) << name;
+        for (std::string option : options) {
+            option = std::regex_replace(option, std::regex("-"), "\\-");
+            const std::string bold = "\\fB" + option + "\\fR";
+            const std::size_t at = manual.find(bold);
+            ASSERT_NE(at, std::string::npos) << name << ' ' << option;
+            const std::string entry = manual.substr(0, at);
+            EXPECT_EQ(entry.rfind(".TP\n"), entry.rfind('\n', entry.size() - 1) - 3) << name << ' ' << option;
+        }
+        EXPECT_THAT(manual, HasSubstr(name.empty() ? ".SH NAME\ngyrolog \\- "
+                                                   : ".SH NAME\ngyrolog\\-" + name + " \\- "));
+        EXPECT_THAT(manual, HasSubstr(".SH EXIT STATUS\n"));
+        EXPECT_THAT(manual, HasSubstr(".SH EXAMPLES\n.nf\n"));
+    }
+}
+
+TEST(ManualPage, IsReadByTheFormatterWithoutAWarning) {
+    if (std::system("command -v groff >/dev/null") != 0) { GTEST_SKIP() << "groff is not installed"; }
+    const TemporaryFolder folder;
+    const std::string page = folder.path("page.1");
+    const std::string said = folder.path("said");
+    for (const std::string& name : command_names()) {
+        std::ofstream(page) << output_of({"manual", name});
+        const std::string command = "groff -man -ww -z -Tutf8 " + page + " 2>" + said;
+        EXPECT_EQ(std::system(command.c_str()), 0) << name;
+        EXPECT_EQ(read_whole_file(said), "") << name;
+    }
+}
+
+TEST(ManualPage, OfNoCommandIsAUsageError) {
+    std::ostringstream out;
+    std::ostringstream err;
+    EXPECT_EQ(run_command_line({"manual", "frobnicate"}, {out, err}), ExitCode::usage);
+    EXPECT_THAT(err.str(), HasSubstr("there is no command 'frobnicate'"));
+}
+
 // What bash offers for the last word.
 std::vector<std::string> offered_by_bash(const std::string& script, const std::string& words, int last) {
     const std::string command = "bash -c '. " + script + "; COMP_WORDS=(" + words +
