@@ -35,19 +35,13 @@ std::string noise_refit_sentence(const Diagnosis& diagnosis) {
 
 // Parameters that were not fitted stand with those that were: the entry needs both.
 std::string entry_text(const Finding& finding, std::size_t entry) {
-    const EffectDefinition* effect = find_effect(finding.effect);
     std::string text;
     for (const auto& [name, value] : finding.entries[entry].params) {
-        const EffectParam* param = nullptr;
-        if (effect != nullptr) {
-            const auto found = std::ranges::find(effect->params, name, &EffectParam::name);
-            if (found != effect->params.end()) { param = &*found; }
-        }
         double sd = 0.0;
         if (entry < finding.sd.size() && finding.sd[entry].contains(name)) {
             sd = finding.sd[entry].at(name);
         }
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, quantity_text(name, value, sd, param));
+        text += (text.empty() ? "" : ", ") + param_text(name, value, sd);
     }
     if (finding.entries.size() > 1) {
         text = fmt::format("{}: {}", fmt::join(finding.entries[entry].axes, ", "), text);

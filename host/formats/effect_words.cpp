@@ -26,6 +26,7 @@ struct WrittenUnit {
 
 struct QuantityKind {
     std::string_view ending;
+    std::string_view own_unit;           // the one that the ending names
     std::span<const WrittenUnit> units;  // by falling `from`; the last one takes all
 };
 
@@ -102,30 +103,30 @@ constexpr std::array plain = {WrittenUnit{0.0, 1.0, ""}};
 
 // The first ending that fits: longer ones stand before those that they end in.
 constexpr QuantityKind kinds[] = {
-    {"_dps_per_sqrt_hz", angle_walks},
-    {"_dps_sqrt_hz", rate_walks},
-    {"_dps_per_C3", rates_per_C3},
-    {"_dps_per_C2", rates_per_C2},
-    {"_dps_per_C", rates_per_C},
-    {"_dps_per_g2", rates_per_g2},
-    {"_dps_per_g", rates_per_g},
-    {"_dps_per_s", ramps},
-    {"_dps_s", angles},
-    {"_dps", rates},
-    {"_g_per_sqrt_hz", velocity_walks},
-    {"_g_sqrt_hz", force_walks},
-    {"_g_per_C3", forces_per_C3},
-    {"_g_per_C2", forces_per_C2},
-    {"_g_per_C", forces_per_C},
-    {"_g_per_s", force_ramps},
-    {"_g_s", speeds},
-    {"_g", forces},
-    {"per_C", shares_per_C},
-    {"per_hour", counts_per_hour},
-    {"_rad", phases},
-    {"_hz", frequencies},
-    {"_C", temperatures},
-    {"_s", times},
+    {"_dps_per_sqrt_hz", "deg/s/sqrt(Hz)", angle_walks},
+    {"_dps_sqrt_hz", "deg/s*sqrt(Hz)", rate_walks},
+    {"_dps_per_C3", "deg/s per degC^3", rates_per_C3},
+    {"_dps_per_C2", "deg/s per degC^2", rates_per_C2},
+    {"_dps_per_C", "deg/s per degC", rates_per_C},
+    {"_dps_per_g2", "deg/s per g^2", rates_per_g2},
+    {"_dps_per_g", "deg/s per g", rates_per_g},
+    {"_dps_per_s", "deg/s per s", ramps},
+    {"_dps_s", "deg", angles},
+    {"_dps", "deg/s", rates},
+    {"_g_per_sqrt_hz", "g/sqrt(Hz)", velocity_walks},
+    {"_g_sqrt_hz", "g*sqrt(Hz)", force_walks},
+    {"_g_per_C3", "g per degC^3", forces_per_C3},
+    {"_g_per_C2", "g per degC^2", forces_per_C2},
+    {"_g_per_C", "g per degC", forces_per_C},
+    {"_g_per_s", "g per s", force_ramps},
+    {"_g_s", "g*s", speeds},
+    {"_g", "g", forces},
+    {"per_C", "per degC", shares_per_C},
+    {"per_hour", "per hour", counts_per_hour},
+    {"_rad", "rad", phases},
+    {"_hz", "Hz", frequencies},
+    {"_C", "degC", temperatures},
+    {"_s", "s", times},
 };
 
 constexpr double relative_error_most = 0.05;
@@ -135,10 +136,14 @@ bool is_relative_error(const EffectParam& param) {
     return param.range == EffectParam::Range::any && most > 0.0 && most <= relative_error_most;
 }
 
+const QuantityKind* kind_of(std::string_view name) {
+    const auto* kind =
+        std::ranges::find_if(kinds, [&](const QuantityKind& one) { return name.ends_with(one.ending); });
+    return kind == std::end(kinds) ? nullptr : kind;
+}
+
 std::span<const WrittenUnit> units_of(std::string_view name, const EffectParam* param) {
-    for (const QuantityKind& kind : kinds) {
-        if (name.ends_with(kind.ending)) { return kind.units; }
-    }
+    if (const QuantityKind* kind = kind_of(name); kind != nullptr) { return kind->units; }
     if (param != nullptr && param->range == EffectParam::Range::share) { return shares; }
     if (param != nullptr && is_relative_error(*param)) { return relative; }
     return plain;
@@ -257,6 +262,14 @@ std::string quantity_text(std::string_view name, double value, double sd, const 
         units, [&](const WrittenUnit& one) { return std::abs(value) >= one.from || &one == &units.back(); });
     if (!(sd > 0.0) || !std::isfinite(sd)) { return fmt::format("{:.3g}{}", value / unit->per, unit->name); }
     return with_uncertainty(value / unit->per, sd / unit->per) + std::string(unit->name);
+}
+
+std::string param_text(std::string_view name, double value, double sd) {
+    const bool is_uncertain = sd > 0.0 && std::isfinite(sd);
+    const std::string number = is_uncertain ? with_uncertainty(value, sd) : fmt::format("{:.6g}", value);
+    const QuantityKind* kind = kind_of(name);
+    return fmt::format("{} {}{}{}", name, number, kind == nullptr ? "" : " ",
+                       kind == nullptr ? "" : kind->own_unit);
 }
 
 namespace {

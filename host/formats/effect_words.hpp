@@ -16,6 +16,10 @@ namespace gyrolog {
 // become per cent; so do relative errors, `param` saying by its plausible range that it is one, or ppm.
 std::string quantity_text(std::string_view name, double value, double sd, const EffectParam* param);
 
+// A parameter as a model has it, under its name and in the unit that the name ends in: "phase_rad 2.484 ±
+// 0.073 rad". What stands there can be written into a model.
+std::string param_text(std::string_view name, double value, double sd);
+
 // `words` with the finding's values in place of {param}; where axes differ in a value, all of them, each with
 // its axis.
 std::string filled_words(std::string_view words, const Finding& finding);

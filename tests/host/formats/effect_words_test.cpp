@@ -1,5 +1,8 @@
 #include "host/formats/effect_words.hpp"
 
+#include <map>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,6 +35,39 @@ TEST(EffectWords, WriteQuantitiesInUnitsThatPeopleLike) {
     EXPECT_EQ(quantity_text("per_hour", 3.2, 0.0, nullptr), "3.2 per hour");
     EXPECT_EQ(quantity_text("nu", 4.0, 0.5, nullptr), "4.00 ± 0.50");
     EXPECT_EQ(quantity_text("x_dps_per_g", 0.2, 0.0, nullptr), "0.2 deg/s per g");
+}
+
+TEST(EffectWords, WriteAParameterOfAModelInTheUnitOfItsName) {
+    EXPECT_EQ(param_text("phase_rad", 2.484, 0.073), "phase_rad 2.484 ± 0.073 rad");
+    EXPECT_EQ(param_text("tau_s", 410.0, 60.0), "tau_s 410 ± 60 s");
+    EXPECT_EQ(param_text("B_dps", 0.0005, 0.0001), "B_dps (5.0 ± 1.0)e-04 deg/s");
+    EXPECT_EQ(param_text("ramp_dps_per_s", 1e-4, 0.0), "ramp_dps_per_s 0.0001 deg/s per s");
+    EXPECT_EQ(param_text("delay_s", 0.0032, 0.0), "delay_s 0.0032 s");
+    EXPECT_EQ(param_text("per_C", 0.012, 0.001), "per_C 0.0120 ± 0.0010 per degC");
+    EXPECT_EQ(param_text("eps", 0.0987, 0.0), "eps 0.0987");
+    EXPECT_EQ(param_text("size_g", 0.0123, 0.0), "size_g 0.0123 g");
+}
+
+// The unit of each parameter that a model may have is in its name, and no other is written behind it.
+TEST(EffectWords, KnowTheUnitInTheNameOfEveryParameter) {
+    const std::map<std::string, std::string> units = {{"_dps", "deg/s"}, {"_rad", "rad"}, {"_hz", "Hz"},
+                                                      {"_C", "degC"},    {"_s", "s"},     {"_g", "g"}};
+    std::size_t with_unit = 0;
+    for (const ChainLink& link : signal_chain()) {
+        if (link.effect == nullptr) { continue; }
+        for (const EffectParam& param : link.effect->params) {
+            const std::string name(param.name);
+            const std::size_t last = name.rfind('_');
+            if (name.find("_per_") != std::string::npos || name.find("sqrt") != std::string::npos ||
+                last == std::string::npos || !units.contains(name.substr(last)) || name.ends_with("_dps_s") ||
+                name == "per_C") {
+                continue;
+            }
+            EXPECT_EQ(param_text(name, 1.0, 0.0), name + " 1 " + units.at(name.substr(last)));
+            ++with_unit;
+        }
+    }
+    EXPECT_GT(with_unit, 30U);
 }
 
 TEST(EffectWords, WriteSharesAndRelativeErrorsInPercentOrPpm) {
