@@ -27,7 +27,7 @@ protected:
 TEST_F(LiveTerminal, MarksStopsStartsAndEndsByKeys) {
     Terminal terminal(command());
     ASSERT_TRUE(terminal.shows("samples  ")) << terminal.screen();
-    EXPECT_TRUE(terminal.shows(" dps x")) << "an Allan deviation\n" << terminal.screen();
+    EXPECT_TRUE(terminal.shows(" dps ")) << "an Allan deviation\n" << terminal.screen();
     EXPECT_TRUE(terminal.shows("  z  K ")) << terminal.screen();
     EXPECT_TRUE(terminal.shows("keys: m mark, s stop the board, q end")) << terminal.screen();
     EXPECT_FALSE(terminal.echoes());
