@@ -186,7 +186,7 @@ std::vector<Finding> CauseSet::rivals_to_try(const FoundCause& cause) const {
     if (own.is_of_codes || own.recurs) { return {}; }
     const auto is_simpler = [&](const Finding& rival) {
         return rival.parameters < cause.finding.parameters &&
-               rival.evidence_nats > cause.finding.evidence_nats - decisions.strong_nats;
+               rival.evidence_nats > cause.finding.evidence_nats;
     };
     std::map<EvidenceMethod, Finding> best;
     std::map<EvidenceMethod, Finding> simpler;

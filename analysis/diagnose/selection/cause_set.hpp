@@ -84,7 +84,7 @@ public:
     // Of these findings, those that may stand in the cause's place.
     std::vector<Finding> rivals_of(const Finding& cause, const std::vector<Finding>& findings) const;
     // Of each estimator the best rival that explains axes of the cause nearly as well, the best first; then
-    // rivals that have fewer parameters than the cause and may be as likely.
+    // rivals that have fewer parameters than the cause and more evidence.
     std::vector<Finding> rivals_to_try(const FoundCause& cause) const;
     // The number of fitted parameters of these causes.
     static int parameters(const std::vector<FoundCause>& some);

@@ -285,9 +285,9 @@ private:
     // Each cause was chosen before those that were found after it, and these were fitted to what it left. So
     // each cause once gives its axes to the best rival of each estimator that explains them nearly as well.
     // All causes are refitted, and the best further cause is added. The first exchange stays that raises the
-    // worth of all measures by strong evidence, or that has fewer parameters and is not strongly worse: of
-    // what the data cannot tell apart, the simpler stays. The function returns whether any exchange stays; no
-    // value when it was ended early.
+    // worth of all measures by strong evidence, or that has fewer causes and is not strongly worse, or fewer
+    // parameters and is no worse. The function returns whether any exchange stays; no value when it was ended
+    // early.
     std::optional<bool> exchange() {
         bool any = false;
         for (std::size_t i = 0; !was_exchanged_ && i < set_.causes.size(); ++i) {
@@ -313,13 +313,19 @@ private:
         const double more_nats = decisions.strong_nats;
         const bool were_weighed = std::exchange(are_weighed_, true);
         if (!add_next_if_worth(before_nats + more_nats)) { return std::nullopt; }
-        const bool is_simpler = CauseSet::parameters(set_.causes) < CauseSet::parameters(before);
-        const double least_nats = before_nats + (is_simpler ? -more_nats : more_nats);
+        const double least_nats = before_nats + least_gain_nats(before);
         const bool is_better =
             CauseSet::change_likelihood_among(set_.causes) == CauseSet::change_likelihood_among(before) &&
             set_.worth_nats(set_.observed()) > least_nats;
         if (!is_better) { set_.causes = before, are_weighed_ = were_weighed; }
         return is_better;
+    }
+
+    // What an exchange that led from these causes to the present ones is to gain.
+    double least_gain_nats(const std::vector<FoundCause>& before) const {
+        if (set_.causes.size() < before.size()) { return -decisions.strong_nats; }
+        const bool is_simpler = CauseSet::parameters(set_.causes) < CauseSet::parameters(before);
+        return is_simpler ? 0.0 : decisions.strong_nats;
     }
 
     // With what is called for next, where that may lift the worth above this. False when ended early.
