@@ -181,6 +181,8 @@ struct GapDomain {
     std::string y_name;
     bool log_x = false;
     bool log_y = false;
+    bool is_course = true;                // false: the x are 1, 2, ..., of things side by side
+    std::vector<std::string> categories;  // their names, where they have any
     std::size_t axis = 0;
     bool of_all_axes = false;
     std::vector<double> x;

@@ -8,8 +8,8 @@
 namespace gyrolog {
 namespace {
 
-constexpr int comparison_heading_px = 150;  // and the key
-constexpr int panel_row_px = 262;
+constexpr double comparison_heading_px = 150.0;  // and the key
+constexpr double panel_row_px = 262.0;
 constexpr int compared_columns_most = 3;
 
 // In grey the one is darker, and it is drawn over the other.
@@ -38,7 +38,7 @@ std::vector<Curve> key_of(const Comparison& comparison) {
     key[0].lo = key[0].hi = {0.0};
     key[0].legend = {comparison.simulations == 0
                          ? "other, 68 %"
-                         : "simulated, " + rounded_number(100.0 * comparison.band_probability, 3) + " %"};
+                         : "simulated, " + short_number(100.0 * comparison.band_probability) + " %"};
     key[1].stroke = recording_line;
     key[1].legend = {"recording"};
     const auto has_outside = [](const AxisComparison& axis) { return axis.allan.points_outside() > 0; };
@@ -57,12 +57,16 @@ public:
           unit_(comparison.unit.sensor == SensorKind::gyro ? "°/s" : comparison.unit.name),
           quantity_(comparison.unit.sensor == SensorKind::gyro ? "rate" : "specific force") {}
 
-    void add_to(Figure& figure) const {
+    // Both over time, side by side.
+    void add_series_to(Figure& figure) const {
         const bool simulated = comparison_.simulations > 0;
         figure.panels.push_back(
             series(axis_.recording_averages, recording_colour, axis_.axis + ": the recording"));
         figure.panels.push_back(series(axis_.other_averages, other_colour,
                                        axis_.axis + (simulated ? ": one simulation" : ": the other")));
+    }
+
+    void add_statistics_to(Figure& figure) const {
         figure.panels.push_back(histograms());
         figure.panels.push_back(
             curves(axis_.allan, "Allan deviation", "averaging time τ (s)", "σ(τ) (" + unit_ + ")"));
@@ -85,7 +89,7 @@ private:
             std::max(axis_.recording_averages.middle_s(axis_.recording_averages.rate.size()),
                      axis_.other_averages.middle_s(axis_.other_averages.rate.size()));
         const double time_unit_s = longest_s > 7200.0 ? 3600.0 : 1.0;
-        panel.caption = caption + ", means of " + rounded_number(averages.block_s) + " s";
+        panel.caption = caption + ", means of " + short_number(averages.block_s) + " s";
         panel.x = {time_unit_s > 1.0 ? "time (h)" : "time (s)", ScaleKind::linear, {}};
         panel.y = {quantity_ + " − mean (" + unit_ + ")", ScaleKind::linear, common_range()};
         Curve curve;
@@ -211,10 +215,15 @@ Figure figure_of(const ComparisonFigure& request) {
     figure.columns = request.paper.columns_up_to(compared_columns_most);
     figure.scale = request.paper.scale();
     for (const AxisComparison& axis : comparison.axes) {
-        ComparedAxisPanels(comparison, axis).add_to(figure);
+        const ComparedAxisPanels panels(comparison, axis);
+        // On narrow paper nothing else would have room on the sheet.
+        if (figure.columns == compared_columns_most || comparison.axes.size() == 1) {
+            panels.add_series_to(figure);
+        }
+        panels.add_statistics_to(figure);
     }
     const auto columns = static_cast<std::size_t>(figure.columns);
-    const auto rows = static_cast<int>((figure.panels.size() + columns - 1) / columns);
+    const auto rows = static_cast<double>((figure.panels.size() + columns - 1) / columns);
     figure.key = key_of(comparison);
     figure.width_px = request.paper.width_px();
     figure.height_px = request.paper.scaled_pixels(comparison_heading_px + rows * panel_row_px);

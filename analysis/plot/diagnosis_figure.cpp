@@ -21,7 +21,6 @@ constexpr double lone_panel_px = 520.0;
 constexpr int diagnosed_columns_most = 3;
 constexpr std::size_t rows_most = 6;
 constexpr std::size_t rows_least = 3;
-constexpr double page_height_mm = 250.0;  // of the text on A4; with many causes the figure is higher
 
 // From light to dark in grey, too: band before, band after, recording.
 constexpr Colour before_colour = colours::orange;
@@ -36,6 +35,10 @@ constexpr double after_opacity = 0.50;
 
 constexpr double least_decibels = 1.0;
 constexpr double hours_from_s = 7200.0;
+
+// Of things side by side: what the bands of model and causes are wide, in their distance.
+constexpr double before_half_width = 0.36;
+constexpr double after_half_width = 0.24;
 
 enum class Part { recording, before, after, outside_before, outside_after };
 
@@ -97,15 +100,13 @@ public:
         panel.caption = caption();
         panel.x = {x_name_, domain_.log_x ? ScaleKind::logarithmic : ScaleKind::linear, {}};
         panel.y = {domain_.log_y ? "over the model (dB)" : domain_.y_name, ScaleKind::linear, range()};
-        add_band(panel, domain_.before_lo, domain_.before_hi, before_edge, before_opacity);
-        if (has(Part::after)) {
-            add_band(panel, domain_.after_lo, domain_.after_hi, after_edge, after_opacity);
-        }
-        Curve recording;
-        recording.x = x_;
-        recording.y = shown(domain_.recording);
-        recording.stroke = recording_line;
-        panel.curves.push_back(std::move(recording));
+        const Band before{domain_.before_lo, domain_.before_hi, before_edge, before_opacity,
+                          before_half_width};
+        const Band after{domain_.after_lo, domain_.after_hi, after_edge, after_opacity, after_half_width};
+        add_band(panel, before);
+        if (has(Part::after)) { add_band(panel, after); }
+        panel.curves.push_back(recording());
+        if (!domain_.is_course) { name_things(panel); }
         // The smaller ones over the larger ones.
         for (const Part part : {Part::outside_after, Part::outside_before}) {
             if (has(part)) { panel.curves.push_back(marks(part)); }
@@ -151,20 +152,67 @@ private:
         return dB;
     }
 
+    // Of things side by side the recording has points: no line leads from one to the next.
+    Curve recording() const {
+        Curve curve;
+        curve.x = x_;
+        curve.y = shown(domain_.recording);
+        curve.stroke = recording_line;
+        if (!domain_.is_course) {
+            curve.stroke.width_px = 0.0;
+            curve.marker = Marker::circle;
+            curve.markers_apart_px = 0.0;
+        }
+        return curve;
+    }
+
+    void name_things(Panel& panel) const {
+        panel.x.range = Range{0.5, static_cast<double>(x_.size()) + 0.5};
+        for (std::size_t i = 0; i < x_.size(); ++i) {
+            panel.x.names.push_back(
+                {x_[i], i < domain_.categories.size() ? domain_.categories[i] : fixed_decimal(x_[i], 0)});
+        }
+    }
+
+    struct Band {
+        const std::vector<double>& lo;
+        const std::vector<double>& hi;
+        const Stroke& edge;
+        double opacity;
+        double half_width;  // of things side by side, each of which has a box of its own
+    };
+
+    std::vector<double> along_x(double half_width) const {
+        if (domain_.is_course) { return x_; }
+        std::vector<double> edges;
+        for (const double x : x_) {
+            edges.insert(edges.end(), {x - half_width, x + half_width, x + half_width});
+        }
+        return edges;
+    }
+
+    // Each value at both edges of its box, and nothing between the boxes.
+    std::vector<double> along_y(const std::vector<double>& values) const {
+        const std::vector<double> y = shown(values);
+        if (domain_.is_course) { return y; }
+        std::vector<double> boxes;
+        for (const double value : y) { boxes.insert(boxes.end(), {value, value, std::nan("")}); }
+        return boxes;
+    }
+
     // With both edges as lines: where bands lie on each other, only these tell them apart.
-    void add_band(Panel& panel, const std::vector<double>& lo, const std::vector<double>& hi,
-                  const Stroke& edge, double opacity) const {
+    void add_band(Panel& panel, const Band& band) const {
         Curve upper;
-        upper.x = x_;
-        upper.lo = shown(lo);
-        upper.hi = shown(hi);
+        upper.x = along_x(band.half_width);
+        upper.lo = along_y(band.lo);
+        upper.hi = along_y(band.hi);
         upper.y = upper.hi;
-        upper.stroke = edge;
-        upper.band_opacity = opacity;
+        upper.stroke = band.edge;
+        upper.band_opacity = band.opacity;
         Curve lower;
-        lower.x = x_;
+        lower.x = upper.x;
         lower.y = upper.lo;
-        lower.stroke = edge;
+        lower.stroke = band.edge;
         panel.curves.push_back(std::move(upper));
         panel.curves.push_back(std::move(lower));
     }
@@ -317,7 +365,8 @@ Figure figure_of(const DiagnosisFigure& request) {
         figure.panels.push_back(*bars);
         height_px += bars->height_share;
     }
-    const double page_px = page_height_mm / mm_per_inch * dpi_of_scale_1;
+    // With many causes the figure is higher.
+    const double page_px = text_height_mm / mm_per_inch * dpi_of_scale_1;
     const DrawnRows rows = drawn_rows(diagnosis, request.paper, page_px - height_px);
     figure.columns = static_cast<int>(rows.columns);
 

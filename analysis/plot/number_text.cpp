@@ -65,6 +65,15 @@ std::string rounded_number(double value, int significant_digits) {
     return fixed_decimal(value, significant_digits - 1 - exponent);
 }
 
+std::string short_number(double value, int significant_digits) {
+    const std::string text = rounded_number(value, significant_digits);
+    const std::size_t end = std::min(text.find("×"), text.size());
+    const std::string number = text.substr(0, end);
+    if (number.find('.') == std::string::npos) { return text; }
+    const std::size_t last = number.find_last_not_of('0');
+    return number.substr(0, number[last] == '.' ? last : last + 1) + text.substr(end);
+}
+
 std::string number_with_uncertainty(double value, std::optional<double> uncertainty) {
     const bool usable = uncertainty && std::isfinite(*uncertainty) && *uncertainty > 0.0 &&
                         std::isfinite(value) && *uncertainty > 1e-12 * std::fabs(value);

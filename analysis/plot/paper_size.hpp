@@ -8,6 +8,8 @@ namespace gyrolog {
 inline constexpr double letter_px = 19.0;        // at scale 1
 inline constexpr double letter_pt = 8.0;         // what journals take as the least
 inline constexpr double least_panel_px = 360.0;  // at scale 1, of a column
+inline constexpr double text_height_mm = 250.0;  // of a page of A4
+inline constexpr double sheet_height_mm = 297.0;
 inline constexpr double points_per_inch = 72.0;
 inline constexpr double mm_per_inch = 25.4;
 inline constexpr double dpi_of_scale_1 = letter_px / letter_pt * points_per_inch;

@@ -20,6 +20,7 @@
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/sensor_choice.hpp"
+#include "host/base/counted.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/denoise_json.hpp"
 #include "host/formats/denoise_text.hpp"
@@ -116,7 +117,7 @@ public:
         figure.quantity = unit.quantity;
         figure.paper = request_.paper;
         figure.facts = {fmt::format("{:.6g} Hz", recording_.rate_hz), format_duration(report_.duration_s),
-                        fmt::format("{} units", array_axes(recording_).front().units.size()),
+                        counted(array_axes(recording_).front().units.size(), "unit"),
                         design_text(report_.axes.front().signals.front().design)};
         return write_figure(render(figure), request_.plot_path);
     }

@@ -58,6 +58,8 @@ std::vector<GapDomain> gap_domains(const JudgedCurves& before, const JudgedCurve
         domain.y_name = measure.y_name;
         domain.log_x = measure.log_x;
         domain.log_y = measure.log_y;
+        domain.is_course = measure.is_course;
+        domain.categories.assign(measure.categories.begin(), measure.categories.end());
         domain.axis = curve.axis;
         domain.of_all_axes = curve.of_all_axes;
         for (std::size_t i = 0; i < points; ++i) {

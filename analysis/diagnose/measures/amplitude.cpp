@@ -83,6 +83,7 @@ const Measure measures::skewness{.name = "skewness",
                                  .shown_x = as_it_is,
                                  .shown_y = as_it_is,
                                  .locate = locate_nowhere,
+                                 .is_course = false,
                                  .least_sd = 0.5};
 
 void add_amplitude_curves(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {

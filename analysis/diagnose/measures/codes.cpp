@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -153,6 +154,8 @@ GapCurve codes_curve(const Observation& observation, std::size_t axis) {
     return curve;
 }
 
+constexpr std::array ways_to_count = {"each code", "even and odd"};
+
 void locate_codes(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& where) {
     where.structure = "code_grid";
 }
@@ -160,11 +163,13 @@ void locate_codes(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, P
 }  // namespace
 
 const Measure measures::codes{.name = "converter's codes",
-                              .x_name = "1 each code, 2 even and odd",
+                              .x_name = "",
                               .y_name = "excess (its sd)",
                               .shown_x = as_it_is,
                               .shown_y = as_it_is,
                               .locate = locate_codes,
+                              .categories = ways_to_count,
+                              .is_course = false,
                               // Of a largest deviate.
                               .least_sd = 0.5,
                               .is_normal_far_out = false};

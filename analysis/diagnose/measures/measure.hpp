@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "analysis/diagnose/likelihood/observation.hpp"
@@ -29,6 +30,9 @@ struct Measure {
     bool log_y = false;
     bool over_mean = false;    // the simulations' mean is taken off what is shown
     bool names_other = false;  // the name ends in the curve's other axis
+    // Names of x = 1, 2, ..., where these are things side by side. A curve that has none is a course along x.
+    std::span<const char* const> categories{};
+    bool is_course = true;  // false: no point has anything to do with the next
     const char* shared_name =
         "";  // what precedes the name of a curve of all axes, where each axis has one, too
     // The simulations' standard deviation at a point counts as no less. Where no simulation differs from

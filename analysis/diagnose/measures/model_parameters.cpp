@@ -1,5 +1,7 @@
 #include "analysis/diagnose/measures/model_parameters.hpp"
 
+#include <array>
+
 #include "analysis/diagnose/measures/shown_values.hpp"
 
 namespace gyrolog {
@@ -14,17 +16,21 @@ constexpr double least_sd_of_stated = 1.0;
 
 namespace {
 
+constexpr std::array coefficient_names = {"N", "B", "K"};
+
 // It is of no frequency and no time.
 void locate_nowhere(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& /*where*/) {}
 
 }  // namespace
 
 const Measure measures::noise_coefficients{.name = "noise coefficients",
-                                           .x_name = "1 N, 2 B, 3 K",
+                                           .x_name = "coefficient",
                                            .y_name = "off (stated sd)",
                                            .shown_x = as_it_is,
                                            .shown_y = as_it_is,
                                            .locate = locate_nowhere,
+                                           .categories = coefficient_names,
+                                           .is_course = false,
                                            .least_sd = definition::least_sd_of_stated};
 const Measure measures::motion_parameters{.name = "gains, latency and clock",
                                           .x_name = "parameter",
@@ -32,6 +38,7 @@ const Measure measures::motion_parameters{.name = "gains, latency and clock",
                                           .shown_x = as_it_is,
                                           .shown_y = as_it_is,
                                           .locate = locate_nowhere,
+                                          .is_course = false,
                                           .least_sd = definition::least_sd_of_stated};
 
 void add_model_parameter_curves(const Observation& observation, std::size_t axis,

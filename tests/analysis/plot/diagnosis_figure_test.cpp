@@ -280,6 +280,39 @@ TEST(DiagnosisFigure, NamesEveryPartOnceInTheKey) {
     EXPECT_EQ(names_in(figure_of(DiagnosisFigure{diagnosis, "known", {}}).key).size(), 5U);
 }
 
+// N, B and K are three things: no line leads from one to the next, and each has a box of its own for a band.
+TEST(DiagnosisFigure, ShowsThingsSideBySideAsPointsUnderTheirNames) {
+    GapDomain coefficients = time_domain(0);
+    coefficients.name = "noise coefficients";
+    coefficients.x_name = "coefficient";
+    coefficients.is_course = false;
+    coefficients.categories = {"N", "B"};  // the third one has no name
+    coefficients.x = {1.0, 2.0, 3.0};
+    coefficients.recording = {22.0, 1.0, -1.0};
+    coefficients.before_lo = coefficients.after_lo = {-2.0, -2.0, -2.0};
+    coefficients.before_hi = coefficients.after_hi = {2.0, 2.0, 2.0};
+    coefficients.outside_before = {true, false, false};
+    coefficients.outside_after = {false, false, false};
+    const Diagnosis diagnosis = diagnosis_with({coefficients});
+    const Figure figure = figure_of(DiagnosisFigure{diagnosis, "known", {}});
+    const Panel& panel = figure.panels.at(0);
+    std::vector<std::string> names;
+    for (const AxisName& name : panel.x.names) { names.push_back(name.text); }
+    EXPECT_THAT(names, testing::ElementsAre("N", "B", "3"));
+    const Curve& recording = panel.curves.at(4);
+    EXPECT_EQ(recording.y, coefficients.recording);
+    EXPECT_EQ(recording.stroke.width_px, 0.0);
+    EXPECT_NE(recording.marker, Marker::none);
+    for (const std::size_t edge : {0U, 1U, 2U, 3U}) {
+        const Curve& band = panel.curves.at(edge);
+        ASSERT_EQ(band.x.size(), 9U);
+        EXPECT_LT(band.x[1], 1.5);
+        EXPECT_TRUE(std::isnan(band.y[2])) << "nothing between the boxes";
+        EXPECT_GT(band.x[3], 1.5);
+    }
+    EXPECT_TRUE(render(figure).ok());
+}
+
 TEST(DiagnosisFigure, OfOneRowHasItsTitleOnce) {
     const Diagnosis diagnosis =
         diagnosis_with({allan_domain(0), time_domain(0), allan_domain(1), time_domain(1)});

@@ -44,6 +44,16 @@ TEST(NumberText, RoundsToSignificantDigitsAtAnySize) {
     EXPECT_EQ(rounded_number(std::numeric_limits<double>::quiet_NaN()), "–");
 }
 
+TEST(NumberText, WritesSettingsWithoutZerosAtTheirEnd) {
+    EXPECT_EQ(short_number(10.0), "10");
+    EXPECT_EQ(short_number(3.0), "3");
+    EXPECT_EQ(short_number(12.5), "12.5");
+    EXPECT_EQ(short_number(95.12), "95.1");
+    EXPECT_EQ(short_number(200.0), "200");
+    EXPECT_EQ(short_number(2.5e-5), "2.5×10⁻⁵");
+    EXPECT_EQ(short_number(2e-5), "2×10⁻⁵");
+}
+
 TEST(NumberText, NeverWritesMinusNought) {
     EXPECT_EQ(fixed_decimal(-0.001, 1), "0.0");
     EXPECT_EQ(fixed_decimal(-0.1, 1), "−0.1");
