@@ -1,5 +1,6 @@
 #include "host/app/manual_page.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "host/app/help_text.hpp"
+#include "host/app/manual_text.hpp"
 #include "host/base/program_name.hpp"
 
 namespace gyrolog {
@@ -91,6 +93,27 @@ std::string footer_of(const CLI::App& app) {
     return text;
 }
 
+std::string paragraph(std::string_view text) {
+    if (text.starts_with("  ")) { return ".PP\n.nf\n" + escaped(text) + "\n.fi\n"; }
+    if (text.starts_with("- ")) { return ".IP \\- 2\n" + escaped(text.substr(2)) + '\n'; }
+    return ".PP\n" + escaped(text) + '\n';
+}
+
+std::string paragraphs_of(std::string_view text) {
+    std::string page;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find("\n\n"), text.size());
+        page += paragraph(text.substr(0, end));
+        text.remove_prefix(std::min(end + 2, text.size()));
+    }
+    return page;
+}
+
+std::string description_of_command(const CLI::App& command) {
+    const std::string text = paragraphs_of(manual_text(command.get_name()));
+    return text.empty() ? "" : ".SH DESCRIPTION\n" + text;
+}
+
 constexpr const char* exit_status =
     ".SH EXIT STATUS\n"
     "0 ok, 1 failed, 2 usage, 3 no device or no permission, 4 device lost (what came before is saved), 5 "
@@ -143,14 +166,16 @@ std::string manual_page(const CLI::App& program) {
     }
     return head("gyrolog", "capture, analyse and simulate inertial sensors") +
            ".SH SYNOPSIS\n.B gyrolog\n[OPTIONS]\n.br\n.B gyrolog\n.I COMMAND\n[OPTIONS]\n.SH DESCRIPTION\n" +
-           escaped(program.get_description()) + '\n' + commands + entries("OPTIONS", options_of(program)) +
-           exit_status + examples + files + fmt::format(".SH SEE ALSO\n{}\n", fmt::join(pages, ",\n"));
+           escaped(program.get_description()) + '\n' + paragraphs_of(manual_text("")) + commands +
+           entries("OPTIONS", options_of(program)) + exit_status + examples + files +
+           fmt::format(".SH SEE ALSO\n{}\n", fmt::join(pages, ",\n"));
 }
 
 std::string manual_page_of_command(const CLI::App& command) {
     return head("gyrolog-" + command.get_name(), command.get_description()) + synopsis(command) +
-           entries("ARGUMENTS", words_of(command)) + entries("OPTIONS", options_of(command)) + exit_status +
-           footer_of(command) + ".SH SEE ALSO\n.BR gyrolog (1)\n";
+           description_of_command(command) + entries("ARGUMENTS", words_of(command)) +
+           entries("OPTIONS", options_of(command)) + exit_status + footer_of(command) +
+           ".SH SEE ALSO\n.BR gyrolog (1)\n";
 }
 
 }  // namespace gyrolog

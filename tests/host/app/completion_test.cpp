@@ -137,6 +137,17 @@ TEST(ManualPage, IsReadByTheFormatterWithoutAWarning) {
     }
 }
 
+TEST(ManualPage, DescribesWhatACommandDoes) {
+    for (const char* command : {"capture", "analyze", "simulate", "diagnose", "denoise", "calibrate",
+                                "export", "compare", "table"}) {
+        const std::string page = output_of({"manual", command});
+        const std::size_t begin = page.find(".SH DESCRIPTION\n");
+        ASSERT_NE(begin, std::string::npos) << command;
+        EXPECT_GT(page.find(".SH ", begin + 1) - begin, 500U) << command;
+        EXPECT_THAT(page, Not(HasSubstr("](")));
+    }
+}
+
 TEST(ManualPage, OfNoCommandIsAUsageError) {
     std::ostringstream out;
     std::ostringstream err;
