@@ -223,10 +223,11 @@ Figure figure_of(const ComparisonFigure& request) {
         panels.add_statistics_to(figure);
     }
     const auto columns = static_cast<std::size_t>(figure.columns);
-    const auto rows = static_cast<double>((figure.panels.size() + columns - 1) / columns);
+    const std::size_t rows = (figure.panels.size() + columns - 1) / columns;
     figure.key = key_of(comparison);
     figure.width_px = request.paper.width_px();
-    figure.height_px = request.paper.scaled_pixels(comparison_heading_px + rows * panel_row_px);
+    figure.height_px =
+        request.paper.scaled_pixels(comparison_heading_px + static_cast<double>(rows) * panel_row_px);
     return figure;
 }
 

@@ -193,7 +193,7 @@ private:
 
     // Each value at both edges of its box, and nothing between the boxes.
     std::vector<double> along_y(const std::vector<double>& values) const {
-        const std::vector<double> y = shown(values);
+        std::vector<double> y = shown(values);
         if (domain_.is_course) { return y; }
         std::vector<double> boxes;
         for (const double value : y) { boxes.insert(boxes.end(), {value, value, std::nan("")}); }
