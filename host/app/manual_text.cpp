@@ -228,7 +228,8 @@ must say whether their densities are one-sided or two-sided. A population (`gyro
 host/formats/population_json.hpp) is what `gyrolog table` measured of many units.
 
 The virtual board runs on the same models: what `gyrolog capture --device sim:model=FILE,seed=7`
-captures is, count by count, what `gyrolog simulate FILE --seed 7` writes.)"},
+captures is, count by count, what `gyrolog simulate FILE --seed 7` writes, unless a narrow `--dlpf` or
+`dlpf=` is asked for.)"},
     ManualText{
         "export",
         R"(`export` tells the format by the ending: `.csv` (`.gz`, `.xz`), `.mat` (MATLAB), `.yaml` (Kalibr),
