@@ -9,6 +9,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -49,6 +50,10 @@ def run(*command, expect=0, **more):
 def rows_of(table):
     with open(table, newline="") as file:
         return list(csv.DictReader(file))
+
+
+def timeless(rows):
+    return [{name: value for name, value in row.items() if "seconds" not in name} for row in rows]
 
 
 def main():
@@ -114,6 +119,29 @@ def main():
         assert lost["file"] == str(recordings[4]), lost
         run(source / "tools/fleet/slurm_submit", slurm, listed, 2, "analyze", env=environment)
         assert len(rows_of(slurm / "table.csv")) == 4 * 3 + 1
+
+        # Tasks that something else starts: it says which one each is. The answers are those of the array.
+        other = folder / "other"
+        printed = run(source / "tools/fleet/prepare", other, listed, 2, "analyze", env=environment).stdout
+        assert printed == "3\n", printed
+        for task in (3, 1, 2, 2):
+            run(source / "tools/fleet/slurm_task", other, 2, task, env=environment)
+        run(source / "tools/fleet/slurm_collect", other, env=environment)
+        assert timeless(rows_of(other / "table.csv")) == timeless(rows_of(slurm / "table.csv"))
+        run(source / "tools/fleet/slurm_task", other, 2, expect=2, env=environment)
+
+        # The command in each container or slot.
+        job = (source / "tools/fleet/kubernetes_job.yaml").read_text()
+        command = re.search(r'command: \[sh, -c, "exec (.*)"\]', job).group(1)
+        command = command.replace("/fleet/", f"{source}/tools/fleet/").replace("/shared/out 20", f"'{other}' 2")
+        (other / "lines/2.jsonl").unlink()
+        run("sh", "-c", f"exec {command}", env={**environment, "JOB_COMPLETION_INDEX": "1"})
+        assert (other / "lines/2.jsonl").exists()
+
+        cost = run(source / "tools/fleet/cost", recordings[0], "analyze", env=environment).stdout
+        assert re.fullmatch(r"analyze +[0-9.]+ s +[0-9.]+ s CPU +[0-9]+ MB\n", cost), cost
+        run(source / "tools/fleet/cost", recordings[0], "compare", "{}", model, "--simulations", "12", env=environment)
+        run(source / "tools/fleet/cost", "absent.csv", "analyze", expect=1, env=environment)
     print("tools/fleet: as it says")
 
 
