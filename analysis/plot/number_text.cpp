@@ -66,7 +66,7 @@ std::string rounded_number(double value, int significant_digits) {
 }
 
 std::string short_number(double value, int significant_digits) {
-    const std::string text = rounded_number(value, significant_digits);
+    std::string text = rounded_number(value, significant_digits);
     const std::size_t end = std::min(text.find("×"), text.size());
     const std::string number = text.substr(0, end);
     if (number.find('.') == std::string::npos) { return text; }
