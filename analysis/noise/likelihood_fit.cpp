@@ -275,7 +275,7 @@ std::optional<NoiseFit> fit_likelihood(const Column& column, std::span<const Seg
                                        const LikelihoodFitOptions& options) {
     const ContrastPyramid pyramid = contrast_pyramid(column, segments, rate_hz);
     if (pyramid.top.size() < 32 || !varies(pyramid)) { return std::nullopt; }
-    const SearchResult found = search_terms(pyramid, start, options.lines, options.bandwidth_hz);
+    const SearchResult found = search_terms(pyramid, start, options);
     const Fitted& fitted = found.fitted;
     if (!std::isfinite(fitted.value())) { return std::nullopt; }
     NoiseFit result;

@@ -34,6 +34,12 @@ struct LikelihoodFitOptions {
     // is not part of N. 0: not known or none.
     double step = 0.0;
     double bandwidth_hz = 0.0;  // -3 dB of the sensor's low-pass filter; 0: not known or none
+    // Of the rate: a filter that is at least as wide leaves the noise as it is. Chosen: what it would take
+    // off the upper end folds back from beyond half the rate.
+    double filter_acts_below = 0.4;
+    // Of the bandwidth: so far a filter is flat. A Butterworth filter of the first order takes off 4 % of the
+    // power there, 1/(1 + 0.2^2), one of the second 0.16 %.
+    double filter_flat_up_to = 0.2;
 };
 
 // `start`: a fit to the record's Allan curve. Nothing for fewer than 32 samples, or samples that do not vary:

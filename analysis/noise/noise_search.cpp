@@ -200,16 +200,18 @@ RampFit with_ramp(const ContrastPyramid& pyramid, const Fitted& base) {
     return {with, ramp, 2.0 * (with.value() - std::log(ramp.sd_per_s) - base.value())};
 }
 
-}  // namespace
-
-double passband_hz(const ContrastPyramid& pyramid, double bandwidth_hz) {
-    constexpr double acts_below = 0.4;  // of the rate
-    constexpr double flat_up_to = 0.2;  // of the bandwidth
-    if (bandwidth_hz <= 0.0 || bandwidth_hz >= acts_below * pyramid.rate_hz) {
+// The frequency up to which the sensor's filter leaves the noise as it is, for this record; infinity where
+// the filter, or none, does not act.
+double passband_hz(const ContrastPyramid& pyramid, const LikelihoodFitOptions& options) {
+    const double bandwidth_hz = options.bandwidth_hz;
+    if (bandwidth_hz <= 0.0 || bandwidth_hz >= options.filter_acts_below * pyramid.rate_hz) {
         return std::numeric_limits<double>::infinity();
     }
-    return std::clamp(least_periods / pyramid.length_s(), flat_up_to * bandwidth_hz, bandwidth_hz);
+    return std::clamp(least_periods / pyramid.length_s(), options.filter_flat_up_to * bandwidth_hz,
+                      bandwidth_hz);
 }
+
+}  // namespace
 
 NoiseLikelihood likelihood_of(const ContrastPyramid& pyramid, const SpectrumModel& model) {
     NoiseLikelihood likelihood(pyramid, model.ramp);
@@ -260,11 +262,11 @@ LikelihoodMaximum with_needed_terms(const ContrastPyramid& pyramid, const Fitted
 }
 
 SearchResult search_terms(const ContrastPyramid& pyramid, const NoiseFit& start,
-                          const std::vector<FittedSinusoid>& lines, double bandwidth_hz) {
+                          const LikelihoodFitOptions& options) {
     SpectrumModel model;
-    model.lines = lines;
-    model.upper_hz = passband_hz(pyramid, bandwidth_hz);
-    if (std::isfinite(model.upper_hz)) { model.bandwidth_hz = bandwidth_hz; }
+    model.lines = options.lines;
+    model.upper_hz = passband_hz(pyramid, options);
+    if (std::isfinite(model.upper_hz)) { model.bandwidth_hz = options.bandwidth_hz; }
     SearchResult result{fit(pyramid, model, first_guess(pyramid, model, start)), {}};
     if (!std::isfinite(result.fitted.value())) { return result; }
     result.fitted = amended(pyramid, with_angle_noise(pyramid, result.fitted));

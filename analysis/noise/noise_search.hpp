@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "analysis/noise/likelihood_fit.hpp"
 #include "analysis/noise/likelihood_maximum.hpp"
 #include "analysis/noise/noise_fit.hpp"
 
@@ -53,14 +54,10 @@ struct SearchResult {
     RampFit ramp;   // with the ramp in any case
 };
 
-// The frequency up to which a filter of this bandwidth leaves the noise as it is, for this record; infinity
-// where the filter, or none (0), does not act below half the rate.
-double passband_hz(const ContrastPyramid& pyramid, double bandwidth_hz);
-
 // `start`: squares to begin with come from its coefficients. The value of `fitted` is -inf where no
 // likelihood could be worked out.
 SearchResult search_terms(const ContrastPyramid& pyramid, const NoiseFit& start,
-                          const std::vector<FittedSinusoid>& lines, double bandwidth_hz);
+                          const LikelihoodFitOptions& options);
 
 // Whether a ramp is called for.
 bool is_significant(const RampFit& ramp);

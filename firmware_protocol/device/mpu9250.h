@@ -45,6 +45,7 @@ enum {
     glp_mpu_gyro_fchoice_b_mask = 0x03,     // GYRO_CONFIG: 0 puts the filter in
     glp_mpu_accel_fs_sel_shift = 3,         // ACCEL_CONFIG: 0..3 = 2, 4, 8, 16 g
     glp_mpu_accel_fchoice_b = 0x08,         // ACCEL_CONFIG2: 1 bypasses the accelerometer's filter: 4 kHz
+    glp_mpu_accel_dlpf_mask = 0x07,         // ACCEL_CONFIG2: A_DLPF_CFG
     glp_mpu_fifo_en_temp = 0x80,            // FIFO_EN
     glp_mpu_fifo_en_gyro = 0x70,            // FIFO_EN: x, y and z
     glp_mpu_fifo_en_accel = 0x08,           // FIFO_EN
@@ -113,6 +114,13 @@ bool glp_mpu_plan_for(const glp_mpu_settings* settings, glp_mpu_plan* plan);
 /// Fills the fields of CONFIG that follow from the settings: scales, rate, filter, decimation, registers not
 /// included.
 void glp_mpu_describe(const glp_mpu_settings* settings, const glp_mpu_plan* plan, glp_config* config);
+
+/// -3 dB of the accelerometer's filter in Hz, as ACCEL_CONFIG2 sets it; 0 of a filter that is bypassed.
+static inline uint16_t glp_mpu_accel_bandwidth_hz(uint8_t accel_config2) {
+    static const uint16_t by_setting_hz[] = {460, 184, 92, 41, 20, 10, 5, 460};  // table of register 29
+    if ((accel_config2 & glp_mpu_accel_fchoice_b) != 0) { return 0; }
+    return by_setting_hz[accel_config2 & glp_mpu_accel_dlpf_mask];
+}
 
 /// What HELLO calls a sensor; NULL for one whose registers are not known to be these. At most
 /// GLP_SENSOR_BYTES characters.

@@ -1,13 +1,13 @@
 #include "host/decode/recording_builder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
 #include <utility>
 
 #include "analysis/recording/standard_gravity.hpp"
+#include "firmware_protocol/device/mpu9250.h"
 
 namespace gyrolog {
 namespace {
@@ -40,13 +40,7 @@ struct Quantity {
     double bandwidth_hz;
 };
 
-// -3 dB of the accelerometer's filter, by ACCEL_CONFIG2 (RM-MPU-9250A-00 rev. 1.4, register 29); 0: bypassed.
-double accelerometer_bandwidth_hz(const glp_config& config) {
-    constexpr std::array by_setting_hz{460.0, 184.0, 92.0, 41.0, 20.0, 10.0, 5.0, 460.0};
-    constexpr unsigned bypass = 0x08;
-    const unsigned accel_config2 = config.registers[4];
-    return (accel_config2 & bypass) != 0 ? 0.0 : by_setting_hz[accel_config2 & 7U];
-}
+constexpr std::size_t accel_config2 = 4;  // among glp_config's registers
 
 std::vector<Quantity> quantities(std::uint8_t layout, const glp_config& config) {
     const double rad_s = config.gyro_ndps_per_lsb * 1e-9 * std::numbers::pi / 180.0;
@@ -58,8 +52,9 @@ std::vector<Quantity> quantities(std::uint8_t layout, const glp_config& config) 
         }
     }
     if ((layout & glp_layout_accel) != 0) {
+        const double accelerometer_hz = glp_mpu_accel_bandwidth_hz(config.registers[accel_config2]);
         for (const char* name : {"ax", "ay", "az"}) {
-            all.push_back({name, "m/s^2", m_s2, 0.0, accelerometer_bandwidth_hz(config)});
+            all.push_back({name, "m/s^2", m_s2, 0.0, accelerometer_hz});
         }
     }
     all.push_back({"temp", "degC", config.temp_nC_per_lsb * 1e-9, config.temp_offset_mC * 1e-3, 0.0});

@@ -53,10 +53,8 @@ double inside_rate_hz(std::uint8_t gyro_config, std::uint8_t config) {
     return dlpf_cfg == 0 || dlpf_cfg == 7 ? 8000.0 : 1000.0;
 }
 
-// -3 dB, by DLPF_CFG and by A_DLPF_CFG (RM-MPU-9250A-00 rev. 1.4, tables of registers 26 and 29).
+// -3 dB, by DLPF_CFG (RM-MPU-9250A-00 rev. 1.4, table of register 26).
 constexpr std::array gyro_bandwidths_hz{250.0, 184.0, 92.0, 41.0, 20.0, 10.0, 5.0, 3600.0};
-constexpr std::array accel_bandwidths_hz{460.0, 184.0, 92.0, 41.0, 20.0, 10.0, 5.0, 460.0};
-constexpr unsigned accel_dlpf_mask = 0x07;
 
 // The model as it shows behind a filter of this bandwidth, at this output rate.
 SensorModel filtered(SensorModel model, double bandwidth_hz, double rate_hz) {
@@ -124,10 +122,7 @@ SimulatedMpu9250::Bandwidths SimulatedMpu9250::bandwidths() const {
     if ((registers_[glp_mpu_gyro_config] & glp_mpu_gyro_fchoice_b_mask) == 0) {
         found.gyro_hz = acting(gyro_bandwidths_hz[registers_[glp_mpu_config] & glp_mpu_config_dlpf_mask]);
     }
-    const std::uint8_t accel_config = registers_[glp_mpu_accel_config2];
-    if ((accel_config & glp_mpu_accel_fchoice_b) == 0) {
-        found.accel_hz = acting(accel_bandwidths_hz[accel_config & accel_dlpf_mask]);
-    }
+    found.accel_hz = acting(glp_mpu_accel_bandwidth_hz(registers_[glp_mpu_accel_config2]));
     return found;
 }
 

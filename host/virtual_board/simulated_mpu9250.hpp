@@ -44,7 +44,7 @@ class SimulatedMpu9250 {
 public:
     static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
     static constexpr double clock_error_max = 0.01;  // PS-MPU-9250A-01, table 1: total rate variation
-    // Of the output rate: what is wider than this the output shows nothing of.
+    // Of the output rate: a filter that is wider than this leaves the output as it is.
     static constexpr double widest_filter = 0.4;
 
     // `clock_error`: how much faster than nominal the chip's own clock runs, relative, within

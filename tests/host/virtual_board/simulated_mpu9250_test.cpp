@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/noise/likelihood_fit.hpp"
 #include "firmware_protocol/device/mpu9250.h"
 
 namespace gyrolog {
@@ -62,6 +63,11 @@ TEST_F(Mpu9250, RatesFollowTheFilterAndTheDivider) {
     EXPECT_EQ(chip.nominal_rate_hz(), 8000.0);
     set(glp_mpu_gyro_config, glp_mpu_gyro_fchoice_b_bypass);
     EXPECT_EQ(chip.nominal_rate_hz(), 32000.0);
+}
+
+// Where one has a filter and the other none, the fit is biased.
+TEST(Mpu9250Filter, ActsWhereTheNoiseFitExpectsIt) {
+    EXPECT_EQ(SimulatedMpu9250::widest_filter, LikelihoodFitOptions{}.filter_acts_below);
 }
 
 TEST_F(Mpu9250, IsSilentUntilSomethingWantsItsSamples) {
