@@ -5,12 +5,17 @@
 
 #include "analysis/numerics/symmetric_eigen.hpp"
 
+namespace gyrolog::resolution {
+
+constexpr int doublings_most = 10;
+// Of a log-likelihood, on both sides together: well above rounding, and still a parabola.
+constexpr double fall_enough = 0.5;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 
 namespace {
-
-constexpr int doublings_most = 10;
-constexpr double fall_enough = 0.5;  // on both sides together
 
 class Differences {
 public:
@@ -18,7 +23,7 @@ public:
                 const std::vector<double>& at, double value)
         : function_(function), at_(at), value_(value) {}
 
-    // The second derivative along one parameter, less its sign, and the step over which it was taken.
+    // The negative second derivative along one parameter, and the step over which it was taken.
     struct Second {
         double curvature = 0.0;
         double step = 0.0;
@@ -26,14 +31,14 @@ public:
 
     Second along(std::size_t i, double step_least) const {
         Second found{0.0, step_least};
-        for (int doubling = 0; doubling < doublings_most; ++doubling) {
+        for (int doubling = 0; doubling < resolution::doublings_most; ++doubling) {
             const double step = std::ldexp(step_least, doubling);
             const double up = value_ - moved(i, step, i, 0.0);
             const double down = value_ - moved(i, -step, i, 0.0);
             const double fall = std::isfinite(up + down) ? up + down : 2.0 * std::min(up, down);
             if (!std::isfinite(fall)) { break; }
             found = {fall / (step * step), step};
-            if (fall > fall_enough) { break; }
+            if (fall > resolution::fall_enough) { break; }
         }
         return found;
     }
@@ -57,8 +62,8 @@ private:
     double value_;
 };
 
-// With no direction known worse than `sd_most`.
-PeakCurvature at_least_known(const Matrix& information, double sd_most) {
+// Raises the information in the directions that are known worse than `sd_most`.
+PeakCurvature with_least_information(const Matrix& information, double sd_most) {
     const std::size_t count = information.rows();
     const SymmetricEigen eigen = symmetric_eigen(information);
     PeakCurvature curvature{Matrix(count, count), std::vector<double>(count, 0.0)};
@@ -94,7 +99,7 @@ PeakCurvature peak_curvature(const std::function<double(const std::vector<double
             information(i, j) = information(j, i) = differences.mixed(i, steps[i], j, steps[j]);
         }
     }
-    return at_least_known(information, sd_most);
+    return with_least_information(information, sd_most);
 }
 
 }  // namespace gyrolog

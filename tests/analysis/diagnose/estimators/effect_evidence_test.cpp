@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/noise_spectrum.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
@@ -252,6 +254,34 @@ TEST(ForwardSelection, TakesACoarseStepForNothingElse) {
     EXPECT_EQ(found->causes.front().finding.effect, "quantization");
     EXPECT_EQ(found->causes.front().rivals.size(), 1U) << "itself";
     EXPECT_TRUE(found->noise_refits.empty());
+}
+
+// Size and correlation time of slow Gauss-Markov noise give way to each other: with the other one held, each
+// would seem to be known better than estimates scatter.
+TEST(EffectEvidence, OfParametersThatGiveWayToEachOtherStatesTheirScatter) {
+    SensorModel model = calibrated_sensor();
+    for (AxisModel& axis : model.axes) { axis.noise = {.N_rad_per_sqrt_s = axis.noise.N_rad_per_sqrt_s}; }
+    model.sd_rel = {{"N", 0.005}};
+    const std::map<std::string, double> put_in = {{"sigma_dps", 0.004}, {"tau_s", 60.0}};
+    const SensorModel sensor = with_effect(model, "gauss_markov", put_in, {"x"});
+    constexpr int seeds = 60;
+    std::map<std::string, double> chi2;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        const auto recording = recorded(sensor, 180'000, 500 + seed);
+        const auto finding = found(make_noise_spectrum_estimator, "gauss_markov", recording, model);
+        ASSERT_TRUE(finding) << seed;
+        const std::map<std::string, double>& params = finding->entries.front().params;
+        for (const auto& [name, value] : put_in) {
+            const double log_sd = finding->sd.front().at(name) / params.at(name);
+            const double z = std::log(params.at(name) / value) / log_sd;
+            chi2[name] += z * z / seeds;
+        }
+    }
+    // Of 60 squares the mean has a standard deviation of 0.18.
+    for (const auto& [name, mean] : chi2) {
+        EXPECT_LT(mean, 1.0 + 4.0 * 0.18) << name;
+        EXPECT_GT(mean, 1.0 - 4.0 * 0.18) << name;
+    }
 }
 
 TEST(OccamCost, RisesSmoothlyBeyondWhatIsPlausible) {
