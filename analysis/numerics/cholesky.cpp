@@ -33,6 +33,13 @@ Matrix CholeskyFactor::solve(Matrix right) const {
     return right;
 }
 
+std::vector<double> CholeskyFactor::solve_transposed(std::span<const double> right) const {
+    std::vector<double> solved(right.begin(), right.end());
+    auto view = view_of(std::span<double>(solved));
+    factor_->of.matrixU().solveInPlace(view);
+    return solved;
+}
+
 Matrix CholeskyFactor::inverse() const {
     return solve(Matrix::identity(static_cast<std::size_t>(factor_->of.rows())));
 }

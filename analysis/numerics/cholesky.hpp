@@ -23,6 +23,8 @@ public:
     bool is_positive_definite() const;
     std::vector<double> solve(std::span<const double> right) const;
     Matrix solve(Matrix right) const;
+    // The solution x of L' x = right. Of independent standard normal numbers it has the covariance C^-1.
+    std::vector<double> solve_transposed(std::span<const double> right) const;
     Matrix inverse() const;
     double log_determinant() const;
 

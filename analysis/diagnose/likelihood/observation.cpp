@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/diagnose/likelihood/lag_course.hpp"
+#include "analysis/diagnose/likelihood/stand_ins.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -16,6 +17,8 @@ namespace gyrolog::resolution {
 // How many samples on either side say what the level in a hole is: so many that what they have in common with
 // the stand-ins is slower than the white noise reaches.
 constexpr std::size_t level_samples = 256;
+// How far away a sample still tells what stands beside it.
+constexpr std::size_t stand_in_lags = 64;
 
 }  // namespace gyrolog::resolution
 
@@ -90,7 +93,7 @@ double mean_of_present(const std::vector<float>& values, const std::vector<bool>
 }
 
 // Between the levels on either side of every hole a straight line, with white noise on it.
-void fill_holes(std::vector<float>& values, const std::vector<bool>& present, double sd,
+void draw_lines(std::vector<float>& values, const std::vector<bool>& present, double sd,
                 const RandomStream& noise) {
     const std::size_t length = values.size();
     for (std::size_t begin = 0; begin < length;) {
@@ -113,6 +116,18 @@ void fill_holes(std::vector<float>& values, const std::vector<bool>& present, do
         }
         begin = end;
     }
+}
+
+// What stands in a hole is like the samples beside it, as far as the model's noise is alike there.
+void fill_holes(const Prediction& prediction, std::size_t axis, std::vector<float>& values,
+                const std::vector<bool>& present, std::uint64_t seed) {
+    std::vector<double> density;
+    for (const SpectralParts& parts : prediction.parts(axis)) { density.push_back(parts.sum()); }
+    const RandomStream noise = derived_stream(seed, RandomPurpose::stand_ins, axis);
+    draw_lines(values, present, std::sqrt(density.back() * prediction.rate_hz()), noise);
+    const std::vector<double> inverse = inverse_covariance(prediction.bins(), density, prediction.rate_hz(),
+                                                           prediction.length(), resolution::stand_in_lags);
+    draw_stand_ins(values, present, inverse, noise);
 }
 
 // Returns the mean.
@@ -289,17 +304,15 @@ void Observation::observe(std::size_t axis, CosineTransform& transform) {
     residual.assign(length, 0.0F);
     take_expected_off(axis, residual);
     seen.mean_rad_s = take_mean_off(residual, present_);
-    const double white = prediction.parts(axis).back().sum();
+    const bool whole = std::ranges::find(present_, false) == present_.end();
     const auto fill = [&] {
-        fill_holes(residual, present_, std::sqrt(white * rate_hz),
-                   derived_stream(seed_, RandomPurpose::stand_ins, axis));
+        if (!whole) { fill_holes(prediction, axis, residual, present_, seed_); }
     };
     fill();
     fit_model(axis, transform);
     const UncertainMean& uncertain = prediction.uncertain(axis);
     if (!uncertain.empty()) {
         // What stands in for a sample follows the motion as the samples do.
-        const bool whole = std::ranges::find(present_, false) == present_.end();
         for (int round = 0; round < 2 && !whole; ++round) {
             const std::vector<float> given_way = in_time(uncertain, seen.uncertain_fit, transform, length);
             for (std::size_t slot = 0; slot < length; ++slot) { residual[slot] -= given_way[slot]; }
