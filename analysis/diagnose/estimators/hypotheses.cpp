@@ -29,4 +29,13 @@ Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
     return hypotheses;
 }
 
+std::optional<Finding> examine_for(std::string_view effect,
+                                   const std::shared_ptr<const Prediction>& prediction,
+                                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed) {
+    const EffectDefinition& definition = *find_effect(effect);
+    if (!untestable_in(definition, *prediction).empty()) { return std::nullopt; }
+    const MadeEstimator made = make_estimator(definition, prediction);
+    return made.estimator ? made.estimator->find(Observation(prediction, recording, seed)) : std::nullopt;
+}
+
 }  // namespace gyrolog

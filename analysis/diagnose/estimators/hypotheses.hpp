@@ -25,4 +25,10 @@ struct Hypotheses {
 Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
                    const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads);
 
+// The function asks the estimator of one effect only. No value where the data have no trace of the effect, or
+// cannot show it.
+std::optional<Finding> examine_for(std::string_view effect,
+                                   const std::shared_ptr<const Prediction>& prediction,
+                                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed);
+
 }  // namespace gyrolog

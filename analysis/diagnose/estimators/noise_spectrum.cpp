@@ -4,10 +4,10 @@
 #include <cmath>
 #include <functional>
 
-#include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/gain_band.hpp"
 #include "analysis/diagnose/estimators/resolutions.hpp"
+#include "analysis/diagnose/estimators/spectral_range.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
 #include "analysis/diagnose/likelihood/whittle.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
@@ -17,8 +17,6 @@
 namespace gyrolog::resolution {
 
 constexpr int amplitudes_tried = 9;
-// How far below the plausible range the size of an effect is still fitted.
-constexpr double size_below_plausible = 10.0;
 
 }  // namespace gyrolog::resolution
 
@@ -70,10 +68,14 @@ private:
         }
         for (ParamValues& start : starts) {
             const bool is_in_range = std::ranges::all_of(signature_.spectral, [&](std::string_view name) {
-                return start.at(std::string(name)) <= most_of(param_of(effect_, name));
+                return start.at(std::string(name)) <= range_of(name).most;
             });
             if (is_in_range) { starts_.push_back(std::move(start)); }
         }
+    }
+
+    SpectralRange range_of(std::string_view name) const {
+        return spectral_range(signature_, param_of(effect_, name), prediction_->rate_hz());
     }
 
     EffectModel entry_of(const ParamValues& params) const {
@@ -146,12 +148,9 @@ private:
         };
         const auto objective = [&](const std::vector<double>& logs) {
             for (std::size_t i = 0; i < logs.size(); ++i) {
-                const EffectParam& param = param_of(effect_, signature_.spectral[i]);
+                const SpectralRange range = range_of(signature_.spectral[i]);
                 const double value = std::exp(logs[i]);
-                if (value < least_of(param) || value > most_of(param) ||
-                    (param.most && value > *param.most)) {
-                    return minus_infinity;
-                }
+                if (value < range.least || value > range.most) { return minus_infinity; }
             }
             return gain(observation, axes, at(logs));
         };
@@ -171,25 +170,6 @@ private:
         for (const std::size_t axis : axes) { fit.gain_nats.push_back(gain(observation, axis, best)); }
         add_uncertainty(objective, maximum, fit);
         return fit;
-    }
-
-    // A parameter of the shape is within its range, or little beyond; of an effect that has it, a size may be
-    // far smaller than one that people meet.
-    double least_of(const EffectParam& param) const {
-        const bool is_of_shape =
-            std::ranges::any_of(signature_.trials, [&](std::span<const TrialValues> group) {
-                return std::ranges::count(group, param.name, &TrialValues::param) > 0;
-            });
-        const double smaller = is_of_shape ? 1.0 : resolution::size_below_plausible;
-        return param.plausible_from / (smaller * decisions.beyond_plausible);
-    }
-
-    // A filter whose corner lies beyond half of the rate is not seen as one: what folds back makes the noise
-    // stronger, and hardly less white.
-    double most_of(const EffectParam& param) const {
-        const double most = param.plausible_to * decisions.beyond_plausible;
-        const bool is_corner = signature_.folds && param.name.ends_with("_hz");
-        return is_corner ? std::min(most, 0.5 * prediction_->rate_hz()) : most;
     }
 
     // From the curvature of the gain about its maximum.

@@ -290,18 +290,22 @@ double Prediction::read_white_course(std::size_t axis) {
 void Prediction::expect_spectrum() {
     for (const SpectralBin& bin : bins_) { f_hz_.push_back(bin.f_hz); }
     for (const std::size_t axis : axes_) {
-        for (const double f_hz : f_hz_) {
-            parts_[axis].push_back(own_parts(model_, axis, moves(), f_hz, rate_hz_));
-        }
-        for (const EffectModel& entry : model_.effects) {
-            const EffectSignature* signature = find_effect(entry.effect)->signature;
-            if (signature != nullptr && signature->spectrum != nullptr && acts_on(entry, axis)) {
-                signature->spectrum(f_hz_, rate_hz_, EffectValues(entry, axis), parts_[axis]);
-            }
-        }
-        const double white = read_white_course(axis);
-        for (SpectralParts& part : parts_[axis]) { part.white *= white; }
+        white_course_mean_[axis] = read_white_course(axis);
+        parts_[axis] = parts_of(model_, axis);
     }
+}
+
+std::vector<SpectralParts> Prediction::parts_of(const SensorModel& model, std::size_t axis) const {
+    std::vector<SpectralParts> parts;
+    for (const double f_hz : f_hz_) { parts.push_back(own_parts(model, axis, moves(), f_hz, rate_hz_)); }
+    for (const EffectModel& entry : model.effects) {
+        const EffectSignature* signature = find_effect(entry.effect)->signature;
+        if (signature != nullptr && signature->spectrum != nullptr && acts_on(entry, axis)) {
+            signature->spectrum(f_hz_, rate_hz_, EffectValues(entry, axis), parts);
+        }
+    }
+    for (SpectralParts& part : parts) { part.white *= white_course_mean_[axis]; }
+    return parts;
 }
 
 double Prediction::reference_noise_rad_s(std::size_t axis) const {

@@ -77,6 +77,8 @@ public:
     const std::vector<double>& bin_frequencies_hz() const { return f_hz_; }
     // The two-sided densities at the bins' middles under the model, in (rad/s)^2/Hz.
     const std::vector<SpectralParts>& parts(std::size_t axis) const { return parts_[axis]; }
+    // The same of a model that differs from this one only in parameters of noise spectra.
+    std::vector<SpectralParts> parts_of(const SensorModel& model, std::size_t axis) const;
 
     // The variance of the white noise by slot, as a multiple of its mean over the record; empty where the
     // model has it constant.
@@ -125,6 +127,7 @@ private:
     std::array<std::vector<float>, 3> response_change_rad_s2_;
     std::array<UncertainMean, 3> uncertain_;
     std::array<std::vector<float>, 3> white_course_;
+    std::array<double, 3> white_course_mean_{};  // what parts() have of it
     SpectralBins bins_;
     std::vector<double> f_hz_;
     std::array<std::vector<SpectralParts>, 3> parts_;

@@ -9,6 +9,7 @@
 
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/selection/finding_axes.hpp"
+#include "analysis/diagnose/selection/spectra_refit.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog::resolution {
@@ -60,6 +61,14 @@ SensorModel CauseSet::model_with_all_but(std::size_t left_out) const {
 Hypotheses CauseSet::without(std::size_t left_out) const {
     return examine(first_.prediction->with(model_with_all_but(left_out)), recording_, options_.seed,
                    options_.threads);
+}
+
+std::optional<Finding> CauseSet::found_again(std::size_t cause) const {
+    std::optional<Finding> found =
+        examine_for(causes[cause].finding.effect, first_.prediction->with(model_with_all_but(cause)),
+                    recording_, options_.seed);
+    if (found) { found->evidence_nats = evidence_less_bias_nats(*found); }
+    return found;
 }
 
 Hypotheses CauseSet::with_causes() const { return without(causes.size()); }
@@ -287,6 +296,15 @@ bool CauseSet::settle_responses() {
     const JointRefit refit = fitted_together(places, nullptr);
     for (std::size_t i = 0; i < places.size(); ++i) { causes[places[i]].finding = refit.findings[i]; }
     return refit.moved;
+}
+
+bool CauseSet::settle_spectra() {
+    std::vector<Finding> findings;
+    for (const FoundCause& cause : causes) { findings.push_back(cause.finding); }
+    SpectraRefit refit = refit_spectra(observed(), without_causes.effects.size(), std::move(findings));
+    if (!(refit.gain_nats > 0.0)) { return false; }
+    for (std::size_t i = 0; i < causes.size(); ++i) { causes[i].finding = std::move(refit.findings[i]); }
+    return true;
 }
 
 bool CauseSet::is_same_line(const Finding& a, const Finding& b) const {

@@ -49,6 +49,8 @@ public:
     // What the causes leave, or all but one of them.
     Hypotheses with_causes() const;
     Hypotheses without(std::size_t left_out) const;
+    // What the effect of one of them finds there, less bias.
+    std::optional<Finding> found_again(std::size_t cause) const;
     Observation observed() const;
     SensorModel model_with_all_but(std::size_t left_out) const;
 
@@ -110,6 +112,8 @@ public:
     // are without it. Where it changes much of the motion they do not: all are fitted together. Whether
     // parameters moved.
     bool settle_responses();
+    // The noise spectra among the causes are fitted together. Whether parameters moved.
+    bool settle_spectra();
 
 private:
     double evidence_nats_of(const std::vector<std::size_t>& places) const;

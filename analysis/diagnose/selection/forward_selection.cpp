@@ -24,8 +24,6 @@ namespace gyrolog {
 
 namespace {
 
-enum class Rivals { may_replace, stay_out };
-
 // What is seen beside causes.
 struct Beside {
     double log_likelihood_nats = 0.0;
@@ -76,8 +74,11 @@ public:
         forget_null_bias();
         static_cast<void>(set_.settle_responses());
         // Those that are refitted first are so beside the others as these were.
-        if (!refit(Rivals::stay_out) || !refit(Rivals::stay_out)) { return std::nullopt; }
+        static_cast<void>(set_.settle_spectra());
+        if (!refit_own() || !refit_own()) { return std::nullopt; }
         static_cast<void>(set_.settle_responses());
+        static_cast<void>(set_.settle_spectra());
+        if (!weigh()) { return std::nullopt; }
         return result_of(set_.with_causes());
     }
 
@@ -296,6 +297,7 @@ private:
                 if (!is_better) { return std::nullopt; }
                 if (!*is_better) { continue; }
                 any = true;
+                if (!are_weighed_ && !weigh()) { return std::nullopt; }
                 break;
             }
         }
@@ -309,9 +311,11 @@ private:
         if (!set_.give_to_rival(place, rival)) { return false; }
         const double before_nats = worth_nats_of(before);
         // What was fitted beside the cause is fitted beside the rival before that is judged.
-        if (!refit(Rivals::stay_out) || !refit(Rivals::stay_out)) { return std::nullopt; }
+        static_cast<void>(set_.settle_spectra());
+        if (!refit_own() || !refit_own()) { return std::nullopt; }
+        static_cast<void>(set_.settle_spectra());
         const double more_nats = decisions.strong_nats;
-        const bool were_weighed = std::exchange(are_weighed_, true);
+        const bool were_weighed = std::exchange(are_weighed_, false);
         if (!add_next_if_worth(before_nats + more_nats)) { return std::nullopt; }
         const double least_nats = before_nats + least_gain_nats(before);
         const bool is_better =
@@ -384,30 +388,19 @@ private:
     }
 
     // Every cause with the others in the model; one that another effect does better by now gives way to it.
-    bool refit(Rivals rivals = Rivals::may_replace) {
+    bool refit() {
         for (std::size_t i = 0; i < set_.causes.size();) {
             const Hypotheses without = set_.without(i);
             const std::vector<Finding> findings = set_.findings_of(without.findings);
             const auto same = std::ranges::find(findings, set_.causes[i].finding.effect, &Finding::effect);
-            const double least_nats = &set_.causes[i].finding == set_.main_cause()
-                                          ? options_.evidence_min_nats
-                                          : set_.evidence_least_nats();
-            const double own_nats =
-                same == findings.end() || set_.is_told_by_twin(*same) ? 0.0 : same->evidence_nats;
+            const Finding* again = same == findings.end() ? nullptr : &*same;
             const auto rival =
                 std::ranges::find_if(findings, [&](const Finding& f) { return set_.is_new(f); });
             const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
-            if (same != findings.end() && set_.is_of_another(*same, i)) {
-                // It stays.
-            } else if (CauseSet::is_of_codes(set_.causes[i].finding)) {
-                if (same != findings.end()) { set_.causes[i].finding = *same; }
-            } else if (rivals == Rivals::may_replace && rival_nats > own_nats + decisions.strong_nats &&
-                       rival_nats >= least_nats) {
+            if (!CauseSet::is_of_codes(set_.causes[i].finding) && !stays_for_another(i, again) &&
+                rival_nats > own_nats(again) + decisions.strong_nats && rival_nats >= least_nats_of(i)) {
                 set_.causes[i].finding = *rival;
-            } else if (own_nats >= least_nats) {
-                set_.causes[i].finding = *same;
-            } else {
-                set_.causes.erase(set_.causes.begin() + static_cast<std::ptrdiff_t>(i));
+            } else if (!take_again(i, again)) {
                 continue;
             }
             set_.causes[i].rivals = set_.rivals_of(set_.causes[i].finding, findings);
@@ -415,6 +408,46 @@ private:
             if (!told()) { return false; }
         }
         return true;
+    }
+
+    // The same with no rivals: they are not asked.
+    bool refit_own() {
+        for (std::size_t i = 0; i < set_.causes.size();) {
+            const std::optional<Finding> again = set_.found_again(i);
+            if (take_again(i, again ? &*again : nullptr)) { ++i; }
+            if (!told()) { return false; }
+        }
+        return true;
+    }
+
+    double least_nats_of(std::size_t cause) const {
+        return &set_.causes[cause].finding == set_.main_cause() ? options_.evidence_min_nats
+                                                                : set_.evidence_least_nats();
+    }
+
+    double own_nats(const Finding* again) const {
+        return again == nullptr || set_.is_told_by_twin(*again) ? 0.0 : again->evidence_nats;
+    }
+
+    bool stays_for_another(std::size_t cause, const Finding* again) const {
+        return again != nullptr && set_.is_of_another(*again, cause);
+    }
+
+    // The cause as its effect is found again, null where it is not. A cause that has too little evidence by
+    // now is no more; whether it stays.
+    bool take_again(std::size_t cause, const Finding* again) {
+        if (stays_for_another(cause, again)) { return true; }
+        Finding& finding = set_.causes[cause].finding;
+        if (CauseSet::is_of_codes(finding)) {
+            if (again != nullptr) { finding = *again; }
+            return true;
+        }
+        if (own_nats(again) >= least_nats_of(cause)) {
+            finding = *again;
+            return true;
+        }
+        set_.causes.erase(set_.causes.begin() + static_cast<std::ptrdiff_t>(cause));
+        return false;
     }
 
     // Evidence and rivals of causes beside the others as they are now. The parameters, which were fitted
@@ -434,6 +467,7 @@ private:
             }
             if (!told()) { return false; }
         }
+        are_weighed_ = true;
         return true;
     }
 
@@ -445,8 +479,10 @@ private:
         const std::vector<FoundCause> before = set_.causes;
         const double likelihood_before_nats = log_likelihood_nats(set_.observed());
         const double beside_before_nats = set_.worth_beside_spectra_nats();
+        static_cast<void>(set_.settle_spectra());
         if (!refit()) { return false; }
         static_cast<void>(set_.settle_responses());
+        static_cast<void>(set_.settle_spectra());
         const double gained_nats = log_likelihood_nats(set_.observed()) - likelihood_before_nats +
                                    std::max(set_.worth_beside_spectra_nats() - beside_before_nats, 0.0);
         const double dropped =

@@ -1,0 +1,232 @@
+#include "analysis/diagnose/selection/spectra_refit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "analysis/diagnose/estimators/axis_fits.hpp"
+#include "analysis/diagnose/estimators/catalogue.hpp"
+#include "analysis/diagnose/estimators/spectral_range.hpp"
+#include "analysis/diagnose/likelihood/noise_nuisance.hpp"
+#include "analysis/numerics/cholesky.hpp"
+#include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/effect_axes.hpp"
+
+namespace gyrolog::resolution {
+
+constexpr int spectra_steps_most = 40;
+constexpr int spectra_shortenings_most = 8;
+// What a further step would gain.
+constexpr double spectra_settled_nats = 0.02;
+// Of a parameter's logarithm, over which a density is taken for straight.
+constexpr double log_step = 1e-4;
+// In one step a parameter changes by a factor of e at most.
+constexpr double log_step_most = 1.0;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
+
+struct SpectralParameter {
+    std::size_t finding = 0;
+    std::size_t entry = 0;        // of the finding
+    std::size_t model_entry = 0;  // of the model's effects
+    std::string name;
+    SpectralRange range;
+};
+
+class SpectraFit {
+public:
+    SpectraFit(const Observation& seen, std::size_t first_entry, std::vector<Finding> findings)
+        : seen_(seen), prediction_(seen.prediction()), findings_(std::move(findings)) {
+        std::size_t model_entry = first_entry;
+        for (std::size_t f = 0; f < findings_.size(); ++f) {
+            for (std::size_t e = 0; e < findings_[f].entries.size(); ++e, ++model_entry) {
+                add_parameters(f, e, model_entry);
+            }
+        }
+        for (const std::size_t axis : prediction_.axes()) { noise_[axis] = seen.axis(axis).noise; }
+    }
+
+    SpectraRefit run() {
+        if (places_.size() < 2) { return {std::move(findings_), 0.0}; }
+        std::vector<double> logs;
+        for (const SpectralParameter& place : places_) { logs.push_back(std::log(value_at(place))); }
+        double nats = fitted(logs);
+        const double nats_before = nats;
+        for (int step = 0; step < resolution::spectra_steps_most; ++step) {
+            const auto [by, promised_nats] = step_from(logs);
+            if (!(promised_nats > resolution::spectra_settled_nats)) { break; }
+            bool better = false;
+            for (int i = 0; i < resolution::spectra_shortenings_most && !better; ++i) {
+                const std::vector<double> there = moved(logs, by, std::ldexp(1.0, -i));
+                const std::array<NoiseNuisance, 3> noise = noise_;
+                const double nats_there = fitted(there);
+                better = nats_there > nats;
+                if (better) {
+                    logs = there;
+                    nats = nats_there;
+                } else {
+                    noise_ = noise;
+                }
+            }
+            if (!better) { break; }
+        }
+        for (std::size_t i = 0; i < places_.size(); ++i) { value_at(places_[i]) = std::exp(logs[i]); }
+        return {std::move(findings_), nats - nats_before};
+    }
+
+private:
+    struct Step {
+        std::vector<double> by;
+        double promised_nats = 0.0;
+    };
+
+    void add_parameters(std::size_t f, std::size_t e, std::size_t model_entry) {
+        const EffectDefinition& effect = *find_effect(findings_[f].effect);
+        if (traits_of(effect.name, prediction_).method != EvidenceMethod::spectrum) { return; }
+        if (e >= findings_[f].sd.size()) { return; }  // nothing in it was fitted
+        for (const auto& [name, sd] : findings_[f].sd[e]) {
+            if (std::ranges::count(effect.signature->spectral, name) == 0) { continue; }
+            const SpectralRange range =
+                spectral_range(*effect.signature, param_of(effect, name), prediction_.rate_hz());
+            places_.push_back({f, e, model_entry, name, range});
+        }
+    }
+
+    double& value_at(const SpectralParameter& place) {
+        return findings_[place.finding].entries[place.entry].params.at(place.name);
+    }
+
+    SensorModel model_at(const std::vector<double>& logs) const {
+        SensorModel model = prediction_.model();
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            model.effects[places_[i].model_entry].params.at(places_[i].name) = std::exp(logs[i]);
+        }
+        return model;
+    }
+
+    std::vector<double> moved(std::vector<double> logs, const std::vector<double>& by, double share) const {
+        for (std::size_t i = 0; i < logs.size(); ++i) {
+            const double step =
+                std::clamp(share * by[i], -resolution::log_step_most, resolution::log_step_most);
+            logs[i] =
+                std::clamp(logs[i] + step, std::log(places_[i].range.least), std::log(places_[i].range.most));
+        }
+        return logs;
+    }
+
+    // The nuisance is fitted as well.
+    double fitted(const std::vector<double>& logs) {
+        const SensorModel model = model_at(logs);
+        double nats = 0.0;
+        for (const std::size_t axis : prediction_.axes()) {
+            noise_[axis] = fit_nuisance(prediction_.bins(), prediction_.parts_of(model, axis),
+                                        seen_.axis(axis).power, noise_uncertainty(model, axis), noise_[axis]);
+            nats += noise_[axis].log_likelihood_nats;
+        }
+        return nats;
+    }
+
+    Step step_from(const std::vector<double>& logs) const {
+        const std::size_t count = places_.size();
+        Matrix information(count, count);
+        std::vector<double> gradient(count, 0.0);
+        for (const std::size_t axis : prediction_.axes()) { add_axis(logs, axis, information, gradient); }
+        Step step;
+        step.by = solve_symmetric(information, gradient);
+        for (std::size_t i = 0; i < count; ++i) { step.promised_nats += 0.5 * gradient[i] * step.by[i]; }
+        return step;
+    }
+
+    // Of one axis, about the parameters with the nuisance free: Schur's complement of the information about
+    // both. At the nuisance's most likely the gradient along it is nothing.
+    void add_axis(const std::vector<double>& logs, std::size_t axis, Matrix& information,
+                  std::vector<double>& gradient) const {
+        const SensorModel model = model_at(logs);
+        const std::array<double, 3> sd_rel = noise_uncertainty(model, axis);
+        const NoiseNuisance& noise = noise_[axis];
+        const std::vector<SpectralParts> parts = prediction_.parts_of(model, axis);
+        std::vector<double> density(parts.size());
+        expected_density(parts, sd_rel, noise.z, density);
+        std::vector<std::vector<double>> slopes;  // of the density's logarithm, by bin
+        std::vector<std::size_t> own;             // the parameter of each
+        std::vector<double> there(parts.size());
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            if (!acts_on(model.effects[places_[i].model_entry], axis)) { continue; }
+            std::vector<double> more = logs;
+            more[i] += resolution::log_step;
+            expected_density(prediction_.parts_of(model_at(more), axis), sd_rel, noise.z, there);
+            own.push_back(i);
+            slopes.push_back(log_slope(density, there, resolution::log_step));
+        }
+        if (own.empty()) { return; }
+        for (std::size_t j = 0; j < 3; ++j) {
+            if (!(sd_rel[j] > 0.0)) { continue; }
+            std::array<double, 3> z = noise.z;
+            z[j] += resolution::log_step;
+            expected_density(parts, sd_rel, z, there);
+            slopes.push_back(log_slope(density, there, resolution::log_step));
+        }
+        add_information(axis, density, own, slopes, information, gradient);
+    }
+
+    void add_information(std::size_t axis, const std::vector<double>& density,
+                         const std::vector<std::size_t>& own, const std::vector<std::vector<double>>& slopes,
+                         Matrix& information, std::vector<double>& gradient) const {
+        const SpectralBins& bins = prediction_.bins();
+        const std::vector<double>& power = seen_.axis(axis).power;
+        const std::size_t free = slopes.size() - own.size();
+        Matrix all(slopes.size(), slopes.size());
+        for (std::size_t bin = 0; bin < bins.size(); ++bin) {
+            const double half = 0.5 * bins[bin].count();
+            const double excess = half * (power[bin] / density[bin] - 1.0);
+            for (std::size_t a = 0; a < slopes.size(); ++a) {
+                if (a < own.size()) { gradient[own[a]] += excess * slopes[a][bin]; }
+                for (std::size_t b = 0; b <= a; ++b) { all(a, b) += half * slopes[a][bin] * slopes[b][bin]; }
+            }
+        }
+        Matrix nuisance(free, free);
+        Matrix mixed(free, own.size());
+        for (std::size_t a = 0; a < free; ++a) {
+            for (std::size_t b = 0; b < free; ++b) {
+                nuisance(a, b) = all(own.size() + std::max(a, b), own.size() + std::min(a, b));
+            }
+            nuisance(a, a) += 1.0;  // the prior
+            for (std::size_t b = 0; b < own.size(); ++b) { mixed(a, b) = all(own.size() + a, b); }
+        }
+        const Matrix taken = free == 0 ? Matrix() : solve_symmetric(nuisance, mixed);
+        for (std::size_t a = 0; a < own.size(); ++a) {
+            for (std::size_t b = 0; b < own.size(); ++b) {
+                double value = all(std::max(a, b), std::min(a, b));
+                for (std::size_t k = 0; k < free; ++k) { value -= mixed(k, a) * taken(k, b); }
+                information(own[a], own[b]) += value;
+            }
+        }
+    }
+
+    static std::vector<double> log_slope(const std::vector<double>& density, const std::vector<double>& there,
+                                         double step) {
+        std::vector<double> slope(density.size());
+        for (std::size_t i = 0; i < slope.size(); ++i) { slope[i] = std::log(there[i] / density[i]) / step; }
+        return slope;
+    }
+
+    const Observation& seen_;
+    const Prediction& prediction_;
+    std::vector<Finding> findings_;
+    std::vector<SpectralParameter> places_;
+    std::array<NoiseNuisance, 3> noise_;
+};
+
+}  // namespace
+
+SpectraRefit refit_spectra(const Observation& seen, std::size_t first_entry, std::vector<Finding> findings) {
+    return SpectraFit(seen, first_entry, std::move(findings)).run();
+}
+
+}  // namespace gyrolog

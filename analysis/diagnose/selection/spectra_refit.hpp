@@ -1,0 +1,29 @@
+// A spectra refit fits the noise spectra among the causes together. One by one, each is fitted to what the
+// others' errors leave, and where two resemble each other over the recording's octaves (flicker noise and a
+// random walk, a filter and the level of the white noise) the turns hardly move.
+//
+// The parameters are the logarithms of those that the effects' signatures call spectral. The likelihood is
+// Whittle's, with N, B and K of each axis at their most likely (likelihood/noise_nuisance.hpp). The search is
+// Fisher scoring (P. J. Green, J. R. Statist. Soc. B 46 (1984) 149) with the information
+//   1/2 sum_bins n (d ln S / d a) (d ln S / d b)
+// about the parameters and the nuisance, which has its prior.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "analysis/diagnose/likelihood/observation.hpp"
+#include "analysis/diagnose/report.hpp"
+
+namespace gyrolog {
+
+struct SpectraRefit {
+    std::vector<Finding> findings;
+    double gain_nats = 0.0;  // of the log-likelihood of `seen`'s power
+};
+
+// `findings`: their entries are those of `seen`'s model from `first_entry` on, in this order. Those of other
+// estimators stay as they are.
+SpectraRefit refit_spectra(const Observation& seen, std::size_t first_entry, std::vector<Finding> findings);
+
+}  // namespace gyrolog
