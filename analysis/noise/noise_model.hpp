@@ -23,6 +23,8 @@ struct NoiseCoefficients {
 
     double allan_variance(double tau_s) const;  // (rad/s)^2
     double psd(double f_hz) const;              // two-sided, (rad/s)^2/Hz
+
+    bool operator==(const NoiseCoefficients&) const = default;
 };
 
 // First-order Gauss-Markov noise, correlation exp(-t / T) (IEEE Std 952-1997 C.1.5, with q_c^2 T = 2

@@ -27,12 +27,16 @@ struct AxisModel {
     NoiseCoefficients noise;  // two-sided convention
     double bias_rad_s = 0.0;
     std::map<std::string, double> sd_rel;  // this axis' own uncertainties, in place of the model's
+
+    bool operator==(const AxisModel&) const = default;
 };
 
 struct TemperatureModel {
     double reference_C = 25.0;
     Vector3 bias_rad_s_per_C{};
     Vector3 scale_per_C{};  // relative change of the scale factor
+
+    bool operator==(const TemperatureModel&) const = default;
 };
 
 // An effect that was added to the model: a name of the effect registry, with its parameters under the names
@@ -43,6 +47,8 @@ struct EffectModel {
     std::map<std::string, double> params;
     std::string carried_json;  // keys of this entry that this build does not know; "" for none
     std::map<std::string, std::vector<double>> table{};  // columns by name, of one length; {} for none
+
+    bool operator==(const EffectModel&) const = default;
 };
 
 // In m/s^2 where a gyro's model has rad/s: of the members of `axes` and of NoiseCoefficients, too.
@@ -55,6 +61,8 @@ struct AccelerometerModel {
     std::map<std::string, double> sd_rel;
     std::map<std::string, double> sd_abs;
     std::vector<EffectModel> effects;  // their params in g (sigma_g) in the place of deg/s (sigma_dps)
+
+    bool operator==(const AccelerometerModel&) const = default;
 };
 
 struct SensorModel {
@@ -78,6 +86,8 @@ struct SensorModel {
     std::optional<AccelerometerModel> accelerometer;
     std::string carried_json;  // keys that this build does not know, as JSON text; written back untouched; ""
                                // for none
+
+    bool operator==(const SensorModel&) const = default;
 };
 
 // One sigma of the clock's rate, relative to it: as the model states it, otherwise a crystal's 50 ppm.

@@ -99,6 +99,42 @@ bool shapes_the_motion(const SensorModel& model) {
     });
 }
 
+// What changes the model's answer to a world, and nothing else.
+SensorModel noiseless_and_certain(const SensorModel& model) {
+    SensorModel noiseless = without_noise(model);
+    for (AxisModel& axis : noiseless.axes) { axis.sd_rel.clear(); }
+    noiseless.sd_rel.clear();
+    noiseless.sd_abs.clear();
+    noiseless.accelerometer.reset();
+    noiseless.carried_json.clear();
+    return noiseless;
+}
+
+std::array<std::vector<float>, 3> simulated_response(const Prediction& prediction,
+                                                     std::shared_ptr<const RecordedWorld> world,
+                                                     const SensorModel& noiseless) {
+    SimulationRequest request;
+    request.like = std::move(world);
+    RecordingSimulator simulator(noiseless, request);
+    std::array<std::vector<float>, 3> response;
+    for (const std::size_t axis : prediction.axes()) { response[axis].assign(prediction.length(), 0.0F); }
+    const std::int64_t origin = prediction.world().recording().segments.front().first_index;
+    Recording piece;
+    while (simulator.next(piece)) {
+        for (const std::size_t axis : prediction.axes()) {
+            const Column& column = *piece.find(gyro_columns[axis]);
+            for (const Segment& segment : piece.segments) {
+                for (std::size_t i = 0; i < segment.count; ++i) {
+                    const auto slot = static_cast<std::size_t>(segment.first_index - origin) + i;
+                    if (slot >= prediction.length()) { break; }
+                    response[axis][slot] = static_cast<float>(column.value(segment.first + i));
+                }
+            }
+        }
+    }
+    return response;
+}
+
 std::vector<float> cosines_of(const std::vector<float>& values, CosineTransform& transform) {
     std::vector<double> work(values.begin(), values.end());
     transform.forward(work);
@@ -328,26 +364,9 @@ std::array<std::vector<float>, 3> noise_free_response(const Prediction& predicti
 std::array<std::vector<float>, 3> noise_free_response(const Prediction& prediction,
                                                       std::shared_ptr<const RecordedWorld> world,
                                                       const SensorModel& model) {
-    SimulationRequest request;
-    request.like = std::move(world);
-    RecordingSimulator simulator(without_noise(model), request);
-    std::array<std::vector<float>, 3> response;
-    for (const std::size_t axis : prediction.axes()) { response[axis].assign(prediction.length(), 0.0F); }
-    const std::int64_t origin = prediction.world().recording().segments.front().first_index;
-    Recording piece;
-    while (simulator.next(piece)) {
-        for (const std::size_t axis : prediction.axes()) {
-            const Column& column = *piece.find(gyro_columns[axis]);
-            for (const Segment& segment : piece.segments) {
-                for (std::size_t i = 0; i < segment.count; ++i) {
-                    const auto slot = static_cast<std::size_t>(segment.first_index - origin) + i;
-                    if (slot >= prediction.length()) { break; }
-                    response[axis][slot] = static_cast<float>(column.value(segment.first + i));
-                }
-            }
-        }
-    }
-    return response;
+    const SensorModel answering = noiseless_and_certain(model);
+    return prediction.recent_responses().recall(
+        world, answering, [&] { return simulated_response(prediction, world, answering); });
 }
 
 }  // namespace gyrolog

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnose/likelihood/recent_responses.hpp"
 #include "analysis/diagnose/likelihood/response_memory.hpp"
 #include "analysis/diagnose/likelihood/spectral_bins.hpp"
 #include "analysis/diagnose/likelihood/uncertain_mean.hpp"
@@ -90,6 +91,7 @@ public:
     std::shared_ptr<const Prediction> of_half(Half half) const;
     // The memory is shared by all predictions that come from one.
     ResponseMemory& memory() const { return shared_->responses; }
+    RecentResponses& recent_responses() const { return shared_->recent; }
     // A transform of length() values.
     TransformPool::Lease transform() const { return shared_->transforms.lease(); }
 
@@ -98,6 +100,7 @@ private:
     struct Shared {
         explicit Shared(std::size_t length) : transforms(length) {}
         ResponseMemory responses;
+        RecentResponses recent;
         TransformPool transforms;
         std::shared_ptr<const RecordedWorld> denoised_world;
     };
