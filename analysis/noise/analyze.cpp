@@ -265,7 +265,7 @@ void warn_of_axes(SensorKind sensor, const SensorUnit& unit, const std::list<Wor
     }
 }
 
-std::optional<AxisMean> mean_of(const AccelerometerReport& report, const std::string& axis) {
+std::optional<AxisMean> accelerometer_mean(const AccelerometerReport& report, const std::string& axis) {
     const auto found = std::ranges::find(report.axes, axis, &AxisReport::axis);
     if (found == report.axes.end()) { return std::nullopt; }
     return AxisMean{found->bias, found->fit.mean_dof};
@@ -291,9 +291,9 @@ void find_gravity(AccelerometerReport& report, std::vector<std::string>& warning
     for (const AxisReport& axis : report.axes) {
         if (axis.axis[0] != 'x') { continue; }
         const std::string unit = axis.axis.substr(1);
-        const auto x = mean_of(report, axis.axis);
-        const auto y = mean_of(report, "y" + unit);
-        const auto z = mean_of(report, "z" + unit);
+        const auto x = accelerometer_mean(report, axis.axis);
+        const auto y = accelerometer_mean(report, "y" + unit);
+        const auto z = accelerometer_mean(report, "z" + unit);
         if (y && z) { report.gravity.push_back({unit, gravity_of({*x, *y, *z})}); }
     }
     warn_of_gravity(report, warnings);

@@ -15,9 +15,9 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double dB(double variance_ratio) { return 10.0 * std::log10(variance_ratio); }
 
-class Target {
+class ProjectionTarget {
 public:
-    Target(std::span<const NoiseModel> models, double rate_hz, double horizon_s) {
+    ProjectionTarget(std::span<const NoiseModel> models, double rate_hz, double horizon_s) {
         const double shortest_s = 1.0 / rate_hz;
         const auto steps = static_cast<int>(std::ceil(octave_parts * std::log2(horizon_s / shortest_s)));
         for (int i = 0; i <= steps; ++i) {
@@ -81,7 +81,7 @@ Mixture best_mixture(const std::vector<double>& first, const std::vector<double>
     return alone.worst_dB <= both.worst_dB ? alone : both;
 }
 
-NoiseProjection with_gauss_markov(const Target& target, const ProjectionOptions& options) {
+NoiseProjection with_gauss_markov(const ProjectionTarget& target, const ProjectionOptions& options) {
     const auto white = target.ratios([](double tau_s) { return 1.0 / tau_s; });
     const auto shape_of = [](double correlation_s) {
         return [=](double tau_s) { return GaussMarkov{1.0, correlation_s}.allan_variance(tau_s); };
@@ -108,7 +108,7 @@ NoiseProjection with_gauss_markov(const Target& target, const ProjectionOptions&
     return projection;
 }
 
-NoiseProjection with_walk(const Target& target, const ProjectionOptions& options) {
+NoiseProjection with_walk(const ProjectionTarget& target, const ProjectionOptions& options) {
     const Mixture found = best_mixture(target.ratios([](double tau_s) { return 1.0 / tau_s; }),
                                        target.ratios([](double tau_s) { return tau_s / 3.0; }), options);
     NoiseProjection projection;
@@ -117,7 +117,7 @@ NoiseProjection with_walk(const Target& target, const ProjectionOptions& options
     return projection;
 }
 
-NoiseProjection with_white_alone(const Target& target) {
+NoiseProjection with_white_alone(const ProjectionTarget& target) {
     const auto white = target.ratios([](double tau_s) { return 1.0 / tau_s; });
     const auto [least, most] = std::ranges::minmax_element(white);
     NoiseProjection projection;
@@ -125,7 +125,7 @@ NoiseProjection with_white_alone(const Target& target) {
     return projection;
 }
 
-void judge(NoiseProjection& projection, const Target& target) {
+void judge(NoiseProjection& projection, const ProjectionTarget& target) {
     for (std::size_t i = 0; i < target.tau_s().size(); ++i) {
         const double tau_s = target.tau_s()[i];
         const double error_dB = std::fabs(dB(projection.allan_variance(tau_s) / target.variance()[i]));
@@ -191,7 +191,7 @@ double NoiseProjection::allan_variance(double tau_s) const {
 
 NoiseProjection project_noise(std::span<const NoiseModel> models, ProjectedTerms terms, double rate_hz,
                               double horizon_s, const ProjectionOptions& options) {
-    const Target target(models, rate_hz, horizon_s);
+    const ProjectionTarget target(models, rate_hz, horizon_s);
     // Without noise there is nothing to be near to. A line alone has none at some averaging times.
     if (std::ranges::any_of(target.variance(), [](double variance) { return variance <= 0.0; })) {
         NoiseProjection nothing;

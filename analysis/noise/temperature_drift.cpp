@@ -214,9 +214,9 @@ std::vector<std::vector<Answer>> answers_of(const Blocks& blocks, const Temperat
 }
 
 // Student's t about several places, each with its weight.
-class Mixture {
+class AnswerMixture {
 public:
-    Mixture(const std::vector<Answer>& answers, double degrees) : degrees_(degrees) {
+    AnswerMixture(const std::vector<Answer>& answers, double degrees) : degrees_(degrees) {
         constexpr double least_weight = 1e-12;  // all the others change no chance by more than 1e-10
         std::vector<double> logs;
         logs.reserve(answers.size());
@@ -296,7 +296,7 @@ TemperatureDrift drift_of(const std::vector<Answer>& answers, double degrees,
                           const TemperatureDriftOptions& options) {
     TemperatureDrift drift;
     drift.false_alarm = options.false_alarm;
-    const Mixture slope(answers, degrees);
+    const AnswerMixture slope(answers, degrees);
     drift.slope_per_C = slope.mean();
     drift.sd_per_C = slope.half_width(chance_within_one_sd);
     drift.chance = std::min(1.0, 2.0 * std::min(slope.upper_tail(0.0), slope.lower_tail(0.0)));
@@ -306,7 +306,7 @@ TemperatureDrift drift_of(const std::vector<Answer>& answers, double degrees,
     return drift;
 }
 
-bool varies(const std::vector<double>& values) {
+bool takes_several_values(const std::vector<double>& values) {
     return std::ranges::any_of(values, [&](double value) { return value != values.front(); });
 }
 
@@ -388,7 +388,7 @@ std::vector<std::optional<TemperatureDrift>> temperature_drifts(const Recording&
     const double mean_C = mean_temperature_C(SmoothTemperature(recording, options), recording.rows());
     const std::vector<std::vector<Answer>> answers = answers_of(*blocks, options);
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        if (!varies(blocks->values[c]) || answers[c].empty()) { continue; }
+        if (!takes_several_values(blocks->values[c]) || answers[c].empty()) { continue; }
         TemperatureDrift drift = drift_of(answers[c], degrees, options);
         drift.from_C = *low;
         drift.to_C = *high;

@@ -11,11 +11,8 @@ namespace {
 constexpr double heading_px = 110.0;
 constexpr double course_panel_px = 430.0;
 constexpr double temperature_panel_px = 310.0;
-// A longer record has hours on its time axis.
-constexpr double hours_from_s = 7200.0;
-constexpr double s_per_h = 3600.0;
-constexpr std::array markers{Marker::circle,  Marker::square,        Marker::triangle,
-                             Marker::diamond, Marker::triangle_down, Marker::hexagon};
+constexpr std::array course_markers{Marker::circle,  Marker::square,        Marker::triangle,
+                                    Marker::diamond, Marker::triangle_down, Marker::hexagon};
 
 struct TimeAxis {
     std::string title;
@@ -24,7 +21,7 @@ struct TimeAxis {
 
 TimeAxis time_axis(const CourseFigure& course, std::size_t parts) {
     const bool is_long = course.duration_s > hours_from_s;
-    const double length = is_long ? course.duration_s / s_per_h : course.duration_s;
+    const double length = is_long ? course.duration_s / hour_s : course.duration_s;
     TimeAxis axis{is_long ? "time (h)" : "time (s)", {}};
     for (std::size_t part = 0; part < parts; ++part) {
         axis.middles.push_back((static_cast<double>(part) + 0.5) * length / static_cast<double>(parts));
@@ -43,7 +40,7 @@ Curve curve_of(const CourseFigure& course, std::size_t trace, const std::vector<
         curve.y.push_back(mean * course.per_unit_of_data);
     }
     curve.stroke = {colours::cycle.at(trace % colours::cycle.size()), 2.0, {}};
-    curve.marker = markers.at(trace % markers.size());
+    curve.marker = course_markers.at(trace % course_markers.size());
     curve.legend = {course.traces[trace].name};
     return curve;
 }

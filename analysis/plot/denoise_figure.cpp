@@ -310,14 +310,6 @@ std::vector<Curve> key_of(const DenoiseFigure& denoise, std::size_t units, bool 
     return key;
 }
 
-// A title that all panels of a row have stands at the first one.
-void share_titles(std::vector<Panel>& panels, std::size_t columns) {
-    for (std::size_t i = 0; i < panels.size(); ++i) {
-        const std::size_t first = i - i % columns;
-        if (i != first && panels[i].y.title == panels[first].y.title) { panels[i].y.title.clear(); }
-    }
-}
-
 }  // namespace
 
 // A kind a row, an axis a column. What a bandwidth gains is nearly the same on all axes: it is shown for the

@@ -29,12 +29,11 @@ constexpr Colour measured_colour = colours::ink;
 
 const Stroke before_edge{mixed(before_colour, colours::ink, 0.25), 1.3, {6.0, 4.0}};
 const Stroke after_edge{mixed(after_colour, colours::ink, 0.2), 1.3, {}};
-const Stroke recording_line{measured_colour, 2.2, {}};
+const Stroke measured_line{measured_colour, 2.2, {}};
 constexpr double before_opacity = 0.30;
 constexpr double after_opacity = 0.50;
 
 constexpr double least_decibels = 1.0;
-constexpr double hours_from_s = 7200.0;
 
 // Of things side by side: what the bands of model and causes are wide, in their distance.
 constexpr double before_half_width = 0.36;
@@ -53,7 +52,7 @@ public:
         const bool is_long =
             std::ranges::any_of(domain.x, [](double x) { return std::abs(x) > hours_from_s; });
         if (!domain.log_x && domain.x_name == "time (s)" && is_long) {
-            for (double& x : x_) { x /= 3600.0; }
+            for (double& x : x_) { x /= hour_s; }
             x_name_ = "time (h)";
         }
     }
@@ -78,7 +77,7 @@ public:
         Curve curve;
         switch (part) {
             case Part::recording:
-                curve.stroke = recording_line;
+                curve.stroke = measured_line;
                 break;
             case Part::before:
             case Part::after:
@@ -157,7 +156,7 @@ private:
         Curve curve;
         curve.x = x_;
         curve.y = shown(domain_.recording);
-        curve.stroke = recording_line;
+        curve.stroke = measured_line;
         if (!domain_.is_course) {
             curve.stroke.width_px = 0.0;
             curve.marker = Marker::circle;
@@ -319,15 +318,6 @@ std::vector<Curve> key_of(const std::vector<DomainPanel>& panels) {
         if (first != panels.end()) { key.push_back(first->key(part)); }
     }
     return key;
-}
-
-// A title that all panels of a row have stands at the first one.
-void share_titles(std::vector<Panel>& panels, std::size_t columns) {
-    for (std::size_t first = 0; first < panels.size(); first += columns) {
-        for (std::size_t i = first + 1; i < std::min(first + columns, panels.size()); ++i) {
-            if (panels[i].y.title == panels[first].y.title) { panels[i].y.title.clear(); }
-        }
-    }
 }
 
 // What is drawn below the bars.

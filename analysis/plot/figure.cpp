@@ -78,12 +78,12 @@ std::string problem_with(const Figure& figure) {
 }
 
 // Where the panels lie from top to bottom.
-struct Span {
+struct Width {
     double top;
     double bottom;
 };
 
-std::vector<Box> panel_areas(const Figure& figure, Span span, const std::vector<double>& widths_px) {
+std::vector<Box> panel_areas(const Figure& figure, Width span, const std::vector<double>& widths_px) {
     const double edge = figure_edge_px * figure.scale;
     const double gap_px = between_panels_px * figure.scale;
     const std::vector<PanelRow> rows = rows_of(figure);
@@ -167,7 +167,7 @@ std::vector<Margins> margins_in(const std::vector<Box>& areas, const std::vector
 
 // What the margins need depends on the areas, and the areas on the margins: after two rounds they agree.
 std::vector<PanelPlace> draw_panels(Canvas& canvas, const Figure& figure, const Typeface& typeface,
-                                    Span span) {
+                                    Width span) {
     const std::vector<PanelDrawing> drawings = drawings_of(figure, typeface);
     std::vector<Margins> margins(drawings.size());
     std::vector<Box> areas = panel_areas(figure, span, column_widths_px(figure, margins));
@@ -244,6 +244,13 @@ std::optional<Box> draw_key(Canvas& canvas, const Figure& figure, const Typeface
 }
 
 }  // namespace
+
+void share_titles(std::vector<Panel>& panels, std::size_t columns) {
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        const std::size_t first = i - i % columns;
+        if (i != first && panels[i].y.title == panels[first].y.title) { panels[i].y.title.clear(); }
+    }
+}
 
 Rendering render(const Figure& figure) {
     Rendering rendering;

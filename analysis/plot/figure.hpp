@@ -99,6 +99,13 @@ struct Panel {
     bool spans_row = false;     // has a row to itself
 };
 
+// A title that all panels of a row have stands at the first one.
+void share_titles(std::vector<Panel>& panels, std::size_t columns);
+
+// A longer record has hours on its time axis.
+inline constexpr double hours_from_s = 7200.0;
+inline constexpr double hour_s = 3600.0;
+
 struct Figure {
     std::string title;
     std::string source;  // where the data came from; shortened in its middle when the line is too long

@@ -9,22 +9,22 @@ namespace gyrolog {
 namespace {
 
 // The order is part of what a seed means: new ones go to the end.
-enum class Drawn : std::uint32_t { bias, Q, N, B, K, clock };
+enum class DrawnValue : std::uint32_t { bias, Q, N, B, K, clock };
 
-class UnitDraw {
+class PopulationDraw {
 public:
-    explicit UnitDraw(std::uint64_t seed) : seed_(seed) {}
+    explicit PopulationDraw(std::uint64_t seed) : seed_(seed) {}
 
-    double gaussian(Drawn what, std::size_t axis, const UnitSpread& spread) const {
+    double gaussian(DrawnValue what, std::size_t axis, const UnitSpread& spread) const {
         return spread.median + spread.sd * normal(what, axis);
     }
-    double log_normal(Drawn what, std::size_t axis, const UnitSpread& spread) const {
+    double log_normal(DrawnValue what, std::size_t axis, const UnitSpread& spread) const {
         if (spread.median <= 0.0) { return 0.0; }
         return spread.median * std::exp(normal(what, axis) * spread.sd / spread.median);
     }
 
 private:
-    double normal(Drawn what, std::size_t axis) const {
+    double normal(DrawnValue what, std::size_t axis) const {
         constexpr std::uint32_t process = std::uint32_t{'P'} << 24U | std::uint32_t{'o'} << 16U;
         const RandomStream stream(
             seed_, process | static_cast<std::uint32_t>(axis) << 12U | static_cast<std::uint32_t>(what));
@@ -34,25 +34,25 @@ private:
     std::uint64_t seed_;
 };
 
-void draw_noise(const AxisPopulation& of, const UnitDraw& draw, std::size_t axis, AxisModel& model) {
-    const auto drawn = [&](Drawn what, const char* key, const std::optional<UnitSpread>& spread) {
+void draw_noise(const AxisPopulation& of, const PopulationDraw& draw, std::size_t axis, AxisModel& model) {
+    const auto drawn = [&](DrawnValue what, const char* key, const std::optional<UnitSpread>& spread) {
         if (!spread) { return 0.0; }
         if (spread->median > 0.0) { model.sd_rel[key] = spread->sd / spread->median; }
         return draw.log_normal(what, axis, *spread);
     };
-    model.noise.Q_rad = drawn(Drawn::Q, "Q", of.Q_rad);
-    model.noise.N_rad_per_sqrt_s = drawn(Drawn::N, "N", of.N_rad_per_sqrt_s);
-    model.noise.B_rad_per_s = drawn(Drawn::B, "B", of.B_rad_per_s);
-    model.noise.K_rad_per_s_sqrt_s = drawn(Drawn::K, "K", of.K_rad_per_s_sqrt_s);
+    model.noise.Q_rad = drawn(DrawnValue::Q, "Q", of.Q_rad);
+    model.noise.N_rad_per_sqrt_s = drawn(DrawnValue::N, "N", of.N_rad_per_sqrt_s);
+    model.noise.B_rad_per_s = drawn(DrawnValue::B, "B", of.B_rad_per_s);
+    model.noise.K_rad_per_s_sqrt_s = drawn(DrawnValue::K, "K", of.K_rad_per_s_sqrt_s);
 }
 
-void draw_clock(const UnitSpread& rate_hz, const UnitDraw& draw, SensorModel& model) {
+void draw_clock(const UnitSpread& rate_hz, const PopulationDraw& draw, SensorModel& model) {
     model.rate_hz = rate_hz.median;
     const double sd_rel = rate_hz.sd / rate_hz.median;
     if (sd_rel <= 0.0) { return; }
     EffectModel clock;
     clock.effect = "clock_rate";
-    clock.params["rel"] = draw.gaussian(Drawn::clock, 0, {0.0, sd_rel});
+    clock.params["rel"] = draw.gaussian(DrawnValue::clock, 0, {0.0, sd_rel});
     model.effects.push_back(std::move(clock));
     model.sd_abs["rate_rel"] = sd_rel;
 }
@@ -79,7 +79,7 @@ std::vector<std::string> not_given(const Population& population) {
 }  // namespace
 
 DrawnUnit draw_unit(const Population& population, std::uint64_t seed) {
-    const UnitDraw draw(seed);
+    const PopulationDraw draw(seed);
     DrawnUnit unit;
     SensorModel& model = unit.model;
     model.rate_hz = 0.0;
@@ -92,7 +92,7 @@ DrawnUnit draw_unit(const Population& population, std::uint64_t seed) {
         const AxisPopulation& of = population.axes[axis];
         draw_noise(of, draw, axis, model.axes[axis]);
         if (!of.bias_rad_s) { continue; }
-        model.axes[axis].bias_rad_s = draw.gaussian(Drawn::bias, axis, *of.bias_rad_s);
+        model.axes[axis].bias_rad_s = draw.gaussian(DrawnValue::bias, axis, *of.bias_rad_s);
         widest_bias_rad_s = std::max(widest_bias_rad_s, of.bias_rad_s->sd);
     }
     if (widest_bias_rad_s > 0.0) { model.sd_abs["bias_dps"] = widest_bias_rad_s * deg_per_rad; }

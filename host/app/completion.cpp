@@ -21,7 +21,7 @@ struct CompletedCommand {
 };
 
 // The words in the braces of CLI11's "SENSOR:{gyro,accelerometer}".
-std::vector<std::string> choices_of(const std::string& type) {
+std::vector<std::string> named_choices(const std::string& type) {
     const std::size_t open = type.find('{');
     const std::size_t close = type.find('}');
     if (open == std::string::npos || close == std::string::npos) { return {}; }
@@ -35,7 +35,7 @@ std::vector<CompletedOption> options_of(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
         for (const std::string& name : option->get_lnames()) {
             options.push_back({"--" + name, first_line(option->get_description()),
-                               option->get_expected_min() > 0, choices_of(option->get_type_name())});
+                               option->get_expected_min() > 0, named_choices(option->get_type_name())});
         }
     }
     return options;
@@ -50,7 +50,7 @@ std::vector<CompletedCommand> commands_of(const CLI::App& root) {
     return commands;
 }
 
-std::string names_of(const std::vector<CompletedOption>& options) {
+std::string option_names(const std::vector<CompletedOption>& options) {
     std::vector<std::string> names;
     names.reserve(options.size());
     for (const CompletedOption& option : options) { names.push_back(option.name); }
@@ -80,7 +80,7 @@ std::string bash_case(const CompletedCommand& command) {
         }
     }
     return text + fmt::format("                *) [[ $word == -* ]] && words={} ;;\n            esac ;;\n",
-                              in_single_quotes(names_of(command.options)));
+                              in_single_quotes(option_names(command.options)));
 }
 
 // What is no option is a file, which bash completes by itself.
@@ -101,7 +101,7 @@ std::string bash_script(const CLI::App& root) {
         "    while IFS= read -r match; do COMPREPLY+=(\"$match\"); done < <(compgen -W \"$words\" -- "
         "\"$word\")\n}}\n"
         "complete -o default -F _gyrolog gyrolog\n",
-        in_single_quotes(fmt::format("{} {}", fmt::join(names, " "), names_of(options_of(root)))), cases);
+        in_single_quotes(fmt::format("{} {}", fmt::join(names, " "), option_names(options_of(root)))), cases);
 }
 
 // In _arguments' "--name[summary]:message:action" brackets and colons have a meaning.

@@ -47,7 +47,7 @@ std::string escaped(std::string_view text) {
     return page;
 }
 
-std::string entry(const OptionHelp& option) {
+std::string man_entry(const OptionHelp& option) {
     std::vector<std::string> names;
     names.reserve(option.names.size());
     for (const std::string& name : option.names) { names.push_back("\\fB" + escaped(name) + "\\fR"); }
@@ -55,10 +55,10 @@ std::string entry(const OptionHelp& option) {
     return fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), value, escaped(option.description));
 }
 
-std::string entries(const char* heading, const std::vector<OptionHelp>& options) {
+std::string man_entries(const char* heading, const std::vector<OptionHelp>& options) {
     if (options.empty()) { return {}; }
     std::string text = fmt::format(".SH {}\n", heading);
-    for (const OptionHelp& option : options) { text += entry(option); }
+    for (const OptionHelp& option : options) { text += man_entry(option); }
     return text;
 }
 
@@ -167,14 +167,14 @@ std::string manual_page(const CLI::App& program) {
     return head("gyrolog", "capture, analyse and simulate inertial sensors") +
            ".SH SYNOPSIS\n.B gyrolog\n[OPTIONS]\n.br\n.B gyrolog\n.I COMMAND\n[OPTIONS]\n.SH DESCRIPTION\n" +
            escaped(program.get_description()) + '\n' + paragraphs_of(manual_text("")) + commands +
-           entries("OPTIONS", options_of(program)) + exit_status + examples + files +
+           man_entries("OPTIONS", options_of(program)) + exit_status + examples + files +
            fmt::format(".SH SEE ALSO\n{}\n", fmt::join(pages, ",\n"));
 }
 
 std::string manual_page_of_command(const CLI::App& command) {
     return head("gyrolog-" + command.get_name(), command.get_description()) + synopsis(command) +
-           description_of_command(command) + entries("ARGUMENTS", words_of(command)) +
-           entries("OPTIONS", options_of(command)) + exit_status + footer_of(command) +
+           description_of_command(command) + man_entries("ARGUMENTS", words_of(command)) +
+           man_entries("OPTIONS", options_of(command)) + exit_status + footer_of(command) +
            ".SH SEE ALSO\n.BR gyrolog (1)\n";
 }
 

@@ -22,8 +22,8 @@ std::string matrix_text(const std::string& name, const std::string& unit, const 
 }
 
 // `prefix`: "gyrolog_gyro" or "gyrolog_acc"; rows are axes.
-std::string thermal_text(const std::string& prefix, const std::string& unit,
-                         const TemperatureResult& fitted) {
+std::string thermal_arrays(const std::string& prefix, const std::string& unit,
+                           const TemperatureResult& fitted) {
     const TemperatureCalibration none;
     const TemperatureCalibration& thermal = fitted.calibration ? *fitted.calibration : none;
     Matrix3 c{};
@@ -82,11 +82,11 @@ std::string calibration_c_header(const Calibration& calibration) {
     text += "#ifndef GYROLOG_CALIBRATION_H\n#define GYROLOG_CALIBRATION_H\n\n";
     text += matrix_text("gyrolog_acc_correction", "1", inverse(accelerometer.M).value_or(identity_matrix));
     text += vector_text("gyrolog_acc_bias", "m/s^2", accelerometer.bias_m_s2);
-    text += thermal_text("gyrolog_acc", "m/s^2", calibration.accelerometer_temperature);
+    text += thermal_arrays("gyrolog_acc", "m/s^2", calibration.accelerometer_temperature);
     text += matrix_text("gyrolog_gyro_correction", "1", inverse(gyro.M).value_or(identity_matrix));
     text += vector_text("gyrolog_gyro_bias", "rad/s", gyro.bias_rad_s);
     text += matrix_text("gyrolog_gyro_g_sensitivity", "rad/s per m/s^2", gyro.K_s_per_m);
-    text += thermal_text("gyrolog_gyro", "rad/s", calibration.gyro_temperature);
+    text += thermal_arrays("gyrolog_gyro", "rad/s", calibration.gyro_temperature);
     text += functions;
     return text + "\n#endif\n";
 }

@@ -8,26 +8,26 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view axes_upper = "XYZ";
+constexpr std::string_view px4_axes = "XYZ";
 constexpr int type_int32 = 6;  // MAV_PARAM_TYPE
 constexpr int type_real32 = 9;
 
-std::string parameter(const std::string& name, double value, int type = type_real32) {
+std::string px4_parameter(const std::string& name, double value, int type = type_real32) {
     return fmt::format("1\t1\t{}\t{:.9g}\t{}\n", name, value, type);
 }
 
 // `sensor`: A or G.
-std::string thermal(char sensor, const TemperatureCalibration& fitted) {
-    std::string text = parameter(fmt::format("TC_{}_ENABLE", sensor), 1, type_int32);
+std::string px4_thermal(char sensor, const TemperatureCalibration& fitted) {
+    std::string text = px4_parameter(fmt::format("TC_{}_ENABLE", sensor), 1, type_int32);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        text += parameter(fmt::format("TC_{}0_X0_{}", sensor, axis), 0.0);
+        text += px4_parameter(fmt::format("TC_{}0_X0_{}", sensor, axis), 0.0);
         for (std::size_t k = 0; k < temperature_orders; ++k) {
-            text += parameter(fmt::format("TC_{}0_X{}_{}", sensor, k + 1, axis), fitted.axes[axis].c[k]);
+            text += px4_parameter(fmt::format("TC_{}0_X{}_{}", sensor, k + 1, axis), fitted.axes[axis].c[k]);
         }
     }
-    text += parameter(fmt::format("TC_{}0_TREF", sensor), fitted.reference_C);
-    text += parameter(fmt::format("TC_{}0_TMIN", sensor), fitted.from_C);
-    return text + parameter(fmt::format("TC_{}0_TMAX", sensor), fitted.to_C);
+    text += px4_parameter(fmt::format("TC_{}0_TREF", sensor), fitted.reference_C);
+    text += px4_parameter(fmt::format("TC_{}0_TMIN", sensor), fitted.from_C);
+    return text + px4_parameter(fmt::format("TC_{}0_TMAX", sensor), fitted.to_C);
 }
 
 }  // namespace
@@ -45,20 +45,20 @@ std::string px4_parameters(const Calibration& calibration) {
     if (const auto& fitted = calibration.accelerometer.calibration) {
         const Vector3 scales = axis_scales(fitted->M);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            text += parameter(fmt::format("CAL_ACC0_{}OFF", axes_upper[axis]), fitted->bias_m_s2[axis]);
-            text += parameter(fmt::format("CAL_ACC0_{}SCALE", axes_upper[axis]), scales[axis]);
+            text += px4_parameter(fmt::format("CAL_ACC0_{}OFF", px4_axes[axis]), fitted->bias_m_s2[axis]);
+            text += px4_parameter(fmt::format("CAL_ACC0_{}SCALE", px4_axes[axis]), scales[axis]);
         }
     }
     if (const auto& fitted = calibration.gyro.calibration) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            text += parameter(fmt::format("CAL_GYRO0_{}OFF", axes_upper[axis]), fitted->bias_rad_s[axis]);
+            text += px4_parameter(fmt::format("CAL_GYRO0_{}OFF", px4_axes[axis]), fitted->bias_rad_s[axis]);
         }
     }
     if (const auto& fitted = calibration.accelerometer_temperature.calibration; fitted && fitted->follows()) {
-        text += thermal('A', *fitted);
+        text += px4_thermal('A', *fitted);
     }
     if (const auto& fitted = calibration.gyro_temperature.calibration; fitted && fitted->follows()) {
-        text += thermal('G', *fitted);
+        text += px4_thermal('G', *fitted);
     }
     return text;
 }

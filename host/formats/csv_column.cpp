@@ -41,8 +41,8 @@ constexpr std::array units = {
 bool is_axis(char c) { return c >= 'x' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-std::optional<CsvColumn> with_unit(std::string name, std::string_view written,
-                                   std::initializer_list<Kind> kinds) {
+std::optional<CsvColumn> column_with_unit(std::string name, std::string_view written,
+                                          std::initializer_list<Kind> kinds) {
     for (const Kind kind : kinds) {
         for (const Unit& unit : units) {
             if (unit.kind == kind && unit.written == written) {
@@ -71,7 +71,7 @@ std::optional<CsvColumn> csv_column(std::string_view header) {
     constexpr std::string_view reference = "ref_";
     if (header.starts_with(reference)) {
         if (header.size() < 7 || !is_axis(header[4]) || header[5] != '_') { return std::nullopt; }
-        return with_unit(std::string(header.substr(0, 5)), header.substr(6), {Kind::reference});
+        return column_with_unit(std::string(header.substr(0, 5)), header.substr(6), {Kind::reference});
     }
     const bool increment = header.starts_with("dg");
     const std::string_view rest = increment ? header.substr(1) : header;
@@ -81,9 +81,9 @@ std::optional<CsvColumn> csv_column(std::string_view header) {
     if (end >= rest.size() || rest[end] != '_') { return std::nullopt; }
     std::string name(rest.substr(0, end));
     const std::string_view written = rest.substr(end + 1);
-    if (increment) { return with_unit(std::move(name), written, {Kind::angle_increment}); }
-    if (rest[0] == 'a') { return with_unit(std::move(name), written, {Kind::force}); }
-    return with_unit(std::move(name), written, {Kind::rate, Kind::angle});
+    if (increment) { return column_with_unit(std::move(name), written, {Kind::angle_increment}); }
+    if (rest[0] == 'a') { return column_with_unit(std::move(name), written, {Kind::force}); }
+    return column_with_unit(std::move(name), written, {Kind::rate, Kind::angle});
 }
 
 }  // namespace gyrolog

@@ -10,7 +10,7 @@
 namespace gyrolog {
 namespace {
 
-Json axes_json(const std::vector<std::size_t>& axes) {
+Json found_axes_json(const std::vector<std::size_t>& axes) {
     Json json = Json::array();
     for (const std::size_t axis : axes) { json.push_back(axis_names.at(axis)); }
     return json;
@@ -87,7 +87,7 @@ Json tie_group_json(const Cause& cause) {
 
 Json whole_place_json(const Place& place) {
     Json json = Json::object();
-    if (!place.axes.empty()) { json["axes"] = axes_json(place.axes); }
+    if (!place.axes.empty()) { json["axes"] = found_axes_json(place.axes); }
     json.update(place_json(place));
     return json;
 }
@@ -105,7 +105,7 @@ Json cause_json(const Cause& cause) {
     json["sense"] = name_of(cause.sense);
     json["score"] = cause.score;
     json["tie_group"] = tie_group_json(cause);
-    json["axes"] = axes_json(finding.where.axes);
+    json["axes"] = found_axes_json(finding.where.axes);
     json["where"] = place_json(finding.where);
     put_params(json, finding);
     put_share(json, "share", cause.share);
@@ -121,7 +121,7 @@ Json cause_json(const Cause& cause) {
 
 Json unnamed_json(const Unnamed& unnamed) {
     return {{"form", unnamed.form},
-            {"axes", axes_json(unnamed.where.axes)},
+            {"axes", found_axes_json(unnamed.where.axes)},
             {"where", place_json(unnamed.where)},
             {"share", unnamed.share}};
 }
@@ -183,7 +183,7 @@ void put_circumstances(Json& json, const Diagnosis& diagnosis) {
     json["rate_hz"] = diagnosis.rate_hz;
     json["duration_s"] = diagnosis.duration_s;
     json["samples"] = diagnosis.samples;
-    json["axes"] = axes_json(diagnosis.axes);
+    json["axes"] = found_axes_json(diagnosis.axes);
     for (const Pass& pass : diagnosis.passes) {
         json["looks"].push_back({{"duration_s", pass.duration_s},
                                  {"rows", pass.rows},

@@ -30,7 +30,7 @@ struct FreeReadVariable {
 };
 using ReadVariable = std::unique_ptr<matvar_t, FreeReadVariable>;
 
-struct Matrix {
+struct MatMatrix {
     std::string name;
     std::size_t rows = 0;
     std::size_t columns = 0;
@@ -38,41 +38,41 @@ struct Matrix {
 };
 
 struct Variables {
-    std::vector<Matrix> matrices;
+    std::vector<MatMatrix> matrices;
     std::vector<std::pair<std::string, double>> scalars;
     std::string gyro_axes;            // of gyrolog's own files
     std::vector<std::string> others;  // names of what is no matrix of numbers
 };
 
 template <typename Number>
-std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
+std::vector<double> converted(const matvar_t& variable, std::size_t count) {
     const auto* data = static_cast<const Number*>(variable.data);
     return {data, data + count};
 }
 
 // Empty for what is no real number.
-std::vector<double> values_of(const matvar_t& variable, std::size_t count) {
+std::vector<double> doubles_of(const matvar_t& variable, std::size_t count) {
     switch (variable.class_type) {
         case MAT_C_DOUBLE:
-            return numbers<double>(variable, count);
+            return converted<double>(variable, count);
         case MAT_C_SINGLE:
-            return numbers<float>(variable, count);
+            return converted<float>(variable, count);
         case MAT_C_INT8:
-            return numbers<std::int8_t>(variable, count);
+            return converted<std::int8_t>(variable, count);
         case MAT_C_UINT8:
-            return numbers<std::uint8_t>(variable, count);
+            return converted<std::uint8_t>(variable, count);
         case MAT_C_INT16:
-            return numbers<std::int16_t>(variable, count);
+            return converted<std::int16_t>(variable, count);
         case MAT_C_UINT16:
-            return numbers<std::uint16_t>(variable, count);
+            return converted<std::uint16_t>(variable, count);
         case MAT_C_INT32:
-            return numbers<std::int32_t>(variable, count);
+            return converted<std::int32_t>(variable, count);
         case MAT_C_UINT32:
-            return numbers<std::uint32_t>(variable, count);
+            return converted<std::uint32_t>(variable, count);
         case MAT_C_INT64:
-            return numbers<std::int64_t>(variable, count);
+            return converted<std::int64_t>(variable, count);
         case MAT_C_UINT64:
-            return numbers<std::uint64_t>(variable, count);
+            return converted<std::uint64_t>(variable, count);
         default:
             return {};
     }
@@ -83,7 +83,7 @@ bool is_numeric(const matvar_t& variable) {
            variable.isComplex == 0 && variable.rank == 2;
 }
 
-std::string text_of(const matvar_t& variable) {
+std::string characters_of(const matvar_t& variable) {
     if (variable.class_type != MAT_C_CHAR || variable.data == nullptr || variable.data_size != 1) {
         return {};
     }
@@ -119,10 +119,10 @@ Status take(Variables& variables, mat_t* file, matvar_t& variable, std::size_t m
         return malformed("variable " + in_quotes(name) + " is damaged or cut off");
     }
     if (is_axes) {
-        variables.gyro_axes = text_of(variable);
+        variables.gyro_axes = characters_of(variable);
         return {};
     }
-    std::vector<double> values = values_of(variable, rows * columns);
+    std::vector<double> values = doubles_of(variable, rows * columns);
     if (values.size() == 1) {
         variables.scalars.emplace_back(name, values.front());
     } else {
@@ -132,7 +132,7 @@ Status take(Variables& variables, mat_t* file, matvar_t& variable, std::size_t m
 }
 
 // Samples go down a matrix; one that is wider than high lies on its side.
-void stand_up(Matrix& matrix) {
+void stand_up(MatMatrix& matrix) {
     if (matrix.columns <= matrix.rows) { return; }
     std::vector<double> turned(matrix.values.size());
     for (std::size_t r = 0; r < matrix.rows; ++r) {
@@ -146,7 +146,7 @@ void stand_up(Matrix& matrix) {
 
 bool is_understood(const std::string& name) { return csv_column(name) || dialect_name(name); }
 
-std::string name_of_column(const Matrix& matrix, std::size_t column) {
+std::string name_of_column(const MatMatrix& matrix, std::size_t column) {
     constexpr std::string_view axes = "xyz";
     if (matrix.columns == 1 && (is_understood(matrix.name) || !is_understood(matrix.name + "_x"))) {
         return matrix.name;
@@ -156,7 +156,7 @@ std::string name_of_column(const Matrix& matrix, std::size_t column) {
 }
 
 // gyrolog's own: SI units, which the names do not tell.
-std::vector<std::string> own_names(const Matrix& matrix, const std::string& gyro_axes) {
+std::vector<std::string> own_names(const MatMatrix& matrix, const std::string& gyro_axes) {
     if (matrix.name == "gyro") {
         std::vector<std::string> names;
         std::size_t at = 0;
@@ -176,9 +176,9 @@ std::vector<std::string> own_names(const Matrix& matrix, const std::string& gyro
     return {matrix.name};
 }
 
-std::vector<NumberColumn> columns_of(std::vector<Matrix>& matrices, const std::string& gyro_axes) {
+std::vector<NumberColumn> columns_of(std::vector<MatMatrix>& matrices, const std::string& gyro_axes) {
     std::vector<NumberColumn> columns;
-    for (Matrix& matrix : matrices) {
+    for (MatMatrix& matrix : matrices) {
         stand_up(matrix);
         std::vector<std::string> names;
         if (!gyro_axes.empty()) { names = own_names(matrix, gyro_axes); }

@@ -31,7 +31,7 @@ std::string length_text(double length_s) {
 }
 
 // Axes of which one sentence is said, and the longest recording that one of them takes.
-struct Asked {
+struct AxesNamed {
     std::vector<std::string> axes;
     double length_s = 0.0;
     bool is_out_of_reach = false;
@@ -58,7 +58,7 @@ struct SensorAxes {
 
 void add_unidentified(std::vector<std::string>& sentences, const SensorAxes& sensor, NoiseTerm term,
                       const LengthNeeded& needed) {
-    Asked asked;
+    AxesNamed asked;
     for (const AxisReport& axis : sensor.axes) {
         const FittedCoefficient& fitted = axis.fit[term];
         if (fitted.state == State::identified) { continue; }
@@ -82,7 +82,7 @@ void add_unidentified(std::vector<std::string>& sentences, const SensorAxes& sen
 
 void add_vague(std::vector<std::string>& sentences, const SensorAxes& sensor, NoiseTerm term,
                const LengthNeeded& needed) {
-    Asked asked;
+    AxesNamed asked;
     double worst_sd = 0.0;
     for (const AxisReport& axis : sensor.axes) {
         const FittedCoefficient& fitted = axis.fit[term];

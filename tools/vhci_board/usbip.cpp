@@ -7,7 +7,7 @@ namespace gyrolog::usbip {
 namespace {
 
 enum CommandCode : std::uint32_t { cmd_submit = 1, cmd_unlink = 2, ret_submit = 3, ret_unlink = 4 };
-constexpr std::uint32_t direction_in = 1;
+constexpr std::uint32_t usbip_direction_in = 1;
 
 // Offsets of the header's fields, in bytes.
 constexpr std::size_t at_command = 0x00;
@@ -52,7 +52,7 @@ Result<std::optional<Command>> CommandReader::next() {
     } else if (code == cmd_submit) {
         Submit submit;
         submit.sequence = sequence;
-        submit.in = load_u32(buffer_, at_direction) == direction_in;
+        submit.in = load_u32(buffer_, at_direction) == usbip_direction_in;
         submit.endpoint = static_cast<std::uint8_t>(load_u32(buffer_, at_endpoint) & 0x0FU);
         submit.requested_bytes = load_u32(buffer_, at_requested_bytes);
         if (submit.requested_bytes > transfer_bytes_max) {

@@ -19,7 +19,7 @@ namespace gyrolog {
 namespace {
 
 // The board is looked at this often: the frame of a full-speed bus.
-constexpr int turn_ms = 1;
+constexpr int kernel_turn_ms = 1;
 
 // 0 before the first start.
 double streaming_s(const VirtualBoard& board) {
@@ -61,7 +61,7 @@ Result<ConnectionEnd> serve_vhci_connection(VirtualBoard& board, std::optional<u
     usbip::CommandReader reader;
     while (stop == 0) {
         pollfd wait{plugged.socket(), POLLIN, 0};
-        ::poll(&wait, 1, turn_ms);
+        ::poll(&wait, 1, kernel_turn_ms);
         GYROLOG_TRY(const bool attached, receive(plugged.socket(), reader));
         if (!attached) { return ConnectionEnd::detached; }
 

@@ -14,7 +14,7 @@ namespace gyrolog {
 
 namespace {
 
-struct Expected {
+struct ExpectedJitter {
     double own_s = 0.0;     // the model's
     double sd_s = 0.0;      // of it
     double other_s2 = 0.0;  // known variance: rounding, effects that the model has
@@ -25,7 +25,7 @@ double scatter_log_likelihood_nats(const StampScatter& seen, double variance_s2)
 }
 
 // Of the sigma's distance z from the model's, in its standard deviations.
-double best_without_nats(const StampScatter& seen, const Expected& expected) {
+double best_without_nats(const StampScatter& seen, const ExpectedJitter& expected) {
     const auto nats = [&](double z) {
         const double own_s = std::max(0.0, expected.own_s + z * expected.sd_s);
         return scatter_log_likelihood_nats(seen, own_s * own_s + expected.other_s2) - 0.5 * z * z;
@@ -40,7 +40,7 @@ double default_jitter_sd_rel() { return typical_mpu9250().sd_rel.at("timestamp_j
 std::optional<Finding> find_spread(const EffectDefinition& effect, const Prediction& prediction,
                                    const StampScatter& seen) {
     const SensorModel& model = prediction.model();
-    Expected expected;
+    ExpectedJitter expected;
     expected.own_s = model.timestamp_jitter_s;
     expected.sd_s =
         model.timestamp_jitter_s > 0.0

@@ -32,7 +32,7 @@ namespace {
 const double log_factor_most = std::log(20.0);
 
 // In slots. A step has no length.
-struct Course {
+struct ChangeCourse {
     double at = 0.0;
     double length = 0.0;
 
@@ -48,7 +48,7 @@ private:
 };
 
 // One course on one axis.
-struct Trial {
+struct ChangeTrial {
     double gain_nats = -std::numeric_limits<double>::infinity();
     double log_factor = 0.0;
     double log_sd = 1.0;
@@ -59,8 +59,8 @@ struct Scan {
     double share = 1.0;
     WhitenedBlocks blocks;
     WhitenedBlocks coarse;
-    std::vector<Trial> steps;  // by course
-    std::vector<Trial> ramps;
+    std::vector<ChangeTrial> steps;  // by course
+    std::vector<ChangeTrial> ramps;
 };
 
 struct Factor {
@@ -71,16 +71,16 @@ struct Factor {
 };
 
 // Of a course for some axes.
-struct Fit {
+struct ChangeFit {
     std::vector<const Scan*> scans;
-    Course course;
+    ChangeCourse course;
     std::array<double, 2> course_sd{};  // of start and length
     std::vector<Factor> factors;
     double place_cost_nats = 0.0;  // of the freedom to choose the times
     double evidence_nats = 0.0;
 };
 
-std::vector<double> reached_by_block(const WhitenedBlocks& blocks, const Course& course) {
+std::vector<double> reached_by_block(const WhitenedBlocks& blocks, const ChangeCourse& course) {
     std::vector<double> reached(blocks.size());
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const auto from = static_cast<double>(i * blocks.length);
@@ -157,8 +157,8 @@ public:
             }
         }
         if (best.empty()) { return std::nullopt; }
-        Fit step = rough_fit(best, sum_of(best, &Scan::steps), steps_);
-        Fit ramp = rough_fit(best, sum_of(best, &Scan::ramps), ramps_);
+        ChangeFit step = rough_fit(best, sum_of(best, &Scan::steps), steps_);
+        ChangeFit ramp = rough_fit(best, sum_of(best, &Scan::ramps), ramps_);
         if (std::max(gain_of(step), gain_of(ramp)) < resolution::worth_refining_nats) { return std::nullopt; }
         refine(observation, step);
         refine(observation, ramp);
@@ -187,8 +187,8 @@ private:
     }
 
     static double highest(const Scan& scan) {
-        return std::max(std::ranges::max_element(scan.steps, {}, &Trial::gain_nats)->gain_nats,
-                        std::ranges::max_element(scan.ramps, {}, &Trial::gain_nats)->gain_nats);
+        return std::max(std::ranges::max_element(scan.steps, {}, &ChangeTrial::gain_nats)->gain_nats,
+                        std::ranges::max_element(scan.ramps, {}, &ChangeTrial::gain_nats)->gain_nats);
     }
 
     void scan_everywhere(Scan& scan) const {
@@ -228,7 +228,7 @@ private:
     void scan_ramps(Scan& scan) const {
         const WhitenedBlocks& blocks = scan.coarse;
         scan.ramps.clear();
-        for (const Course& ramp : ramps_) {
+        for (const ChangeCourse& ramp : ramps_) {
             const std::vector<double> reached = reached_by_block(blocks, ramp);
             double weight = 0.0;
             double x = 0.0;
@@ -254,7 +254,7 @@ private:
     }
 
     // Of a course on some axes: gains less what the factors cost, one for all axes or each its own.
-    double worth_nats(const std::vector<const Scan*>& scans, std::vector<Trial> Scan::*trials,
+    double worth_nats(const std::vector<const Scan*>& scans, std::vector<ChangeTrial> Scan::*trials,
                       std::size_t course) const {
         double gain = 0.0;
         double cost = 0.0;
@@ -262,7 +262,7 @@ private:
         double sum = 0.0;
         double squares = 0.0;
         for (const Scan* scan : scans) {
-            const Trial& trial = (scan->*trials)[course];
+            const ChangeTrial& trial = (scan->*trials)[course];
             const double known = 1.0 / (trial.log_sd * trial.log_sd);
             gain += trial.gain_nats;
             cost += parameter_cost_nats(log_factor_range_, trial.log_sd);
@@ -277,7 +277,7 @@ private:
         return log_sum_exp(ways) - std::log(2.0);
     }
     std::vector<double> sum_of(const std::vector<const Scan*>& scans,
-                               std::vector<Trial> Scan::*trials) const {
+                               std::vector<ChangeTrial> Scan::*trials) const {
         std::vector<double> nats((scans.front()->*trials).size());
         for (std::size_t i = 0; i < nats.size(); ++i) { nats[i] = worth_nats(scans, trials, i); }
         return nats;
@@ -293,9 +293,9 @@ private:
         return log_sum_exp(kinds) - std::log(2.0);
     }
 
-    static Fit rough_fit(const std::vector<const Scan*>& scans, const std::vector<double>& nats,
-                         const std::vector<Course>& courses) {
-        Fit fit;
+    static ChangeFit rough_fit(const std::vector<const Scan*>& scans, const std::vector<double>& nats,
+                               const std::vector<ChangeCourse>& courses) {
+        ChangeFit fit;
         fit.scans = scans;
         const auto best = static_cast<std::size_t>(std::ranges::max_element(nats) - nats.begin());
         fit.course = courses[best];
@@ -304,7 +304,7 @@ private:
         return fit;
     }
 
-    double evidence_of(const Fit& fit) const {
+    double evidence_of(const ChangeFit& fit) const {
         double nats = gain_of(fit) - fit.place_cost_nats;
         for (const Factor& factor : fit.factors) {
             nats -= parameter_cost_nats(log_factor_range_, factor.log_sd);
@@ -312,7 +312,7 @@ private:
         return nats;
     }
 
-    static double gain_of(const Fit& fit) {
+    static double gain_of(const ChangeFit& fit) {
         double sum = 0.0;
         for (const Factor& factor : fit.factors) { sum += factor.gain_nats; }
         return sum;
@@ -329,15 +329,15 @@ private:
         return factor;
     }
 
-    static void fit_factors(Fit& fit) {
+    static void fit_factors(ChangeFit& fit) {
         fit.factors.clear();
         for (const Scan* scan : fit.scans) {
             fit.factors.push_back(factor_at(*scan, scan->blocks, reached_by_block(scan->blocks, fit.course)));
         }
     }
 
-    void refine(const Observation& observation, Fit& fit) const {
-        const Fit rough = fit;
+    void refine(const Observation& observation, ChangeFit& fit) const {
+        const ChangeFit rough = fit;
         if (fit.course.length == 0.0) {
             refine_step(observation, fit);
         } else {
@@ -353,7 +353,7 @@ private:
     }
 
     // A gain is worth less where the blocks scatter more about the course than chance has it.
-    static void allow_for_scatter(Fit& fit) {
+    static void allow_for_scatter(ChangeFit& fit) {
         for (std::size_t a = 0; a < fit.scans.size(); ++a) {
             const Scan& scan = *fit.scans[a];
             Factor& factor = fit.factors[a];
@@ -365,7 +365,7 @@ private:
     }
 
     // To the sample, within a block and a half of where the blocks have it.
-    void refine_step(const Observation& observation, Fit& fit) const {
+    void refine_step(const Observation& observation, ChangeFit& fit) const {
         const std::size_t length = fit.scans.front()->blocks.length;
         const auto middle = static_cast<std::size_t>(fit.course.at);
         const std::size_t from = middle - std::min(middle, length + length / 2);
@@ -383,8 +383,8 @@ private:
     }
 
     // Whether each sample near a step is of the variance before or after.
-    void add_change_nats(const Observation& observation, const Fit& fit, std::size_t a, std::size_t from,
-                         std::vector<double>& nats) const {
+    void add_change_nats(const Observation& observation, const ChangeFit& fit, std::size_t a,
+                         std::size_t from, std::vector<double>& nats) const {
         const Scan& scan = *fit.scans[a];
         const std::vector<double> reached = reached_by_block(scan.blocks, fit.course);
         const double before =
@@ -420,14 +420,14 @@ private:
         return std::sqrt(std::max(squares / weight - sum * sum / (weight * weight), step * step / 12.0));
     }
 
-    void refine_ramp(Fit& fit) const {
+    void refine_ramp(ChangeFit& fit) const {
         const auto slots = static_cast<double>(prediction_->length());
         // Start and end as shares of the record.
         const auto gain = [&](const std::vector<double>& ends) {
             if (ends[0] < 0.0 || ends[1] > 1.0 || ends[1] <= ends[0]) {
                 return -std::numeric_limits<double>::infinity();
             }
-            const Course course{ends[0] * slots, (ends[1] - ends[0]) * slots};
+            const ChangeCourse course{ends[0] * slots, (ends[1] - ends[0]) * slots};
             double sum = 0.0;
             for (const Scan* scan : fit.scans) {
                 sum += factor_at(*scan, scan->coarse, reached_by_block(scan->coarse, course)).gain_nats;
@@ -470,7 +470,7 @@ private:
     }
 
     // What it gains that the level before the change is the model's, where the mean level is not.
-    double level_gain_nats(const Observation& observation, const Fit& fit, std::size_t a) const {
+    double level_gain_nats(const Observation& observation, const ChangeFit& fit, std::size_t a) const {
         const Scan& scan = *fit.scans[a];
         const std::vector<double> reached = reached_by_block(scan.blocks, fit.course);
         const auto white_level = [&](const std::vector<double>& level) {
@@ -485,7 +485,7 @@ private:
     }
 
     // One factor for all axes, where it is not much worse than their own.
-    bool share_factor(Fit& fit) const {
+    bool share_factor(ChangeFit& fit) const {
         if (fit.factors.size() < 2) { return true; }
         double weight = 0.0;
         double sum = 0.0;
@@ -514,7 +514,7 @@ private:
         return true;
     }
 
-    std::optional<Finding> finding_of(const Observation& observation, Fit fit) const {
+    std::optional<Finding> finding_of(const Observation& observation, ChangeFit fit) const {
         const bool together = share_factor(fit);
         Finding finding;
         finding.effect = effect_.name;
@@ -542,7 +542,7 @@ private:
         return finding;
     }
 
-    void add_entry(const Fit& fit, const Factor& factor, Finding& finding) const {
+    void add_entry(const ChangeFit& fit, const Factor& factor, Finding& finding) const {
         const double rate_hz = prediction_->rate_hz();
         const std::array<std::string, 3> names = {std::string(effect_.params[0].name),
                                                   std::string(effect_.params[1].name),
@@ -562,8 +562,8 @@ private:
     const EffectDefinition& effect_;
     std::shared_ptr<const Prediction> prediction_;
     double log_factor_range_ = 0.0;
-    std::vector<Course> steps_;  // at the beginning of each block
-    std::vector<Course> ramps_;
+    std::vector<ChangeCourse> steps_;  // at the beginning of each block
+    std::vector<ChangeCourse> ramps_;
 };
 
 }  // namespace

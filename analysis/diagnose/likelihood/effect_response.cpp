@@ -8,7 +8,7 @@ namespace gyrolog {
 
 namespace {
 
-std::vector<float> cosines_of(std::vector<double>& work, std::size_t kept, CosineTransform& transform) {
+std::vector<float> response_cosines(std::vector<double>& work, std::size_t kept, CosineTransform& transform) {
     transform.forward(work);
     work[0] = 0.0;
     return {work.begin(), work.begin() + static_cast<std::ptrdiff_t>(kept)};
@@ -43,7 +43,7 @@ std::array<std::vector<float>, 3> simulated_response(const Prediction& predictio
         for (std::size_t slot = 0; slot < work.size(); ++slot) {
             work[slot] = static_cast<double>(changed[axis][slot]) - static_cast<double>(before[slot]);
         }
-        cosines[axis] = cosines_of(work, kept, *transform);
+        cosines[axis] = response_cosines(work, kept, *transform);
     }
     return cosines;
 }

@@ -31,7 +31,7 @@ double change_nats(int change) { return change == 0 ? 0.0 : 8.0 + 0.1 * std::abs
 
 // Running mean over `width` slots. In a shifted reference its own noise is no longer that of the samples:
 // what of it is quicker than any motion would pass for signs of a lag.
-std::vector<float> smoothed(const std::vector<float>& values, std::size_t width) {
+std::vector<float> running_mean(const std::vector<float>& values, std::size_t width) {
     std::vector<float> smooth(values.size());
     const std::size_t half = width / 2;
     double sum = 0.0;
@@ -86,9 +86,9 @@ LagCourse::LagCourse(const Prediction& prediction, const Recording& recording)
         for (std::size_t slot = 0; slot < length_; ++slot) {
             measured.seen[slot] = present_[slot] ? measured.seen[slot] - bias : (*expected)[slot];
         }
-        measured.smooth_seen = smoothed(measured.seen, smooth_slots_);
+        measured.smooth_seen = running_mean(measured.seen, smooth_slots_);
         measured.expected = expected;
-        measured.smooth_expected = smoothed(*expected, smooth_slots_);
+        measured.smooth_expected = running_mean(*expected, smooth_slots_);
         axes_.push_back(std::move(measured));
     }
     // While the lag is unknown, so is the bias: first with any constant in each window.

@@ -19,7 +19,7 @@ namespace {
 constexpr std::array coefficient_names = {"N", "B", "K"};
 
 // It is of no frequency and no time.
-void locate_nowhere(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& /*where*/) {}
+void parameter_has_no_place(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& /*where*/) {}
 
 }  // namespace
 
@@ -28,7 +28,7 @@ const Measure measures::noise_coefficients{.name = "noise coefficients",
                                            .y_name = "off (stated sd)",
                                            .shown_x = as_it_is,
                                            .shown_y = as_it_is,
-                                           .locate = locate_nowhere,
+                                           .locate = parameter_has_no_place,
                                            .categories = coefficient_names,
                                            .is_course = false,
                                            .least_sd = definition::least_sd_of_stated};
@@ -37,7 +37,7 @@ const Measure measures::motion_parameters{.name = "gains, latency and clock",
                                           .y_name = "off (stated sd)",
                                           .shown_x = as_it_is,
                                           .shown_y = as_it_is,
-                                          .locate = locate_nowhere,
+                                          .locate = parameter_has_no_place,
                                           .is_course = false,
                                           .least_sd = definition::least_sd_of_stated};
 

@@ -10,7 +10,7 @@
 namespace gyrolog {
 namespace {
 
-bool is_line(const EffectModel& entry) { return traits_of(entry.effect).is_line; }
+bool is_line_entry(const EffectModel& entry) { return traits_of(entry.effect).is_line; }
 bool is_of_single_samples(const EffectModel& entry) {
     return traits_of(entry.effect).far_off == FarOff::single_samples;
 }
@@ -53,7 +53,7 @@ SensorModel model_of_means(SensorModel model, std::size_t samples, double rate_h
         *sd /= std::sqrt(number);
     }
     for (EffectModel& entry : model.effects) {
-        if (is_line(entry)) { turn(entry, line_in_means(entry.params.at("f_hz"), rate_hz, samples)); }
+        if (is_line_entry(entry)) { turn(entry, line_in_means(entry.params.at("f_hz"), rate_hz, samples)); }
         if (is_of_single_samples(entry)) { scale_sizes(entry.params, 1.0 / number); }
     }
     std::erase_if(model.effects, [](const EffectModel& entry) {
@@ -70,7 +70,7 @@ Finding finding_of_samples(Finding finding, std::size_t samples, double rate_hz)
             scale_sizes(entry.params, static_cast<double>(samples));
             if (i < finding.sd.size()) { scale_sizes(finding.sd[i], static_cast<double>(samples)); }
         }
-        if (!is_line(entry)) { continue; }
+        if (!is_line_entry(entry)) { continue; }
         const std::complex<double> of_sample = 1.0 / line_in_means(entry.params.at("f_hz"), rate_hz, samples);
         turn(entry, of_sample);
         if (i < finding.sd.size() && finding.sd[i].contains("amplitude_dps")) {

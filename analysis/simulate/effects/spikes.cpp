@@ -105,7 +105,7 @@ double median_around(const Column& column, std::size_t row) {
 
 // Samples that are more likely a spike than noise: beyond half the smallest size, and beyond what the noise
 // reaches some twice in a million samples.
-void unjudged(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
+void unjudged_spikes(const Recording& recording, const EffectModel& entry, std::vector<bool>& judged) {
     constexpr double noise_sigma = 5.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Column* column = recording.find(gyro_columns[axis]);
@@ -127,7 +127,7 @@ constexpr EffectSignature spikes_signature = {
     .method = EvidenceMethod::outliers,
     .place = PlaceKind::structure,
     .structure = "isolated_samples",
-    .unjudged = unjudged,
+    .unjudged = unjudged_spikes,
     .words = "Single samples are off by {smallest_dps} to {largest_dps}, {per_hour}.",
     .noun = "spikes of {smallest_dps} to {largest_dps}",
     .decided_by = "a longer recording at rest, of raw samples",

@@ -10,7 +10,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::array<const FilterFormat*, 9> formats = {
+constexpr std::array<const FilterFormat*, 9> all_filter_formats = {
     &kalibr_format,        &openvins_format,        &vins_fusion_format,
     &orb_slam3_format,     &gtsam_format,           &px4_ekf2_format,
     &ardupilot_ek3_format, &sensor_msgs_imu_format, &robot_localization_format,
@@ -98,12 +98,12 @@ std::string head_text(const FilterFormat& format, const FilterSource& source) {
 
 }  // namespace
 
-std::span<const FilterFormat* const> filter_formats() { return formats; }
+std::span<const FilterFormat* const> filter_formats() { return all_filter_formats; }
 
 const FilterFormat* find_filter_format(std::string_view name) {
-    const auto* const found =
-        std::ranges::find_if(formats, [&](const FilterFormat* format) { return format->name == name; });
-    return found == formats.end() ? nullptr : *found;
+    const auto* const found = std::ranges::find_if(
+        all_filter_formats, [&](const FilterFormat* format) { return format->name == name; });
+    return found == all_filter_formats.end() ? nullptr : *found;
 }
 
 std::string filter_text(const FilterFormat& format, const ExportSource& source) {

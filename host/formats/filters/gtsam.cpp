@@ -4,7 +4,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view gtsam_facts[] = {
     "Squares of densities. GTSAM adds covariance / dt * dt^2 for noises, covariance * dt for biases and for "
     "integrationCovariance (gtsam/navigation/CombinedImuFactor.cpp, integrateMeasurement, 00c797b7fc23).",
     "biasAccOmegaInt is the covariance of the bias at the start, and is added once in each step, as if it "
@@ -17,7 +17,7 @@ constexpr std::string_view facts[] = {
     "covariance of one step regular.",
 };
 
-constexpr FilterNumber numbers[] = {
+constexpr FilterNumber gtsam_numbers[] = {
     {"GyroscopeCovariance", SensorKind::gyro, NoiseTerm::N, "(rad/s)^2/Hz", squared},
     {"AccelerometerCovariance", SensorKind::accelerometer, NoiseTerm::N, "(m/s^2)^2/Hz", squared},
     {"BiasOmegaCovariance", SensorKind::gyro, NoiseTerm::K, "(rad/s^2)^2/Hz", squared},
@@ -30,8 +30,8 @@ constinit const FilterFormat gtsam_format = {
     .name = "gtsam",
     .summary = "GTSAM: PreintegrationCombinedParams, in Python",
     .kind = "Continuous-time covariances.",
-    .facts = facts,
-    .numbers = numbers,
+    .facts = gtsam_facts,
+    .numbers = gtsam_numbers,
     .line = "params.set{key}({value} * np.eye(3))",
     .before =
         "import gtsam\nimport numpy as np\n\n"

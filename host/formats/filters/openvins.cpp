@@ -4,7 +4,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view openvins_facts[] = {
     "OpenVINS divides a density's square by the step before it multiplies by the step's square, so that its "
     "variance grows by density^2 * dt (ov_msckf/src/state/Propagator.cpp, predict_and_compute, "
     "03b3442451ec).",
@@ -12,7 +12,7 @@ constexpr std::string_view facts[] = {
     "calibration gives. The keys are those of config/euroc_mav/kalibr_imu_chain.yaml, 1d10d1257d7c.",
 };
 
-constexpr FilterNumber numbers[] = {
+constexpr FilterNumber openvins_numbers[] = {
     {"accelerometer_noise_density", SensorKind::accelerometer, NoiseTerm::N, "m/s^2/sqrt(Hz)", continuous},
     {"accelerometer_random_walk", SensorKind::accelerometer, NoiseTerm::K, "m/s^3/sqrt(Hz)", continuous},
     {"gyroscope_noise_density", SensorKind::gyro, NoiseTerm::N, "rad/s/sqrt(Hz)", continuous},
@@ -25,8 +25,8 @@ constinit const FilterFormat openvins_format = {
     .name = "openvins",
     .summary = "OpenVINS: kalibr_imu_chain.yaml",
     .kind = "Continuous-time densities.",
-    .facts = facts,
-    .numbers = numbers,
+    .facts = openvins_facts,
+    .numbers = openvins_numbers,
     .line = "  {key}: {value}",
     .before =
         "imu0:\n"

@@ -4,7 +4,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view orb_slam3_facts[] = {
     "ORB-SLAM3 multiplies noises by sqrt(IMU.Frequency) and divides walks by it (version 1.0, "
     "src/Tracking.cc, where mpImuCalib is made), then adds (noise * dt)^2 and walk^2 for each sample "
     "(src/ImuTypes.cc, IntegrateNewMeasurement, c85e0eada71f): densities. With another IMU.Frequency than "
@@ -16,7 +16,7 @@ constexpr std::string_view facts[] = {
     "Part of a settings file: keep the camera's and IMU.T_b_c1 of your own.",
 };
 
-constexpr FilterNumber numbers[] = {
+constexpr FilterNumber orb_slam3_numbers[] = {
     {"IMU.NoiseGyro", SensorKind::gyro, NoiseTerm::N, "rad/s/sqrt(Hz)", continuous},
     {"IMU.NoiseAcc", SensorKind::accelerometer, NoiseTerm::N, "m/s^2/sqrt(Hz)", continuous},
     {"IMU.GyroWalk", SensorKind::gyro, NoiseTerm::K, "rad/s^2/sqrt(Hz)", continuous},
@@ -29,8 +29,8 @@ constinit const FilterFormat orb_slam3_format = {
     .name = "orb-slam3",
     .summary = "ORB-SLAM3: the IMU's settings",
     .kind = "Continuous-time densities.",
-    .facts = facts,
-    .numbers = numbers,
+    .facts = orb_slam3_facts,
+    .numbers = orb_slam3_numbers,
     .line = "{key}: {value}",
     .before = "IMU.Frequency: {rate}  # Hz\n",
     .after = "",

@@ -4,9 +4,9 @@
 namespace gyrolog {
 namespace {
 
-constexpr int step_rate_hz = 100;
+constexpr int px4_ekf2_step_rate_hz = 100;
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view px4_ekf2_facts[] = {
     "EKF2 adds (number * dt)^2 in each of its steps, for noises and for biases (PX4-Autopilot, "
     "src/modules/ekf2/EKF/covariance.cpp, predictCovariance, 028733e1c7eb). Its unit says rad/s, what it "
     "means "
@@ -19,11 +19,13 @@ constexpr std::string_view facts[] = {
     "(fixCovarianceErrors of the same file): a smaller EKF2_ACC_B_NOISE acts only above that.",
 };
 
-constexpr FilterNumber numbers[] = {
-    {"EKF2_GYR_NOISE", SensorKind::gyro, NoiseTerm::N, "rad/s", once_a_step<step_rate_hz>, 1.0},
-    {"EKF2_ACC_NOISE", SensorKind::accelerometer, NoiseTerm::N, "m/s^2", once_a_step<step_rate_hz>, 1.0},
-    {"EKF2_GYR_B_NOISE", SensorKind::gyro, NoiseTerm::K, "rad/s^2", once_a_step<step_rate_hz>, 1.0},
-    {"EKF2_ACC_B_NOISE", SensorKind::accelerometer, NoiseTerm::K, "m/s^3", once_a_step<step_rate_hz>, 1.0},
+constexpr FilterNumber px4_ekf2_numbers[] = {
+    {"EKF2_GYR_NOISE", SensorKind::gyro, NoiseTerm::N, "rad/s", once_a_step<px4_ekf2_step_rate_hz>, 1.0},
+    {"EKF2_ACC_NOISE", SensorKind::accelerometer, NoiseTerm::N, "m/s^2", once_a_step<px4_ekf2_step_rate_hz>,
+     1.0},
+    {"EKF2_GYR_B_NOISE", SensorKind::gyro, NoiseTerm::K, "rad/s^2", once_a_step<px4_ekf2_step_rate_hz>, 1.0},
+    {"EKF2_ACC_B_NOISE", SensorKind::accelerometer, NoiseTerm::K, "m/s^3", once_a_step<px4_ekf2_step_rate_hz>,
+     1.0},
 };
 
 }  // namespace
@@ -32,8 +34,8 @@ constinit const FilterFormat px4_ekf2_format = {
     .name = "px4-ekf2",
     .summary = "PX4's EKF2: lines of a .params file",
     .kind = "Discrete at 100 Hz, the filter's step; the rate of the sensor does not matter.",
-    .facts = facts,
-    .numbers = numbers,
+    .facts = px4_ekf2_facts,
+    .numbers = px4_ekf2_numbers,
     .line = "1\t1\t{key}\t{value}\t9",  // vehicle, component, name, value, type: a 32 bit float
     .before = "",
     .after = "",

@@ -28,7 +28,7 @@ constexpr std::string_view robot_localization_facts[] = {
     "A covariance is N^2 * rate, that of one message's white noise.",
 };
 
-constexpr FilterNumber numbers[] = {
+constexpr FilterNumber sensor_msgs_imu_numbers[] = {
     {"angular_velocity_covariance", SensorKind::gyro, NoiseTerm::N, "(rad/s)^2", once_a_sample},
     {"linear_acceleration_covariance", SensorKind::accelerometer, NoiseTerm::N, "(m/s^2)^2", once_a_sample},
 };
@@ -44,7 +44,7 @@ double variance(const FilterTerm& term, std::string_view axis, double rate_hz) {
 
 std::string imu_text(const FilterSource& source) {
     std::string text = "orientation_covariance: [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]\n";
-    for (const FilterNumber& number : numbers) {
+    for (const FilterNumber& number : sensor_msgs_imu_numbers) {
         const FilterTerm& term = source.term(number.sensor, number.term);
         text += fmt::format("# {}; axes of N: {}\n", number.unit, term.axes);
         if (!term.value) {
@@ -66,7 +66,7 @@ constinit const FilterFormat sensor_msgs_imu_format = {
     .summary = "ROS: the covariances of sensor_msgs/Imu, in YAML",
     .kind = "Discrete at {rate} Hz.",
     .facts = message_facts,
-    .numbers = numbers,
+    .numbers = sensor_msgs_imu_numbers,
     .line = "",
     .before = "",
     .after = "",
@@ -78,7 +78,7 @@ constinit const FilterFormat robot_localization_format = {
     .summary = "robot_localization: the covariances of sensor_msgs/Imu that it takes, in YAML",
     .kind = "Discrete at {rate} Hz.",
     .facts = robot_localization_facts,
-    .numbers = numbers,
+    .numbers = sensor_msgs_imu_numbers,
     .line = "",
     .before = "",
     .after = "",

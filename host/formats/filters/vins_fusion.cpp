@@ -6,7 +6,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view vins_fusion_facts[] = {
     "VINS-Fusion and VINS-Mono: the covariance of a step is V noise V', with dt itself in V: numbers are "
     "deviations of a sample, not densities (vins_estimator/src/factor/integration_base.h, "
     "midPointIntegration, VINS-Fusion 939f01282fa4).",
@@ -20,7 +20,7 @@ constexpr std::string_view facts[] = {
 
 double half_lost(double density, double rate_hz) { return density * std::sqrt(2.0 * rate_hz); }
 
-constexpr FilterNumber numbers[] = {
+constexpr FilterNumber vins_fusion_numbers[] = {
     {"acc_n", SensorKind::accelerometer, NoiseTerm::N, "m/s^2", half_lost},
     {"gyr_n", SensorKind::gyro, NoiseTerm::N, "rad/s", half_lost},
     {"acc_w", SensorKind::accelerometer, NoiseTerm::K, "m/s^3", once_a_sample},
@@ -33,8 +33,8 @@ constinit const FilterFormat vins_fusion_format = {
     .name = "vins-fusion",
     .summary = "VINS-Fusion, VINS-Mono: the IMU's four numbers",
     .kind = "Discrete at {rate} Hz.",
-    .facts = facts,
-    .numbers = numbers,
+    .facts = vins_fusion_facts,
+    .numbers = vins_fusion_numbers,
     .line = "{key}: {value}",
     .before = "",
     .after = "",

@@ -19,7 +19,7 @@ constexpr double s_per_h = 3600.0;
 // The walk is GyroBiasStability / sqrt(tau), and nothing else is made of tau.
 constexpr double tau_s = 100.0;
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view airsim_facts[] = {
     "deg/sqrt(h) and deg/h; the bias is a random walk of density GyroBiasStability / "
     "sqrt(GyroBiasStabilityTau), "
     "no Gauss-Markov process (AirSim, AirLib/include/sensors/imu/ImuSimple.hpp, 04c4bf969f6b, and "
@@ -234,7 +234,7 @@ constinit const SimulatorFormat airsim_format = {
     .name = "airsim",
     .summary = "AirSim and Colosseum: settings.json",
     .abilities = airsim_abilities,
-    .facts = facts,
+    .facts = airsim_facts,
     .text = airsim_text,
 };
 

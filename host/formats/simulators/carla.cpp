@@ -5,7 +5,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view carla_facts[] = {
     "Noise is per tick of the sensor, so that sensor_tick belongs to it; the bias is constant (CARLA, "
     "Unreal/CarlaUE4/Plugins/Carla/Source/Carla/Sensor/InertialMeasurementUnit.cpp, ComputeGyroscopeNoise, "
     "001f560e0190).",
@@ -34,7 +34,7 @@ constinit const SimulatorFormat carla_format = {
     .name = "carla",
     .summary = "CARLA: the attributes of sensor.other.imu, set in Python",
     .abilities = {.noise = ProjectedTerms::white},
-    .facts = facts,
+    .facts = carla_facts,
     .text = carla_text,
 };
 

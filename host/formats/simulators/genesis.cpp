@@ -8,7 +8,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view genesis_facts[] = {
     "Noise and walk are per step of the scene, so that the rate above belongs to them; the walk begins at "
     "zero "
     "(Genesis, genesis/engine/sensors/base_sensor.py, _add_noise_drift_bias; imu.py at f8c684abf052).",
@@ -41,7 +41,7 @@ constinit const SimulatorFormat genesis_format = {
     .name = "genesis",
     .summary = "Genesis: the options of an IMU, in Python",
     .abilities = {.noise = ProjectedTerms::white_walk, .rounds = true, .cross_axis = true, .delays = true},
-    .facts = facts,
+    .facts = genesis_facts,
     .text = genesis_text,
 };
 

@@ -8,9 +8,9 @@
 namespace gyrolog {
 namespace {
 
-constexpr double s_per_h = 3600.0;
+constexpr double hour_s = 3600.0;
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view gnss_ins_sim_facts[] = {
     "deg/h and deg/sqrt(h); gyro_b_stability is the standard deviation of a Gauss-Markov process, which "
     "begins "
     "at zero (gnss-ins-sim, gnss_ins_sim/sim/imu_model.py at dc4da27e97fb; pathgen/pathgen.py, bias_drift).",
@@ -25,9 +25,9 @@ std::string gnss_ins_sim_text(const SimulatorSource& source, std::span<const std
     Vector3 correlation_s{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const NoiseProjection& noise = source.noise[axis];
-        bias_deg_h[axis] = source.bias_rad_s[axis] * deg_per_rad * s_per_h;
-        arw_deg_sqrt_h[axis] = noise.N_rad_per_sqrt_s * deg_per_rad * std::sqrt(s_per_h);
-        sd_deg_h[axis] = noise.gauss_markov.sigma_rad_per_s * deg_per_rad * s_per_h;
+        bias_deg_h[axis] = source.bias_rad_s[axis] * deg_per_rad * hour_s;
+        arw_deg_sqrt_h[axis] = noise.N_rad_per_sqrt_s * deg_per_rad * std::sqrt(hour_s);
+        sd_deg_h[axis] = noise.gauss_markov.sigma_rad_per_s * deg_per_rad * hour_s;
         correlation_s[axis] =
             noise.gauss_markov.sigma_rad_per_s > 0.0 ? noise.gauss_markov.correlation_s : 100.0;
     }
@@ -51,7 +51,7 @@ constinit const SimulatorFormat gnss_ins_sim_format = {
     .name = "gnss-ins-sim",
     .summary = "gnss-ins-sim: the IMU's error model, in Python",
     .abilities = {.noise = ProjectedTerms::white_gauss_markov},
-    .facts = facts,
+    .facts = gnss_ins_sim_facts,
     .text = gnss_ins_sim_text,
 };
 

@@ -6,7 +6,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view isaaclab_facts[] = {
     "std is per observation, so that the observation rate above belongs to it; nothing in it remembers the "
     "last "
     "step (IsaacLab, source/isaaclab/isaaclab/utils/noise/noise_model.py, gaussian_noise, 046b71b86f49).",
@@ -33,7 +33,7 @@ constinit const SimulatorFormat isaaclab_format = {
     .name = "isaaclab",
     .summary = "Isaac Lab: the noise of an observation term, in Python",
     .abilities = {.noise = ProjectedTerms::white},
-    .facts = facts,
+    .facts = isaaclab_facts,
     .text = isaaclab_text,
 };
 

@@ -5,7 +5,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view jmavsim_facts[] = {
     "jMAVSim reads no file: the line below belongs where the sensors are made. Noise is per reading, one "
     "number "
     "for all axes; there is no bias (jMAVSim, src/me/drton/jmavsim/SimpleSensors.java, getGyro and "
@@ -23,7 +23,7 @@ constinit const SimulatorFormat jmavsim_format = {
     .name = "jmavsim",
     .summary = "jMAVSim: the noise of the gyro, a line of Java",
     .abilities = {.noise = ProjectedTerms::white, .per_axis = false, .bias = false},
-    .facts = facts,
+    .facts = jmavsim_facts,
     .text = jmavsim_text,
 };
 

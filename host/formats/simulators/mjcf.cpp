@@ -12,7 +12,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view mjcf_facts[] = {
     "MuJoCo from 3.1.4 on adds no noise: noise is a note there. The lines in Python below add it, and the "
     "bias, to "
     "what the sensor reads; the error above is theirs (MuJoCo, changelog of 3.1.4, item 1; XML reference, "
@@ -117,7 +117,7 @@ private:
         return attribute ? values_.number(first_number(attribute), name, range) : otherwise;
     }
 
-    // Without, interval and delay are not heeded: see facts.
+    // Without, interval and delay are not heeded: see mjcf_facts.
     bool keeps_readings() { return number(gyro_, "nsample", Range::not_negative, 0.0) > 0.0; }
 
     // Of the gyro, or of the simulation: the last option of several counts.
@@ -179,7 +179,7 @@ constinit const SimulatorFormat mjcf_format = {
     .name = "mjcf",
     .summary = "MuJoCo: a gyro in MJCF, with its noise in Python",
     .abilities = mjcf_abilities,
-    .facts = facts,
+    .facts = mjcf_facts,
     .text = mjcf_text,
 };
 

@@ -8,7 +8,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view navego_facts[] = {
     "SI, as gyro_gen() wants them: not for imu_si_errors(). g_std is per sample (NaveGo, "
     "simulation/gyro_gen.m, "
     "f91a1353901b).",
@@ -41,7 +41,7 @@ constinit const SimulatorFormat navego_format = {
     .name = "navego",
     .summary = "NaveGo: the fields of an imu structure, in MATLAB",
     .abilities = {.noise = ProjectedTerms::white_walk},
-    .facts = facts,
+    .facts = navego_facts,
     .text = navego_text,
 };
 

@@ -5,7 +5,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view pegasus_facts[] = {
     "For IMU(config=imu_config). Densities, two-sided; the bias is a Gauss-Markov process that begins at "
     "zero "
     "(PegasusSimulator, extensions/pegasus.simulator/pegasus/simulator/logic/sensors/imu.py, update, "
@@ -35,7 +35,7 @@ constinit const SimulatorFormat pegasus_format = {
     .name = "pegasus",
     .summary = "Pegasus Simulator: the IMU's configuration in Python",
     .abilities = {.noise = ProjectedTerms::white_gauss_markov, .per_axis = false, .bias = false},
-    .facts = facts,
+    .facts = pegasus_facts,
     .text = pegasus_text,
 };
 

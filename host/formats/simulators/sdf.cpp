@@ -12,7 +12,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view sdf_facts[] = {
     "stddev is per sample, so that update_rate belongs to it. dynamic_bias_stddev is no standard deviation "
     "but "
     "the density that drives the bias, rad/s*sqrt(Hz); the bias begins at rest "
@@ -207,7 +207,7 @@ constinit const SimulatorFormat sdf_format = {
     .name = "sdf",
     .summary = "gz-sensors and Gazebo classic: an imu sensor in SDF",
     .abilities = abilities,
-    .facts = facts,
+    .facts = sdf_facts,
     .text = sdf_text,
 };
 

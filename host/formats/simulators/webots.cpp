@@ -5,7 +5,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::string_view facts[] = {
+constexpr std::string_view webots_facts[] = {
     "resolution is in rad/s, after the lookup table, which ends at full scale (Webots, "
     "docs/reference/gyro.md, "
     "013d9359ef73).",
@@ -27,7 +27,7 @@ constinit const SimulatorFormat webots_format = {
     .name = "webots",
     .summary = "Webots: a Gyro node with range and resolution",
     .abilities = {.noise = std::nullopt, .bias = false, .rounds = true, .clips = true},
-    .facts = facts,
+    .facts = webots_facts,
     .text = webots_text,
 };
 
