@@ -9,6 +9,7 @@ DIRECTORY/targets.txt has a line for each target, with tabs between its name, th
 as whole paths.
 Writes the texts below DIRECTORY/NAME, and prints likewise for each target its name and what to compile.
 """
+import math
 import os
 import re
 import subprocess
@@ -141,11 +142,18 @@ class Joined:
 
 
 def groups_of(sources, lines_most, tree=None):
-    """Groups of C++ sources in which no local name is there twice or declared by a header that one of them includes."""
+    """Groups of C++ sources in which no local name is there twice or declared by a header that one of them includes.
+
+    Of a length, where names permit: a short last group would read the headers for little, and a long one be waited for.
+    """
     tree = tree or Tree(ROOT)
+    each = [Joined(tree, source) for source in sources]
+    lines = sum(one.lines for one in each)
+    equal_lines = lines / max(1, math.ceil(lines / lines_most))
+    # A group that has no room for the longest source is full: as many groups as it must be are enough.
+    lines_most = min(lines_most, equal_lines + max((one.lines for one in each), default=0))
     groups = []
-    for source in sources:
-        one = Joined(tree, source)
+    for one in each:
         group = next((group for group in groups if group.lines + one.lines <= lines_most and group.fits(one)), None)
         if group:
             group.add(one)
