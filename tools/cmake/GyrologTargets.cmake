@@ -67,7 +67,7 @@ endif()
 # gyrolog_sources(NAME LINES [SEVERAL_PRECOMPILE <header>...] [REUSE target] SOURCES ...): the sources of a target. With
 # GYROLOG_JOIN_SOURCES the end of the configuration (gyrolog_join_sources) makes of them fewer that include several each,
 # LINES at most, which compile in half the time: for builds that are made once. Headers to precompile are those of REUSE,
-# or its own where more than one source is left.
+# or its own where more than four sources are left.
 function(gyrolog_sources name lines)
   cmake_parse_arguments(arg "" "REUSE" "SEVERAL_PRECOMPILE;SOURCES" ${ARGN})
   set(sources ${arg_SOURCES})
@@ -87,7 +87,8 @@ function(gyrolog_set_sources name)
   get_target_property(precompile ${name} GYROLOG_PRECOMPILE)
   get_target_property(reuse ${name} GYROLOG_REUSE)
   list(LENGTH ARGN units)
-  if(precompile AND units GREATER 1)
+  # Headers take as long to precompile as three or four texts take to read them, and all of those would wait.
+  if(precompile AND units GREATER 4)
     target_precompile_headers(${name} PRIVATE ${precompile})
   elseif(reuse AND NOT ARGN MATCHES "\\.c(;|$)")
     target_precompile_headers(${name} REUSE_FROM ${reuse})
@@ -134,7 +135,7 @@ gyrolog_precompile_standard_headers(${GYROLOG_STANDARD_HEADERS}_brief ${GYROLOG_
 
 # gyrolog_library(NAME SOURCES ... LINK ... [PRECOMPILE <header>...] [RUNS_BRIEFLY | FASTER_IN benchmark]): a static
 # library with the project's settings. PRECOMPILE: headers that most of its sources include and that are long to read,
-# in place of those of the standard library; where all its sources are compiled as one, that one reads them itself.
+# in place of those of the standard library; where its sources are compiled as a few, those read them themselves.
 # RUNS_BRIEFLY: nothing in it runs for long: GYROLOG_BRIEF_OPTIMIZATION is enough. FASTER_IN: -O3, which that benchmark
 # shows to pay. Such a library reads no precompiled headers: they were compiled with -O2, and GCC 12 then compiles
 # functions with a target attribute with -O2, too.
