@@ -17,7 +17,8 @@ namespace gyrolog::resolution {
 // How many samples on either side say what the level in a hole is: so many that what they have in common with
 // the stand-ins is slower than the white noise reaches.
 constexpr std::size_t level_samples = 256;
-// How far away a sample still tells what stands beside it.
+// Samples farther away have no weight in what is drawn for a hole. Behind a filter of 5 Hz at 100 Hz the
+// weight there is 1e-12 of the nearest one's, beside flicker noise 2e-3.
 constexpr std::size_t stand_in_lags = 64;
 
 }  // namespace gyrolog::resolution
@@ -118,7 +119,7 @@ void draw_lines(std::vector<float>& values, const std::vector<bool>& present, do
     }
 }
 
-// What stands in a hole is like the samples beside it, as far as the model's noise is alike there.
+// Fills every hole with what the model's noise may be there, given the samples around it.
 void fill_holes(const Prediction& prediction, std::size_t axis, std::vector<float>& values,
                 const std::vector<bool>& present, std::uint64_t seed) {
     std::vector<double> density;

@@ -1,8 +1,8 @@
 // Stand-ins are values for samples that are missing, such as the noise of a stationary model would have
 // there: drawn from what the model expects of them given the samples beside them (conditional simulation; H.
 // Rue, L. Held, Gaussian Markov Random Fields, 2005, 2.3.1). Likelihoods of spectra take them for samples.
-// What is drawn otherwise is an outlier where neighbours tell each other, as behind a low-pass filter, and
-// adds noise at frequencies that have hardly any.
+// A value that ignores its neighbours is an outlier behind a low-pass filter, and adds noise at frequencies
+// that have hardly any.
 #pragma once
 
 #include <span>
@@ -21,9 +21,10 @@ std::vector<double> inverse_covariance(const SpectralBins& bins, std::span<const
                                        double rate_hz, std::size_t length, std::size_t lags);
 
 // The function replaces the values that are not present, which hold a first guess of the level: blocks of
-// them are drawn in turns, each given all else (block Gibbs sampling). `covariance_inverse`: c_0 ... as
-// above, further ones are taken for 0. `noise` draws one number for each slot.
+// them are drawn in turns, each given all else (block Gibbs sampling). `inverse`: c_0 ... c_lags as above.
+// What samples farther away than `lags` would tell of slow noise, the mean of those that are nearer tells.
+// `noise` draws one number for each slot.
 void draw_stand_ins(std::span<float> values, const std::vector<bool>& present,
-                    std::span<const double> covariance_inverse, const RandomStream& noise);
+                    std::span<const double> inverse, const RandomStream& noise);
 
 }  // namespace gyrolog

@@ -24,7 +24,7 @@ std::vector<double> autoregression_density(const SpectralBins& bins) {
     return density;
 }
 
-TEST(InverseCovariance, OfWhiteNoiseIsThatOfSinglesSamples) {
+TEST(InverseCovariance, OfWhiteNoiseIsThatOfSingleSamples) {
     const SpectralBins bins = spectral_bins(length, rate_hz);
     const std::vector<double> density(bins.size(), 0.04 / rate_hz);
     const std::vector<double> inverse = inverse_covariance(bins, density, rate_hz, length, 8);
@@ -72,6 +72,26 @@ TEST(StandIns, OfSingleSamplesHaveTheMeanAndTheVarianceThatTheirNeighboursLeave)
     }
     EXPECT_NEAR(sum / count, 0.0, 4.0 / std::sqrt(count));
     EXPECT_NEAR(square / count, 1.0, 4.0 * std::sqrt(2.0 / count));
+}
+
+// Slow noise goes far: what is drawn in a hole does not depend on how far from zero the level is.
+TEST(StandIns, FollowAnyLevel) {
+    const SpectralBins bins = spectral_bins(length, rate_hz);
+    std::vector<double> density;
+    for (const SpectralBin& bin : bins) { density.push_back((1.0 + 0.5 / (bin.f_hz * bin.f_hz)) / rate_hz); }
+    const std::vector<double> inverse = inverse_covariance(bins, density, rate_hz, length, 64);
+    const RandomStream draws(5, 6);
+    std::vector<float> near(length);
+    std::vector<float> far(length);
+    std::vector<bool> present(length, true);
+    for (std::size_t i = 0; i < length; ++i) {
+        near[i] = static_cast<float>(draws.normal(i));
+        far[i] = near[i] + 100.0F;
+        present[i] = i % 50 > 2;
+    }
+    draw_stand_ins(near, present, inverse, RandomStream(3, 4));
+    draw_stand_ins(far, present, inverse, RandomStream(3, 4));
+    for (std::size_t i = 0; i < length; ++i) { ASSERT_NEAR(far[i] - near[i], 100.0F, 1e-3F) << i; }
 }
 
 // Behind a low-pass filter the density near half of the rate is some ten thousandth of that of slow noise:
