@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "analysis/diagnose/estimators/catalogue.hpp"
+#include "analysis/diagnose/estimators/hypotheses.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
-#include "analysis/diagnose/likelihood/observation.hpp"
 #include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
@@ -26,10 +26,7 @@ std::vector<std::optional<Finding>> fitted_to_half(const std::shared_ptr<const P
             for (std::size_t other = 0; other < causes.size(); ++other) {
                 if (other != i && fits[other]) { model = with_cause(std::move(model), *fits[other]); }
             }
-            const std::shared_ptr<const Prediction> with = half->with(model);
-            const MadeEstimator made = make_estimator(*find_effect(causes[i].effect), with);
-            fits[i] =
-                made.estimator ? made.estimator->find(Observation(with, recording, seed)) : std::nullopt;
+            fits[i] = examine_for(causes[i].effect, half->with(model), recording, seed);
         }
     }
     return fits;

@@ -1,6 +1,7 @@
 #include "analysis/diagnose/estimators/hypotheses.hpp"
 
 #include "analysis/parallel/parallel_for.hpp"
+#include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
 
@@ -32,9 +33,7 @@ Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
 std::optional<Finding> examine_for(std::string_view effect,
                                    const std::shared_ptr<const Prediction>& prediction,
                                    const std::shared_ptr<const Recording>& recording, std::uint64_t seed) {
-    const EffectDefinition& definition = *find_effect(effect);
-    if (!untestable_in(definition, *prediction).empty()) { return std::nullopt; }
-    const MadeEstimator made = make_estimator(definition, prediction);
+    const MadeEstimator made = make_estimator(*find_effect(effect), prediction);
     return made.estimator ? made.estimator->find(Observation(prediction, recording, seed)) : std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "analysis/diagnose/estimators/catalogue.hpp"
@@ -25,8 +26,8 @@ struct Hypotheses {
 Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
                    const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads);
 
-// The function asks the estimator of one effect only. No value where the data have no trace of the effect, or
-// cannot show it.
+// The function asks the estimator of one effect, which the recording can show. No value where the data have
+// no trace of it.
 std::optional<Finding> examine_for(std::string_view effect,
                                    const std::shared_ptr<const Prediction>& prediction,
                                    const std::shared_ptr<const Recording>& recording, std::uint64_t seed);

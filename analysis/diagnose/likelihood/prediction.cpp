@@ -110,9 +110,9 @@ SensorModel noiseless_and_certain(const SensorModel& model) {
     return noiseless;
 }
 
-std::array<std::vector<float>, 3> simulated_response(const Prediction& prediction,
-                                                     std::shared_ptr<const RecordedWorld> world,
-                                                     const SensorModel& noiseless) {
+std::array<std::vector<float>, 3> simulated_answer(const Prediction& prediction,
+                                                   std::shared_ptr<const RecordedWorld> world,
+                                                   const SensorModel& noiseless) {
     SimulationRequest request;
     request.like = std::move(world);
     RecordingSimulator simulator(noiseless, request);
@@ -366,7 +366,7 @@ std::array<std::vector<float>, 3> noise_free_response(const Prediction& predicti
                                                       const SensorModel& model) {
     const SensorModel answering = noiseless_and_certain(model);
     return prediction.recent_responses().recall(
-        world, answering, [&] { return simulated_response(prediction, world, answering); });
+        world, answering, [&] { return simulated_answer(prediction, world, answering); });
 }
 
 }  // namespace gyrolog

@@ -5,7 +5,7 @@
 
 namespace gyrolog::resolution {
 
-// 64 MB: some thirty answers of three axes to an hour at 100 Hz, and none of a day.
+// 64 MB: some fifteen answers of three axes to an hour at 100 Hz, and none of a day.
 constexpr std::size_t remembered_values = std::size_t{1} << 24;
 
 }  // namespace gyrolog::resolution

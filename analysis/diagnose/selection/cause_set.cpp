@@ -298,13 +298,12 @@ bool CauseSet::settle_responses() {
     return refit.moved;
 }
 
-bool CauseSet::settle_spectra() {
+void CauseSet::settle_spectra() {
+    if (causes.size() < 2) { return; }  // its own estimator has fitted it
     std::vector<Finding> findings;
     for (const FoundCause& cause : causes) { findings.push_back(cause.finding); }
-    SpectraRefit refit = refit_spectra(observed(), without_causes.effects.size(), std::move(findings));
-    if (!(refit.gain_nats > 0.0)) { return false; }
-    for (std::size_t i = 0; i < causes.size(); ++i) { causes[i].finding = std::move(refit.findings[i]); }
-    return true;
+    findings = refit_spectra(observed(), without_causes.effects.size(), std::move(findings));
+    for (std::size_t i = 0; i < causes.size(); ++i) { causes[i].finding = std::move(findings[i]); }
 }
 
 bool CauseSet::is_same_line(const Finding& a, const Finding& b) const {

@@ -112,8 +112,8 @@ public:
     // are without it. Where it changes much of the motion they do not: all are fitted together. Whether
     // parameters moved.
     bool settle_responses();
-    // The noise spectra among the causes are fitted together. Whether parameters moved.
-    bool settle_spectra();
+    // Fits the noise spectra among the causes together.
+    void settle_spectra();
 
 private:
     double evidence_nats_of(const std::vector<std::size_t>& places) const;

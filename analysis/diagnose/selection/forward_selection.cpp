@@ -74,10 +74,10 @@ public:
         forget_null_bias();
         static_cast<void>(set_.settle_responses());
         // Those that are refitted first are so beside the others as these were.
-        static_cast<void>(set_.settle_spectra());
+        set_.settle_spectra();
         if (!refit_own() || !refit_own()) { return std::nullopt; }
         static_cast<void>(set_.settle_responses());
-        static_cast<void>(set_.settle_spectra());
+        set_.settle_spectra();
         if (!weigh()) { return std::nullopt; }
         return result_of(set_.with_causes());
     }
@@ -311,9 +311,9 @@ private:
         if (!set_.give_to_rival(place, rival)) { return false; }
         const double before_nats = worth_nats_of(before);
         // What was fitted beside the cause is fitted beside the rival before that is judged.
-        static_cast<void>(set_.settle_spectra());
+        set_.settle_spectra();
         if (!refit_own() || !refit_own()) { return std::nullopt; }
-        static_cast<void>(set_.settle_spectra());
+        set_.settle_spectra();
         const double more_nats = decisions.strong_nats;
         const bool were_weighed = std::exchange(are_weighed_, false);
         if (!add_next_if_worth(before_nats + more_nats)) { return std::nullopt; }
@@ -479,10 +479,10 @@ private:
         const std::vector<FoundCause> before = set_.causes;
         const double likelihood_before_nats = log_likelihood_nats(set_.observed());
         const double beside_before_nats = set_.worth_beside_spectra_nats();
-        static_cast<void>(set_.settle_spectra());
+        set_.settle_spectra();
         if (!refit()) { return false; }
         static_cast<void>(set_.settle_responses());
-        static_cast<void>(set_.settle_spectra());
+        set_.settle_spectra();
         const double gained_nats = log_likelihood_nats(set_.observed()) - likelihood_before_nats +
                                    std::max(set_.worth_beside_spectra_nats() - beside_before_nats, 0.0);
         const double dropped =

@@ -52,12 +52,11 @@ public:
         for (const std::size_t axis : prediction_.axes()) { noise_[axis] = seen.axis(axis).noise; }
     }
 
-    SpectraRefit run() {
-        if (places_.size() < 2) { return {std::move(findings_), 0.0}; }
+    std::vector<Finding> run() {
+        if (places_.size() < 2) { return std::move(findings_); }
         std::vector<double> logs;
         for (const SpectralParameter& place : places_) { logs.push_back(std::log(value_at(place))); }
         double nats = fitted(logs);
-        const double nats_before = nats;
         for (int step = 0; step < resolution::spectra_steps_most; ++step) {
             const auto [by, promised_nats] = step_from(logs);
             if (!(promised_nats > resolution::spectra_settled_nats)) { break; }
@@ -77,7 +76,7 @@ public:
             if (!better) { break; }
         }
         for (std::size_t i = 0; i < places_.size(); ++i) { value_at(places_[i]) = std::exp(logs[i]); }
-        return {std::move(findings_), nats - nats_before};
+        return std::move(findings_);
     }
 
 private:
@@ -225,7 +224,8 @@ private:
 
 }  // namespace
 
-SpectraRefit refit_spectra(const Observation& seen, std::size_t first_entry, std::vector<Finding> findings) {
+std::vector<Finding> refit_spectra(const Observation& seen, std::size_t first_entry,
+                                   std::vector<Finding> findings) {
     return SpectraFit(seen, first_entry, std::move(findings)).run();
 }
 

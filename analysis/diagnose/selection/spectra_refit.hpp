@@ -17,13 +17,9 @@
 
 namespace gyrolog {
 
-struct SpectraRefit {
-    std::vector<Finding> findings;
-    double gain_nats = 0.0;  // of the log-likelihood of `seen`'s power
-};
-
 // `findings`: their entries are those of `seen`'s model from `first_entry` on, in this order. Those of other
 // estimators stay as they are.
-SpectraRefit refit_spectra(const Observation& seen, std::size_t first_entry, std::vector<Finding> findings);
+std::vector<Finding> refit_spectra(const Observation& seen, std::size_t first_entry,
+                                   std::vector<Finding> findings);
 
 }  // namespace gyrolog
