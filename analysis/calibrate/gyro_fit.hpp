@@ -26,9 +26,14 @@
 
 #include "analysis/calibrate/gyro_observations.hpp"
 #include "analysis/calibrate/knowledge.hpp"
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/numerics/matrix.hpp"
+#include "analysis/recording/standard_gravity.hpp"
 
 namespace gyrolog {
+
+// A g-sensitivity in s/m times this is in deg/s per g.
+inline constexpr double dps_per_g_in_s_per_m = deg_per_rad * standard_gravity_m_s2;
 
 struct GyroFitOptions {
     SensorTolerance tolerance;

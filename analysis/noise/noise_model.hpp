@@ -13,6 +13,7 @@ namespace gyrolog {
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double rad_per_deg = pi / 180.0;
 inline constexpr double deg_per_rad = 180.0 / pi;
+inline constexpr double s_per_h = 3600.0;
 
 struct NoiseCoefficients {
     double Q_rad = 0.0;               // quantisation noise of the angle

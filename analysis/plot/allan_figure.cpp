@@ -13,7 +13,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr double s_per_h = 3600.0;
 constexpr double root_s_per_root_h = 60.0;
 
 // sqrt(2 ln 2 / pi): the level of the flat part over B. IEEE Std 952-1997 C.1.3.

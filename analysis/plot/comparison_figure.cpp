@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/plot/number_text.hpp"
 
 namespace gyrolog {
@@ -88,7 +89,7 @@ private:
         const double longest_s =
             std::max(axis_.recording_averages.middle_s(axis_.recording_averages.rate.size()),
                      axis_.other_averages.middle_s(axis_.other_averages.rate.size()));
-        const double time_unit_s = longest_s > 7200.0 ? 3600.0 : 1.0;
+        const double time_unit_s = longest_s > hours_from_s ? s_per_h : 1.0;
         panel.caption = caption + ", means of " + short_number(averages.block_s) + " s";
         panel.x = {time_unit_s > 1.0 ? "time (h)" : "time (s)", ScaleKind::linear, {}};
         panel.y = {quantity_ + " − mean (" + unit_ + ")", ScaleKind::linear, common_range()};

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "analysis/noise/noise_model.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -21,7 +23,7 @@ struct TimeAxis {
 
 TimeAxis time_axis(const CourseFigure& course, std::size_t parts) {
     const bool is_long = course.duration_s > hours_from_s;
-    const double length = is_long ? course.duration_s / hour_s : course.duration_s;
+    const double length = is_long ? course.duration_s / s_per_h : course.duration_s;
     TimeAxis axis{is_long ? "time (h)" : "time (s)", {}};
     for (std::size_t part = 0; part < parts; ++part) {
         axis.middles.push_back((static_cast<double>(part) + 0.5) * length / static_cast<double>(parts));

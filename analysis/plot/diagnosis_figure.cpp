@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/plot/number_text.hpp"
 #include "analysis/plot/share_bars.hpp"
 
@@ -52,7 +53,7 @@ public:
         const bool is_long =
             std::ranges::any_of(domain.x, [](double x) { return std::abs(x) > hours_from_s; });
         if (!domain.log_x && domain.x_name == "time (s)" && is_long) {
-            for (double& x : x_) { x /= hour_s; }
+            for (double& x : x_) { x /= s_per_h; }
             x_name_ = "time (h)";
         }
     }

@@ -104,7 +104,6 @@ void share_titles(std::vector<Panel>& panels, std::size_t columns);
 
 // A longer record has hours on its time axis.
 inline constexpr double hours_from_s = 7200.0;
-inline constexpr double hour_s = 3600.0;
 
 struct Figure {
     std::string title;

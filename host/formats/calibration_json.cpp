@@ -7,7 +7,6 @@ namespace gyrolog {
 namespace {
 
 constexpr double per_g = 1.0 / standard_gravity_m_s2;
-constexpr double dps_s2_per_rad_m = deg_per_rad * standard_gravity_m_s2;  // per (rad/s)/(m/s^2)
 
 Json list_json(const Vector3& vector, double factor) {
     Json list = Json::array();
@@ -72,8 +71,8 @@ Json gyro_json(const GyroCalibration& fitted) {
               {"bias_dps", list_json(fitted.bias_rad_s, deg_per_rad)},
               {"bias_sd_dps", list_json(fitted.bias_sd_rad_s, deg_per_rad)}};
     if (fitted.has_g_sensitivity) {
-        json["g_sensitivity_dps_per_g"] = matrix_json(fitted.K_s_per_m, dps_s2_per_rad_m);
-        json["g_sensitivity_sd_dps_per_g"] = matrix_json(fitted.K_sd_s_per_m, dps_s2_per_rad_m);
+        json["g_sensitivity_dps_per_g"] = matrix_json(fitted.K_s_per_m, dps_per_g_in_s_per_m);
+        json["g_sensitivity_sd_dps_per_g"] = matrix_json(fitted.K_sd_s_per_m, dps_per_g_in_s_per_m);
     }
     json["names"] = fitted.names;
     json["covariance"] = matrix_json(fitted.covariance);

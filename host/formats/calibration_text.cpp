@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::size_t width_most = 80;
 constexpr double mg = 1e-3 * standard_gravity_m_s2;
-constexpr double in_dps_per_g = deg_per_rad * standard_gravity_m_s2;
 
 std::string line(const std::string& first, const std::string& text) {
     return wrapped_text(first, text, width_most);
@@ -115,7 +114,7 @@ std::string gyro_text(const Calibration& calibration) {
     if (has_one(fitted.M_sd)) { text += matrix_table("M", "", fitted.M, fitted.M_sd); }
     text += vector_table("bias", "dps", fitted.bias_rad_s, fitted.bias_sd_rad_s, deg_per_rad);
     if (fitted.has_g_sensitivity) {
-        text += matrix_table("K", "dps/g", fitted.K_s_per_m, fitted.K_sd_s_per_m, in_dps_per_g);
+        text += matrix_table("K", "dps/g", fitted.K_s_per_m, fitted.K_sd_s_per_m, dps_per_g_in_s_per_m);
     }
     for (const ObservationFit& fit : fitted.fits) {
         std::string words =

@@ -23,7 +23,7 @@ struct Unit {
 constexpr std::array units = {
     Unit{Kind::rate, "dps", "dps", "rad/s", rad_per_deg},
     Unit{Kind::rate, "rad_s", "rad_s", "rad/s", 1.0},
-    Unit{Kind::rate, "deg_h", "deg_h", "rad/s", rad_per_deg / 3600.0},
+    Unit{Kind::rate, "deg_h", "deg_h", "rad/s", rad_per_deg / s_per_h},
     Unit{Kind::rate, "mdps", "mdps", "rad/s", 1e-3 * rad_per_deg},
     Unit{Kind::rate, "lsb", "lsb", "rad/s", 1.0},
     Unit{Kind::angle, "deg", "dps", "rad/s", rad_per_deg},

@@ -15,7 +15,6 @@ namespace {
 using State = FittedCoefficient::State;
 
 constexpr double min_per_h = 60.0;  // the root of 3600 s/h
-constexpr double hour_in_s = 3600.0;
 
 // What a sensor's coefficients are called, and their units of the trade and of SI. A factor of 0: counts.
 struct Trade {
@@ -47,7 +46,7 @@ Trade trade_of(const SensorUnit& unit) {
     const bool is_si = unit.name == "rad/s";
     return {"N  angle random walk", "K  rate random walk",     "R  rate ramp",
             "deg/sqrt(h)",          degrees * min_per_h,       "deg/h",
-            degrees * hour_in_s,    is_si ? nullptr : "rad/s", degrees * rad_per_deg};
+            degrees * s_per_h,      is_si ? nullptr : "rad/s", degrees * rad_per_deg};
 }
 
 using Cell = std::function<std::string(const FitOfColumn&)>;

@@ -6,7 +6,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr double s_per_h = 3600.0;
 constexpr double sqrt_s_per_sqrt_h = 60.0;
 constexpr double arcsec_per_deg = 3600.0;
 

@@ -6,7 +6,7 @@
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
-#include "analysis/simulate/effects/arrivals.hpp"
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/effects/disturbance.hpp"
 
 namespace gyrolog {
@@ -38,7 +38,7 @@ public:
             for (const double nats : one.gain_nats) { gain_nats += nats; }
             if (one.largest > clearest->largest) { clearest = &one; }
         }
-        const double per_hour = count * seconds_per_hour / prediction_->duration_s();
+        const double per_hour = count * s_per_h / prediction_->duration_s();
         const double mean_s = together_s / count;
         // One bump's size and length say nothing about the spread of others'.
         Finding finding = whole_sensor_finding(effect_, *prediction_,

@@ -8,6 +8,7 @@
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/likelihood/lag_course.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
+#include "analysis/noise/noise_model.hpp"
 
 namespace gyrolog {
 
@@ -97,7 +98,7 @@ private:
         }
         const std::vector<LagStep> steps = course.steps();
         if (steps.empty()) { return std::nullopt; }
-        const double hours = prediction().duration_s() / 3600.0;
+        const double hours = prediction().duration_s() / s_per_h;
         const auto count = static_cast<double>(steps.size());
         const int longest = std::ranges::max(steps, {}, &LagStep::samples).samples;
         Finding finding = whole_sensor_finding(

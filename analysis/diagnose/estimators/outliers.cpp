@@ -16,7 +16,6 @@
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/numerics/golden_section.hpp"
 #include "analysis/numerics/log_sum_exp.hpp"
-#include "analysis/simulate/effects/arrivals.hpp"
 
 namespace gyrolog::resolution {
 
@@ -348,7 +347,7 @@ private:
         const std::string per_hour(effect_.params[0].name);
         const std::string smallest(effect_.params[1].name);
         const std::string largest(effect_.params[2].name);
-        const double hours = prediction_->duration_s() / seconds_per_hour;
+        const double hours = prediction_->duration_s() / s_per_h;
         // Of m uniform numbers the extremes lie within their limits by a part m + 1 of the range; and each is
         // known no better than the noise lets it.
         const double limit_sd = std::hypot((limits_dps.to - limits_dps.from) / (all + 1.0), noise_dps);

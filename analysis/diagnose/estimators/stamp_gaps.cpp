@@ -7,7 +7,7 @@
 #include "analysis/diagnose/estimators/lag.hpp"
 #include "analysis/diagnose/estimators/stamp_evidence.hpp"
 #include "analysis/diagnose/likelihood/occam.hpp"
-#include "analysis/simulate/effects/arrivals.hpp"
+#include "analysis/noise/noise_model.hpp"
 
 namespace gyrolog {
 
@@ -22,7 +22,7 @@ struct Gaps {
 
 Gaps gaps_of(const Recording& recording) {
     Gaps gaps;
-    gaps.delivered_h = static_cast<double>(recording.rows()) / (recording.rate_hz * seconds_per_hour);
+    gaps.delivered_h = static_cast<double>(recording.rows()) / (recording.rate_hz * s_per_h);
     for (const Dropout& dropout : recording.dropouts) {
         if (dropout.cause == "empty_fields") { continue; }  // their rows are there
         const auto length = static_cast<double>(dropout.samples);

@@ -6,9 +6,6 @@
 
 namespace gyrolog {
 
-// Models give the mean number of events an hour.
-inline constexpr double seconds_per_hour = 3600.0;
-
 class Arrivals {
 public:
     // `per_sample`: their mean number, above zero.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/effects/arrivals.hpp"
 #include "analysis/simulate/effects/effects.hpp"
@@ -92,7 +93,7 @@ private:
 };
 
 std::unique_ptr<Stage> make_disturbance(const EffectUse& use) {
-    const double per_sample = use["per_hour"] / (seconds_per_hour * use.context().rate_hz);
+    const double per_sample = use["per_hour"] / (s_per_h * use.context().rate_hz);
     if (per_sample == 0.0 || use["simulated"] == 0.0) { return nullptr; }
     return std::make_unique<Bumps>(use, per_sample);
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/effects/arrivals.hpp"
 #include "analysis/simulate/effects/effects.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 class Dropped final : public Stage {
 public:
     explicit Dropped(const EffectUse& use)
-        : bursts_(use.stream(0, 0), use["per_hour"] / (seconds_per_hour * use.context().rate_hz)),
+        : bursts_(use.stream(0, 0), use["per_hour"] / (s_per_h * use.context().rate_hz)),
           lengths_(use.stream(0, 1)),
           longest_(use["longest"]),
           period_s_(1.0 / use.context().rate_hz),

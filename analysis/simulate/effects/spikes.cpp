@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/effects/arrivals.hpp"
@@ -35,7 +36,7 @@ struct Spikes {
 };
 
 std::unique_ptr<Stage> make_spikes(const EffectUse& use) {
-    const double per_sample = use["per_hour"] / (seconds_per_hour * use.context().rate_hz);
+    const double per_sample = use["per_hour"] / (s_per_h * use.context().rate_hz);
     return PerAxis<Spikes>::make([&](std::size_t axis) -> std::optional<Spikes> {
         if (!use.acts_on(axis) || per_sample == 0.0) { return std::nullopt; }
         return Spikes{Arrivals(use.stream(axis, 0), per_sample), use.stream(axis, 1),

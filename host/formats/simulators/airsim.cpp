@@ -15,7 +15,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr double s_per_h = 3600.0;
 // The walk is GyroBiasStability / sqrt(tau), and nothing else is made of tau.
 constexpr double tau_s = 100.0;
 

@@ -8,8 +8,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr double hour_s = 3600.0;
-
 constexpr std::string_view gnss_ins_sim_facts[] = {
     "deg/h and deg/sqrt(h); gyro_b_stability is the standard deviation of a Gauss-Markov process, which "
     "begins "
@@ -25,9 +23,9 @@ std::string gnss_ins_sim_text(const SimulatorSource& source, std::span<const std
     Vector3 correlation_s{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const NoiseProjection& noise = source.noise[axis];
-        bias_deg_h[axis] = source.bias_rad_s[axis] * deg_per_rad * hour_s;
-        arw_deg_sqrt_h[axis] = noise.N_rad_per_sqrt_s * deg_per_rad * std::sqrt(hour_s);
-        sd_deg_h[axis] = noise.gauss_markov.sigma_rad_per_s * deg_per_rad * hour_s;
+        bias_deg_h[axis] = source.bias_rad_s[axis] * deg_per_rad * s_per_h;
+        arw_deg_sqrt_h[axis] = noise.N_rad_per_sqrt_s * deg_per_rad * std::sqrt(s_per_h);
+        sd_deg_h[axis] = noise.gauss_markov.sigma_rad_per_s * deg_per_rad * s_per_h;
         correlation_s[axis] =
             noise.gauss_markov.sigma_rad_per_s > 0.0 ? noise.gauss_markov.correlation_s : 100.0;
     }

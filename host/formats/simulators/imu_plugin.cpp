@@ -46,8 +46,8 @@ constexpr const char* walk_name = "gyroscopeRandomWalk";
 constexpr const char* correlation_name = "gyroscopeBiasCorrelationTime";
 
 // What both plugins take for an element that is not there: twice an ADIS16448's.
-constexpr double default_density_rad_per_sqrt_s = 2.0 * 35.0 / 3600.0 * rad_per_deg;
-constexpr double default_walk_rad_per_s_sqrt_s = 2.0 * 4.0 / 3600.0 * rad_per_deg;
+constexpr double default_density_rad_per_sqrt_s = 2.0 * 35.0 / s_per_h * rad_per_deg;
+constexpr double default_walk_rad_per_s_sqrt_s = 2.0 * 4.0 / s_per_h * rad_per_deg;
 constexpr double default_correlation_s = 1000.0;
 
 bool is_imu_plugin(const pugi::xml_node& element) {
