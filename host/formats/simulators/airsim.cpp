@@ -16,7 +16,7 @@ namespace gyrolog {
 namespace {
 
 // The walk is GyroBiasStability / sqrt(tau), and nothing else is made of tau.
-constexpr double tau_s = 100.0;
+constexpr double written_tau_s = 100.0;
 
 constexpr std::string_view airsim_facts[] = {
     "deg/sqrt(h) and deg/h; the bias is a random walk of density GyroBiasStability / "
@@ -99,7 +99,7 @@ void change_imu(Json& imu, const SimulatorSource& source) {
     const NoiseProjection& noise = source.noise[0];
     const auto tau = imu.find(tau_key);
     const double kept_tau_s =
-        tau != imu.end() && tau->is_number() && tau->get<double>() > 0.0 ? tau->get<double>() : tau_s;
+        tau != imu.end() && tau->is_number() && tau->get<double>() > 0.0 ? tau->get<double>() : written_tau_s;
     imu["GenerateNoise"] = true;
     imu[arw_key] = noise.N_rad_per_sqrt_s / arw_unit;
     imu[tau_key] = kept_tau_s;
