@@ -93,9 +93,11 @@ double mean_of_present(const std::vector<float>& values, const std::vector<bool>
     return count > 0.0 ? sum / count : std::nan("");
 }
 
-// Between the levels on either side of every hole a straight line, with white noise on it.
-void draw_lines(std::vector<float>& values, const std::vector<bool>& present, double sd,
-                const RandomStream& noise) {
+// Between the levels on either side of every hole a straight line, with the model's white noise on it.
+void draw_first_guesses(const Prediction& prediction, std::size_t axis, std::vector<float>& values,
+                        const std::vector<bool>& present, std::uint64_t seed) {
+    const double sd = std::sqrt(prediction.parts(axis).back().sum() * prediction.rate_hz());
+    const RandomStream noise = derived_stream(seed, RandomPurpose::stand_ins, axis);
     const std::size_t length = values.size();
     for (std::size_t begin = 0; begin < length;) {
         if (present[begin]) {
@@ -117,18 +119,6 @@ void draw_lines(std::vector<float>& values, const std::vector<bool>& present, do
         }
         begin = end;
     }
-}
-
-// Fills every hole with what the model's noise may be there, given the samples around it.
-void fill_holes(const Prediction& prediction, std::size_t axis, std::vector<float>& values,
-                const std::vector<bool>& present, std::uint64_t seed) {
-    std::vector<double> density;
-    for (const SpectralParts& parts : prediction.parts(axis)) { density.push_back(parts.sum()); }
-    const RandomStream noise = derived_stream(seed, RandomPurpose::stand_ins, axis);
-    draw_lines(values, present, std::sqrt(density.back() * prediction.rate_hz()), noise);
-    const std::vector<double> inverse = inverse_covariance(prediction.bins(), density, prediction.rate_hz(),
-                                                           prediction.length(), resolution::stand_in_lags);
-    draw_stand_ins(values, present, inverse, noise);
 }
 
 // Returns the mean.
@@ -180,16 +170,37 @@ void take_off(const UncertainMean& uncertain, const std::vector<double>& fit, st
     }
 }
 
-// By slot.
-std::vector<float> in_time(const UncertainMean& uncertain, const std::vector<double>& parameters,
-                           CosineTransform& transform, std::size_t length) {
-    std::vector<float> cosines(length, 0.0F);
-    take_off(uncertain, parameters, cosines);
-    std::vector<double> work(cosines.begin(), cosines.end());
-    transform.inverse(work);
-    std::vector<float> rates(length);
-    std::ranges::transform(work, rates.begin(), [](double rate) { return static_cast<float>(-rate); });
-    return rates;
+// Divides the coefficients by divisor_of(the variance that the noise gives them).
+template <typename Values, typename Divisor>
+void divide_by_bin(const Prediction& prediction, const std::vector<double>& density, Values& cosines,
+                   Divisor divisor_of) {
+    const SpectralBins& bins = prediction.bins();
+    cosines[0] = 0;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        const double divisor = divisor_of(density[i] * prediction.rate_hz());
+        // Coefficients of which the half has no bin go with the next one's.
+        const std::size_t first = i == 0 ? 1 : bins[i - 1].end;
+        const std::size_t end = i + 1 == bins.size() ? cosines.size() : bins[i].end;
+        for (std::size_t k = first; k < end; ++k) {
+            cosines[k] = static_cast<typename Values::value_type>(static_cast<double>(cosines[k]) / divisor);
+        }
+    }
+}
+
+// Draws what stands in for missing samples from the noise that was fitted, given the samples.
+void fill_holes(const Prediction& prediction, std::size_t axis, AxisObservation& seen,
+                const std::vector<bool>& present, CosineTransform& transform, std::uint64_t seed) {
+    std::vector<float> cosines = seen.cosines;
+    take_off(prediction.uncertain(axis), seen.uncertain_fit, cosines);
+    std::vector<double> weighted(cosines.begin(), cosines.end());
+    divide_by_bin(prediction, seen.density, weighted, [](double variance) { return variance; });
+    transform.inverse(weighted);
+    const double rate_hz = prediction.rate_hz();
+    const std::vector<double> inverse = inverse_covariance(prediction.bins(), seen.density, rate_hz,
+                                                           prediction.length(), resolution::stand_in_lags);
+    const double least_inverse = 1.0 / (*std::ranges::max_element(seen.density) * rate_hz);
+    seen.stand_ins_nats = draw_stand_ins(seen.residual_rad_s, present, weighted, inverse, least_inverse,
+                                         derived_stream(seed, RandomPurpose::stand_ins, axis));
 }
 
 // White noise whose level the model has go with time has the same variance throughout afterwards.
@@ -299,43 +310,30 @@ void Observation::fit_model(std::size_t axis, CosineTransform& transform) {
 void Observation::observe(std::size_t axis, CosineTransform& transform) {
     const Prediction& prediction = *prediction_;
     const std::size_t length = prediction.length();
-    const double rate_hz = prediction.rate_hz();
     AxisObservation& seen = axes_[axis];
     std::vector<float>& residual = seen.residual_rad_s;
     residual.assign(length, 0.0F);
     take_expected_off(axis, residual);
     seen.mean_rad_s = take_mean_off(residual, present_);
     const bool whole = std::ranges::find(present_, false) == present_.end();
-    const auto fill = [&] {
-        if (!whole) { fill_holes(prediction, axis, residual, present_, seed_); }
-    };
-    fill();
-    fit_model(axis, transform);
     const UncertainMean& uncertain = prediction.uncertain(axis);
+    if (!whole) { draw_first_guesses(prediction, axis, residual, present_, seed_); }
+    fit_model(axis, transform);
+    // What stands in for a sample has the noise that was fitted, and follows the motion as the samples do.
+    const int rounds = whole ? 0 : uncertain.empty() ? 1 : 2;
+    for (int round = 0; round < rounds; ++round) {
+        fill_holes(prediction, axis, seen, present_, transform, seed_);
+        fit_model(axis, transform);
+    }
     if (!uncertain.empty()) {
-        // What stands in for a sample follows the motion as the samples do.
-        for (int round = 0; round < 2 && !whole; ++round) {
-            const std::vector<float> given_way = in_time(uncertain, seen.uncertain_fit, transform, length);
-            for (std::size_t slot = 0; slot < length; ++slot) { residual[slot] -= given_way[slot]; }
-            fill();
-            for (std::size_t slot = 0; slot < length; ++slot) { residual[slot] += given_way[slot]; }
-            fit_model(axis, transform);
-        }
         take_off(uncertain, seen.uncertain_fit, seen.cosines);
         std::vector<double> work(seen.cosines.begin(), seen.cosines.end());
         transform.inverse(work);
         residual.assign(work.begin(), work.end());
     }
-    seen.whitened.resize(length);
-    seen.whitened[0] = 0.0F;
-    const SpectralBins& bins = prediction.bins();
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-        const auto scale = static_cast<float>(1.0 / std::sqrt(seen.density[i] * rate_hz));
-        // Coefficients of which the half has no bin go with the next one's.
-        const std::size_t first = i == 0 ? 1 : bins[i - 1].end;
-        const std::size_t end = i + 1 == bins.size() ? length : bins[i].end;
-        for (std::size_t k = first; k < end; ++k) { seen.whitened[k] = seen.cosines[k] * scale; }
-    }
+    seen.whitened = seen.cosines;
+    divide_by_bin(prediction, seen.density, seen.whitened,
+                  [](double variance) { return std::sqrt(variance); });
     transform.inverse(std::span<float>(seen.whitened));
     even_out(prediction, axis, seen.whitened);
 }
@@ -343,7 +341,9 @@ void Observation::observe(std::size_t axis, CosineTransform& transform) {
 double log_likelihood_nats(const Observation& observation) {
     double nats = 0.0;
     for (const std::size_t axis : observation.prediction().axes()) {
-        nats += observation.axis(axis).noise.log_likelihood_nats - uncertain_charge_nats(observation, axis);
+        const AxisObservation& seen = observation.axis(axis);
+        nats +=
+            seen.noise.log_likelihood_nats - seen.stand_ins_nats - uncertain_charge_nats(observation, axis);
     }
     return nats;
 }

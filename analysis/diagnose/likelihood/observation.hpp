@@ -17,9 +17,10 @@ namespace gyrolog {
 class CosineTransform;
 
 struct AxisObservation {
-    // The residual by slot, about its mean. Slots without a sample hold a straight line between their
-    // neighbours plus white noise of the model's level, so that the power there is what it is elsewhere.
+    // The residual by slot, about its mean. Slots without a sample hold what stands in for one, drawn from
+    // the model's noise given the samples beside them.
     std::vector<float> residual_rad_s;
+    double stand_ins_nats = 0.0;              // the logarithm of the density that they were drawn from
     std::vector<float> cosines;               // DCT-II of the residual, Y_0 = 0; rad/s
     double mean_rad_s = 0.0;                  // that was taken off
     std::vector<double> uncertain_fit;        // values of Prediction::uncertain() that were taken off
@@ -72,8 +73,9 @@ private:
     std::array<AxisObservation, 3> axes_;
 };
 
-// The function returns Whittle's log-likelihood, summed over the axes, with the priors of all that was
-// fitted, in nats and without constants.
+// The function returns Whittle's log-likelihood of the samples, summed over the axes, with the priors of all
+// that was fitted, in nats and without constants. Of samples y and stand-ins z it is log p(y) = log p(y, z) -
+// log p(z | y).
 double log_likelihood_nats(const Observation& observation);
 // The function returns what the priors of the model's uncertain responses charge for the values they were
 // fitted at.

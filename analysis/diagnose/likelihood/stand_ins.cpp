@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "analysis/numerics/cholesky.hpp"
-#include "analysis/numerics/matrix.hpp"
+#include "analysis/numerics/envelope_cholesky.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
 namespace gyrolog::resolution {
 
-// Samples that are drawn together. A longer hole has several such blocks.
-constexpr std::size_t stand_in_block_samples = 32;
-// The first turn sees first guesses beside a block, the second what the first has drawn.
-constexpr int stand_in_turns = 2;
+// So many are drawn together, as memory is bounded; of these the last only for what they tell of the others.
+constexpr std::size_t stand_ins_together = 4096;
+constexpr std::size_t stand_ins_beyond = 256;
 
 }  // namespace gyrolog::resolution
 
@@ -21,77 +18,91 @@ namespace gyrolog {
 
 namespace {
 
-// The record goes on mirrored, as the cosine transform has it.
-std::size_t mirrored(std::ptrdiff_t slot, std::size_t length) {
-    const auto end = static_cast<std::ptrdiff_t>(length);
-    if (slot < 0) { slot = -1 - slot; }
-    if (slot >= end) { slot = 2 * end - 1 - slot; }
-    return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(slot, 0, end - 1));
-}
-
-CholeskyFactor toeplitz_factor(std::span<const double> row, std::size_t size) {
-    Matrix matrix(size, size);
-    for (std::size_t i = 0; i < size; ++i) {
-        for (std::size_t j = 0; j < size; ++j) {
-            const std::size_t lag = i > j ? i - j : j - i;
-            matrix(i, j) = lag < row.size() ? row[lag] : 0.0;
-        }
-    }
-    return CholeskyFactor(matrix);
-}
-
+// What is drawn together is eliminated from its end on: so the first of them do not depend on the last.
 class StandIns {
 public:
-    StandIns(std::span<float> values, std::span<const double> inverse, const RandomStream& noise)
-        : values_(values), inverse_(inverse), noise_(noise) {}
+    StandIns(std::span<float> values, const std::vector<bool>& present, std::span<const double> weighted,
+             std::span<const double> inverse, double least_inverse, const RandomStream& noise)
+        : values_(values),
+          weighted_(weighted),
+          inverse_(inverse),
+          least_inverse_(least_inverse),
+          noise_(noise) {
+        for (std::size_t slot = 0; slot < present.size(); ++slot) {
+            if (!present[slot]) { slots_.push_back(slot); }
+        }
+        steps_.resize(slots_.size());
+    }
 
-    void draw(std::size_t begin, std::size_t end) {
-        const std::size_t size = end - begin;
-        const CholeskyFactor& factor = factor_of(size);
-        if (!factor.is_positive_definite()) { return; }
-        const auto lags = static_cast<std::ptrdiff_t>(inverse_.size()) - 1;
-        const auto first = static_cast<std::ptrdiff_t>(begin);
-        const auto last = static_cast<std::ptrdiff_t>(end);
-        const double level = level_beside(first, last, lags);
-        std::vector<double> right(size, 0.0);
-        for (std::size_t i = 0; i < size; ++i) {
-            const std::ptrdiff_t own = first + static_cast<std::ptrdiff_t>(i);
-            for (std::ptrdiff_t at = own - lags; at <= own + lags; ++at) {
-                if (at >= first && at < last) { continue; }
-                right[i] -= inverse_[static_cast<std::size_t>(std::abs(at - own))] * (value_at(at) - level);
-            }
+    double draw() {
+        double log_density_nats = 0.0;
+        for (std::size_t begin = 0; begin < slots_.size();) {
+            const std::size_t end = std::min(begin + resolution::stand_ins_together, slots_.size());
+            const std::size_t kept_end = end == slots_.size() ? end : end - resolution::stand_ins_beyond;
+            log_density_nats += draw(begin, end, kept_end);
+            begin = kept_end;
         }
-        const std::vector<double> mean = factor.solve(right);
-        for (std::size_t i = 0; i < size; ++i) { right[i] = noise_.normal(begin + i); }
-        const std::vector<double> by_chance = factor.solve_transposed(right);
-        for (std::size_t i = 0; i < size; ++i) {
-            values_[begin + i] = static_cast<float>(level + mean[i] + by_chance[i]);
+        for (std::size_t i = 0; i < slots_.size(); ++i) {
+            values_[slots_[i]] += static_cast<float>(steps_[i]);
         }
+        return log_density_nats;
     }
 
 private:
-    double value_at(std::ptrdiff_t slot) const {
-        return static_cast<double>(values_[mirrored(slot, values_.size())]);
-    }
-
-    double level_beside(std::ptrdiff_t first, std::ptrdiff_t last, std::ptrdiff_t lags) const {
-        double sum = 0.0;
-        for (std::ptrdiff_t lag = 0; lag < lags; ++lag) {
-            sum += value_at(first - 1 - lag) + value_at(last + lag);
+    // With C the inverse covariance of all and M the missing ones, x_M + d is drawn from their distribution
+    // given the others by C_MM d = -(C x)_M + L e, C_MM = L L'.
+    double draw(std::size_t begin, std::size_t end, std::size_t kept_end) {
+        const std::size_t size = end - begin;
+        const EnvelopeCholesky factor = factor_of(begin, end);
+        std::vector<double> right(size);
+        for (std::size_t i = 0; i < size; ++i) { right[i] = right_side(end - 1 - i, begin); }
+        std::vector<double> drawn = factor.solve_lower(std::move(right));
+        double log_density_nats = 0.0;
+        for (std::size_t i = 0; i < size; ++i) {
+            const double normal = noise_.normal(slots_[end - 1 - i]);
+            drawn[i] += normal;
+            if (end - 1 - i < kept_end) {
+                log_density_nats += std::log(factor.diagonal(i)) - 0.5 * normal * normal;
+            }
         }
-        return lags > 0 ? sum / (2.0 * static_cast<double>(lags)) : 0.0;
+        drawn = factor.solve_transposed(std::move(drawn));
+        for (std::size_t place = begin; place < kept_end; ++place) { steps_[place] = drawn[end - 1 - place]; }
+        return log_density_nats;
     }
 
-    const CholeskyFactor& factor_of(std::size_t size) {
-        const auto known = factors_.find(size);
-        if (known != factors_.end()) { return known->second; }
-        return factors_.emplace(size, toeplitz_factor(inverse_, size)).first->second;
+    EnvelopeCholesky factor_of(std::size_t begin, std::size_t end) const {
+        EnvelopeCholesky factor(least_inverse_);
+        std::vector<double> row;
+        std::size_t last = end;  // of the slots, the first that is too far away
+        for (std::size_t place = end; place-- > begin;) {
+            while (slots_[last - 1] - slots_[place] >= inverse_.size()) { --last; }
+            row.clear();
+            for (std::size_t other = last; other-- > place;) {
+                row.push_back(inverse_[slots_[other] - slots_[place]]);
+            }
+            factor.add_row(row);
+        }
+        return factor;
+    }
+
+    // With the steps that those before `begin` have taken.
+    double right_side(std::size_t place, std::size_t begin) const {
+        double sum = -weighted_[slots_[place]];
+        for (std::size_t other = begin; other-- > 0;) {
+            const std::size_t lag = slots_[place] - slots_[other];
+            if (lag >= inverse_.size()) { break; }
+            sum -= inverse_[lag] * steps_[other];
+        }
+        return sum;
     }
 
     std::span<float> values_;
+    std::span<const double> weighted_;
     std::span<const double> inverse_;
+    double least_inverse_;
     const RandomStream& noise_;
-    std::map<std::size_t, CholeskyFactor> factors_;  // by size
+    std::vector<std::size_t> slots_;  // that hold no sample
+    std::vector<double> steps_;       // of the value of each of them
 };
 
 }  // namespace
@@ -115,23 +126,10 @@ std::vector<double> inverse_covariance(const SpectralBins& bins, std::span<const
     return inverse;
 }
 
-void draw_stand_ins(std::span<float> values, const std::vector<bool>& present,
-                    std::span<const double> inverse, const RandomStream& noise) {
-    StandIns stand_ins(values, inverse, noise);
-    for (int turn = 0; turn < resolution::stand_in_turns; ++turn) {
-        for (std::size_t begin = 0; begin < values.size();) {
-            if (present[begin]) {
-                ++begin;
-                continue;
-            }
-            std::size_t end = begin;
-            while (end < values.size() && !present[end] && end - begin < resolution::stand_in_block_samples) {
-                ++end;
-            }
-            stand_ins.draw(begin, end);
-            begin = end;
-        }
-    }
+double draw_stand_ins(std::span<float> values, const std::vector<bool>& present,
+                      std::span<const double> weighted, std::span<const double> inverse, double least_inverse,
+                      const RandomStream& noise) {
+    return StandIns(values, present, weighted, inverse, least_inverse, noise).draw();
 }
 
 }  // namespace gyrolog

@@ -20,11 +20,14 @@ namespace gyrolog {
 std::vector<double> inverse_covariance(const SpectralBins& bins, std::span<const double> density,
                                        double rate_hz, std::size_t length, std::size_t lags);
 
-// The function replaces the values that are not present, which hold a first guess of the level: blocks of
-// them are drawn in turns, each given all else (block Gibbs sampling). `inverse`: c_0 ... c_lags as above.
-// What samples farther away than `lags` would tell of slow noise, the mean of those that are nearer tells.
-// `noise` draws one number for each slot.
-void draw_stand_ins(std::span<float> values, const std::vector<bool>& present,
-                    std::span<const double> inverse, const RandomStream& noise);
+// The function draws new values for all slots that are not present. `weighted`: the product of the inverse
+// covariance with all values, by slot, in 1/(rad/s); so what all samples tell of one that is missing is in
+// it. `inverse`: c_0 ... c_lags as above, for what missing samples tell of each other; no eigenvalue of the
+// inverse covariance is below `least_inverse`, in the same unit. `noise` draws one number for each slot. The
+// function returns the logarithm of the density that the values were drawn from, at what was drawn, in nats
+// and without the factors 1 / sqrt(2 pi).
+double draw_stand_ins(std::span<float> values, const std::vector<bool>& present,
+                      std::span<const double> weighted, std::span<const double> inverse, double least_inverse,
+                      const RandomStream& noise);
 
 }  // namespace gyrolog

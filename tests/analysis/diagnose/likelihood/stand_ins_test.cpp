@@ -1,6 +1,8 @@
 #include "analysis/diagnose/likelihood/stand_ins.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,6 +15,8 @@ namespace {
 constexpr double rate_hz = 100.0;
 constexpr std::size_t length = 1 << 15;
 constexpr double phi = 0.9;
+const std::vector<double> autoregression = {1.0 + phi * phi, -phi};  // its inverse covariance
+constexpr double least = (1.0 - phi) * (1.0 - phi);                  // of that one's eigenvalues
 
 // x_k = phi x_{k-1} + e_k with var e = 1: S rate = 1 / |1 - phi exp(-i w)|^2.
 std::vector<double> autoregression_density(const SpectralBins& bins) {
@@ -42,30 +46,37 @@ TEST(InverseCovariance, OfAFirstOrderAutoregressionIsTridiagonal) {
     for (std::size_t k = 2; k <= 6; ++k) { EXPECT_NEAR(inverse[k], 0.0, 0.01) << k; }
 }
 
+// The product of the autoregression's inverse covariance with the values, away from the ends.
+std::vector<double> weighted_by(std::span<const double> inverse, std::span<const float> values) {
+    std::vector<double> weighted(values.size(), 0.0);
+    for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+        weighted[i] = inverse[0] * static_cast<double>(values[i]) +
+                      inverse[1] * (static_cast<double>(values[i - 1]) + static_cast<double>(values[i + 1]));
+    }
+    return weighted;
+}
+
 // Between neighbours a and b the missing one is phi (a + b) / (1 + phi^2) with variance 1 / (1 + phi^2).
 TEST(StandIns, OfSingleSamplesHaveTheMeanAndTheVarianceThatTheirNeighboursLeave) {
-    const std::vector<double> inverse = {1.0 + phi * phi, -phi};
     std::vector<float> values(length);
     std::vector<bool> present(length, true);
     const RandomStream draws(1, 2);
     double before = 0.0;
     for (std::size_t i = 0; i < length; ++i) {
         before = phi * before + draws.normal(i);
-        values[i] = static_cast<float>(before);
         present[i] = i % 8 != 5;
+        values[i] = present[i] ? static_cast<float>(before) : 1e3F;  // a guess counts for nothing
     }
-    for (std::size_t i = 0; i < length; ++i) {
-        if (!present[i]) { values[i] = 1e3F; }  // a guess counts for nothing
-    }
-    draw_stand_ins(values, present, inverse, RandomStream(3, 4));
+    draw_stand_ins(values, present, weighted_by(autoregression, values), autoregression, least,
+                   RandomStream(3, 4));
     double sum = 0.0;
     double square = 0.0;
     double count = 0.0;
     for (std::size_t i = 0; i < length; ++i) {
         if (present[i]) { continue; }
-        const double mean =
-            phi * (static_cast<double>(values[i - 1]) + static_cast<double>(values[i + 1])) / inverse[0];
-        const double off = (static_cast<double>(values[i]) - mean) * std::sqrt(inverse[0]);
+        const double mean = phi * (static_cast<double>(values[i - 1]) + static_cast<double>(values[i + 1])) /
+                            autoregression[0];
+        const double off = (static_cast<double>(values[i]) - mean) * std::sqrt(autoregression[0]);
         sum += off;
         square += off * off;
         count += 1.0;
@@ -74,24 +85,84 @@ TEST(StandIns, OfSingleSamplesHaveTheMeanAndTheVarianceThatTheirNeighboursLeave)
     EXPECT_NEAR(square / count, 1.0, 4.0 * std::sqrt(2.0 / count));
 }
 
-// Slow noise goes far: what is drawn in a hole does not depend on how far from zero the level is.
-TEST(StandIns, FollowAnyLevel) {
-    const SpectralBins bins = spectral_bins(length, rate_hz);
-    std::vector<double> density;
-    for (const SpectralBin& bin : bins) { density.push_back((1.0 + 0.5 / (bin.f_hz * bin.f_hz)) / rate_hz); }
-    const std::vector<double> inverse = inverse_covariance(bins, density, rate_hz, length, 64);
-    const RandomStream draws(5, 6);
-    std::vector<float> near(length);
-    std::vector<float> far(length);
+// A hole of many samples is drawn in parts: each differs from what the one before tells of it by independent
+// noise.
+TEST(StandIns, OfALongHoleAreAnAutoregressionThroughout) {
+    std::vector<float> values(length, 0.0F);
     std::vector<bool> present(length, true);
-    for (std::size_t i = 0; i < length; ++i) {
-        near[i] = static_cast<float>(draws.normal(i));
-        far[i] = near[i] + 100.0F;
-        present[i] = i % 50 > 2;
+    for (std::size_t i = 100; i < 30000; ++i) { present[i] = false; }
+    draw_stand_ins(values, present, weighted_by(autoregression, values), autoregression, least,
+                   RandomStream(3, 4));
+    double square = 0.0;
+    double product = 0.0;
+    double largest = 0.0;
+    double last = 0.0;
+    for (std::size_t i = 100; i < 29900; ++i) {
+        const double innovation = static_cast<double>(values[i]) - phi * static_cast<double>(values[i - 1]);
+        square += innovation * innovation;
+        product += innovation * last;
+        largest = std::max(largest, std::abs(innovation));
+        last = innovation;
     }
-    draw_stand_ins(near, present, inverse, RandomStream(3, 4));
-    draw_stand_ins(far, present, inverse, RandomStream(3, 4));
-    for (std::size_t i = 0; i < length; ++i) { ASSERT_NEAR(far[i] - near[i], 100.0F, 1e-3F) << i; }
+    const double count = 29800.0;
+    EXPECT_NEAR(square / count, 1.0, 4.0 * std::sqrt(2.0 / count));
+    EXPECT_NEAR(product / count, 0.0, 4.0 / std::sqrt(count));
+    EXPECT_LT(largest, 5.5);  // of 30 000 normal numbers one in a thousand such sets has a larger one
+}
+
+// Of m samples of an autoregression between two that are known the inverse covariance has the determinant
+// 1 + phi^2 + ... + phi^(2 m). The longest of these holes is drawn in parts.
+TEST(StandIns, TellTheDensityThatTheyWereDrawnFrom) {
+    std::vector<float> values(length, 0.5F);
+    std::vector<bool> present(length, true);
+    const RandomStream draws(3, 4);
+    double wanted_nats = 0.0;
+    const std::vector<std::size_t> holes = {1, 1, 2, 3, 10, 300, 9000, 1, 5};
+    std::size_t slot = 1;
+    for (const std::size_t hole : holes) {
+        double determinant = 1.0;
+        for (std::size_t i = 0; i < hole; ++i, ++slot) {
+            determinant = 1.0 + phi * phi * determinant;
+            present[slot] = false;
+            wanted_nats -= 0.5 * draws.normal(slot) * draws.normal(slot);
+        }
+        wanted_nats += 0.5 * std::log(determinant);
+        ++slot;
+    }
+    const double nats =
+        draw_stand_ins(values, present, weighted_by(autoregression, values), autoregression, least, draws);
+    EXPECT_NEAR(nats, wanted_nats, 1e-6);
+}
+
+// Of every 97 rows one is left out, of every ninth 97 five more, and once half a second.
+std::shared_ptr<const Recording> with_holes(Recording recording) {
+    const Segment whole = recording.segments.front();
+    recording.segments.clear();
+    std::size_t from = 0;
+    const auto leave_out = [&](std::size_t row, std::size_t rows) {
+        recording.segments.push_back({from, row - from, whole.first_index + static_cast<std::int64_t>(from)});
+        from = row + rows;
+    };
+    for (std::size_t k = 1; 97 * k + 60 < whole.count; ++k) {
+        leave_out(97 * k, k == 100 ? 50 : k % 9 == 0 ? 6 : 1);
+    }
+    recording.segments.push_back(
+        {from, whole.count - from, whole.first_index + static_cast<std::int64_t>(from)});
+    return std::make_shared<const Recording>(std::move(recording));
+}
+
+void expect_as_modelled(const Observation& seen, double from_hz, double to_hz) {
+    const SpectralBins& bins = seen.prediction().bins();
+    for (const std::size_t axis : seen.prediction().axes()) {
+        double ratio = 0.0;
+        double count = 0.0;
+        for (std::size_t i = 0; i < bins.size(); ++i) {
+            if (bins[i].f_hz < from_hz || bins[i].f_hz > to_hz) { continue; }
+            ratio += bins[i].count() * seen.axis(axis).power[i] / seen.axis(axis).density[i];
+            count += bins[i].count();
+        }
+        EXPECT_NEAR(ratio / count, 1.0, 4.0 * std::sqrt(2.0 / count)) << axis;
+    }
 }
 
 // Behind a low-pass filter the density near half of the rate is some ten thousandth of that of slow noise:
@@ -100,32 +171,19 @@ TEST(StandIns, BehindALowPassLeaveTheSpectrumAsItIs) {
     SensorModel model = calibrated_sensor();
     model.lsb_rad_s = 0.0;
     model = with_effect(model, "lowpass", {{"fc_hz", 6.0}, {"order", 2.0}}, {});
-    Recording holed = *recorded(model, 90'000, 31);
-    const Segment whole = holed.segments.front();
-    holed.segments.clear();
-    // Of every 97 rows one, of every ninth 97 five more, and once half a second.
-    std::size_t from = 0;
-    const auto leave_out = [&](std::size_t row, std::size_t rows) {
-        holed.segments.push_back({from, row - from, whole.first_index + static_cast<std::int64_t>(from)});
-        from = row + rows;
-    };
-    for (std::size_t k = 1; 97 * k + 60 < whole.count; ++k) {
-        leave_out(97 * k, k == 100 ? 50 : k % 9 == 0 ? 6 : 1);
-    }
-    holed.segments.push_back({from, whole.count - from, whole.first_index + static_cast<std::int64_t>(from)});
-    const auto recording = std::make_shared<const Recording>(std::move(holed));
+    const auto recording = with_holes(*recorded(model, 90'000, 31));
+    expect_as_modelled(Observation(prediction_of(recording, model), recording, 1), 20.0, rate_hz);
+}
+
+// Slow noise goes far: a stand-in about another level would be an outlier of a hundred standard deviations.
+TEST(StandIns, BesideARandomWalkLeaveTheSpectrumAsItIs) {
+    SensorModel model = calibrated_sensor();
+    model.lsb_rad_s = 0.0;
+    for (AxisModel& axis : model.axes) { axis.noise.K_rad_per_s_sqrt_s = 0.05 * rad_per_deg; }
+    const auto recording = with_holes(*recorded(model, 90'000, 33));
     const Observation seen(prediction_of(recording, model), recording, 1);
-    const SpectralBins& bins = seen.prediction().bins();
-    for (const std::size_t axis : seen.prediction().axes()) {
-        double ratio = 0.0;
-        double count = 0.0;
-        for (std::size_t i = 0; i < bins.size(); ++i) {
-            if (bins[i].f_hz < 20.0) { continue; }
-            ratio += bins[i].count() * seen.axis(axis).power[i] / seen.axis(axis).density[i];
-            count += bins[i].count();
-        }
-        EXPECT_NEAR(ratio / count, 1.0, 4.0 * std::sqrt(2.0 / count)) << axis;
-    }
+    expect_as_modelled(seen, 0.0, 5.0);
+    expect_as_modelled(seen, 20.0, rate_hz);
 }
 
 }  // namespace
