@@ -17,9 +17,11 @@ namespace gyrolog::resolution {
 // How many samples on either side say what the level in a hole is: so many that what they have in common with
 // the stand-ins is slower than the white noise reaches.
 constexpr std::size_t level_samples = 256;
-// Samples farther away have no weight in what is drawn for a hole. Behind a filter of 5 Hz at 100 Hz the
-// weight there is 1e-12 of the nearest one's, beside flicker noise 2e-3.
+// Stand-ins farther apart tell nothing of each other. Behind a filter of 5 Hz at 100 Hz the weight there is
+// 1e-12 of the nearest one's, beside flicker noise 2e-3.
 constexpr std::size_t stand_in_lags = 64;
+// So many tell the power of slow noise, to a quarter.
+constexpr double level_coefficients = 32.0;
 
 }  // namespace gyrolog::resolution
 
@@ -187,20 +189,52 @@ void divide_by_bin(const Prediction& prediction, const std::vector<double>& dens
     }
 }
 
-// Draws what stands in for missing samples from the noise that was fitted, given the samples.
+// The product of the inverse of the noise's covariance with the residual, by slot.
+std::vector<double> weighted_residual(const Prediction& prediction, const std::vector<double>& density,
+                                      const std::vector<float>& cosines, CosineTransform& transform) {
+    std::vector<double> weighted(cosines.begin(), cosines.end());
+    divide_by_bin(prediction, density, weighted, [](double variance) { return variance; });
+    transform.inverse(weighted);
+    return weighted;
+}
+
+InverseCovariance inverse_covariance_of(const Prediction& prediction, const std::vector<double>& density) {
+    return inverse_covariance(prediction.bins(), density, prediction.rate_hz(), prediction.length(),
+                              resolution::stand_in_lags);
+}
+
+// The noise that was fitted, and where it is slow and the recording has more, that: drawn without it,
+// stand-ins would be outliers beside a drift that no cause explains yet.
+std::vector<double> density_of_stand_ins(const Prediction& prediction, const AxisObservation& seen) {
+    const SpectralBins& bins = prediction.bins();
+    std::vector<double> density = seen.density;
+    const double slow_hz = 0.5 * prediction.rate_hz() / static_cast<double>(resolution::stand_in_lags);
+    for (std::size_t i = 0; i < bins.size() && bins[i].f_hz < slow_hz; ++i) {
+        double sum = 0.0;
+        double count = 0.0;
+        const std::size_t reach_most = std::max(i, bins.size() - 1 - i);
+        for (std::size_t reach = 0; reach <= reach_most && count < resolution::level_coefficients; ++reach) {
+            const auto take = [&](std::size_t bin) {
+                sum += bins[bin].count() * seen.power[bin];
+                count += bins[bin].count();
+            };
+            if (i + reach < bins.size()) { take(i + reach); }
+            if (reach > 0 && reach <= i) { take(i - reach); }
+        }
+        density[i] = std::max(density[i], sum / count);
+    }
+    return density;
+}
+
+// Draws what stands in for missing samples, given the samples.
 void fill_holes(const Prediction& prediction, std::size_t axis, AxisObservation& seen,
-                const std::vector<bool>& present, CosineTransform& transform, std::uint64_t seed) {
+                const std::vector<std::size_t>& missing, CosineTransform& transform, std::uint64_t seed) {
     std::vector<float> cosines = seen.cosines;
     take_off(prediction.uncertain(axis), seen.uncertain_fit, cosines);
-    std::vector<double> weighted(cosines.begin(), cosines.end());
-    divide_by_bin(prediction, seen.density, weighted, [](double variance) { return variance; });
-    transform.inverse(weighted);
-    const double rate_hz = prediction.rate_hz();
-    const std::vector<double> inverse = inverse_covariance(prediction.bins(), seen.density, rate_hz,
-                                                           prediction.length(), resolution::stand_in_lags);
-    const double least_inverse = 1.0 / (*std::ranges::max_element(seen.density) * rate_hz);
-    seen.stand_ins_nats = draw_stand_ins(seen.residual_rad_s, present, weighted, inverse, least_inverse,
-                                         derived_stream(seed, RandomPurpose::stand_ins, axis));
+    const std::vector<double> density = density_of_stand_ins(prediction, seen);
+    draw_stand_ins(seen.residual_rad_s, missing, weighted_residual(prediction, density, cosines, transform),
+                   inverse_covariance_of(prediction, density),
+                   derived_stream(seed, RandomPurpose::stand_ins, axis));
 }
 
 // White noise whose level the model has go with time has the same variance throughout afterwards.
@@ -243,6 +277,9 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
     const std::vector<bool> judged = judged_rows(*recording_, prediction_->model());
     for_each_slot(segments_, origin, length,
                   [&](std::size_t slot, std::size_t row) { present_[slot] = judged[row]; });
+    for (std::size_t slot = 0; slot < length; ++slot) {
+        if (!present_[slot]) { missing_.push_back(slot); }
+    }
     const TransformPool::Lease transform = prediction_->transform();
     for (const std::size_t axis : prediction_->axes()) { observe(axis, *transform); }
     // What moved before the recording began is not known, and a sensor that lags shows it.
@@ -315,14 +352,14 @@ void Observation::observe(std::size_t axis, CosineTransform& transform) {
     residual.assign(length, 0.0F);
     take_expected_off(axis, residual);
     seen.mean_rad_s = take_mean_off(residual, present_);
-    const bool whole = std::ranges::find(present_, false) == present_.end();
     const UncertainMean& uncertain = prediction.uncertain(axis);
-    if (!whole) { draw_first_guesses(prediction, axis, residual, present_, seed_); }
+    if (!missing_.empty()) { draw_first_guesses(prediction, axis, residual, present_, seed_); }
     fit_model(axis, transform);
-    // What stands in for a sample has the noise that was fitted, and follows the motion as the samples do.
-    const int rounds = whole ? 0 : uncertain.empty() ? 1 : 2;
+    // What stands in for a sample has noise like that which was fitted, and follows the motion as the samples
+    // do.
+    const int rounds = missing_.empty() ? 0 : uncertain.empty() ? 1 : 2;
     for (int round = 0; round < rounds; ++round) {
-        fill_holes(prediction, axis, seen, present_, transform, seed_);
+        fill_holes(prediction, axis, seen, missing_, transform, seed_);
         fit_model(axis, transform);
     }
     if (!uncertain.empty()) {
@@ -338,12 +375,21 @@ void Observation::observe(std::size_t axis, CosineTransform& transform) {
     even_out(prediction, axis, seen.whitened);
 }
 
+double stand_ins_nats(const Observation& observation, std::size_t axis) {
+    if (observation.missing().empty()) { return 0.0; }
+    const Prediction& prediction = observation.prediction();
+    const AxisObservation& seen = observation.axis(axis);
+    const TransformPool::Lease transform = prediction.transform();
+    return stand_ins_log_density_nats(observation.missing(),
+                                      weighted_residual(prediction, seen.density, seen.cosines, *transform),
+                                      inverse_covariance_of(prediction, seen.density));
+}
+
 double log_likelihood_nats(const Observation& observation) {
     double nats = 0.0;
     for (const std::size_t axis : observation.prediction().axes()) {
-        const AxisObservation& seen = observation.axis(axis);
-        nats +=
-            seen.noise.log_likelihood_nats - seen.stand_ins_nats - uncertain_charge_nats(observation, axis);
+        nats += observation.axis(axis).noise.log_likelihood_nats - stand_ins_nats(observation, axis) -
+                uncertain_charge_nats(observation, axis);
     }
     return nats;
 }

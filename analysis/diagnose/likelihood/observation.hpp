@@ -20,7 +20,6 @@ struct AxisObservation {
     // The residual by slot, about its mean. Slots without a sample hold what stands in for one, drawn from
     // the model's noise given the samples beside them.
     std::vector<float> residual_rad_s;
-    double stand_ins_nats = 0.0;              // the logarithm of the density that they were drawn from
     std::vector<float> cosines;               // DCT-II of the residual, Y_0 = 0; rad/s
     double mean_rad_s = 0.0;                  // that was taken off
     std::vector<double> uncertain_fit;        // values of Prediction::uncertain() that were taken off
@@ -57,6 +56,8 @@ public:
     const AxisObservation& axis(std::size_t axis) const { return axes_[axis]; }
     // By slot: a sample was there, is to be judged and belongs to the prediction's half.
     const std::vector<bool>& present() const { return present_; }
+    // The slots where something stands in for a sample.
+    const std::vector<std::size_t>& missing() const { return missing_; }
 
 private:
     void observe(std::size_t axis, CosineTransform& transform);
@@ -70,6 +71,7 @@ private:
     ReferenceNoise reference_noise_;
     std::vector<Segment> segments_;  // where its rows belong on the grid
     std::vector<bool> present_;
+    std::vector<std::size_t> missing_;
     std::array<AxisObservation, 3> axes_;
 };
 
@@ -77,6 +79,8 @@ private:
 // that was fitted, in nats and without constants. Of samples y and stand-ins z it is log p(y) = log p(y, z) -
 // log p(z | y).
 double log_likelihood_nats(const Observation& observation);
+// The function returns the logarithm of the density that the model gives the stand-ins, given the samples.
+double stand_ins_nats(const Observation& observation, std::size_t axis);
 // The function returns what the priors of the model's uncertain responses charge for the values they were
 // fitted at.
 double uncertain_charge_nats(const Observation& observation, std::size_t axis);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analysis/numerics/envelope_cholesky.hpp"
 #include "analysis/simulate/sensor_model.hpp"
@@ -18,97 +19,40 @@ namespace gyrolog {
 
 namespace {
 
-// What is drawn together is eliminated from its end on: so the first of them do not depend on the last.
-class StandIns {
-public:
-    StandIns(std::span<float> values, const std::vector<bool>& present, std::span<const double> weighted,
-             std::span<const double> inverse, double least_inverse, const RandomStream& noise)
-        : values_(values),
-          weighted_(weighted),
-          inverse_(inverse),
-          least_inverse_(least_inverse),
-          noise_(noise) {
-        for (std::size_t slot = 0; slot < present.size(); ++slot) {
-            if (!present[slot]) { slots_.push_back(slot); }
-        }
-        steps_.resize(slots_.size());
-    }
+// Missing samples that are taken together, in the order of their slots.
+struct Together {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    std::size_t kept_end = 0;  // Those that follow tell of the ones before only.
+};
 
-    double draw() {
-        double log_density_nats = 0.0;
-        for (std::size_t begin = 0; begin < slots_.size();) {
-            const std::size_t end = std::min(begin + resolution::stand_ins_together, slots_.size());
-            const std::size_t kept_end = end == slots_.size() ? end : end - resolution::stand_ins_beyond;
-            log_density_nats += draw(begin, end, kept_end);
-            begin = kept_end;
-        }
-        for (std::size_t i = 0; i < slots_.size(); ++i) {
-            values_[slots_[i]] += static_cast<float>(steps_[i]);
-        }
-        return log_density_nats;
-    }
-
-private:
-    // With C the inverse covariance of all and M the missing ones, x_M + d is drawn from their distribution
-    // given the others by C_MM d = -(C x)_M + L e, C_MM = L L'.
-    double draw(std::size_t begin, std::size_t end, std::size_t kept_end) {
-        const std::size_t size = end - begin;
-        const EnvelopeCholesky factor = factor_of(begin, end);
-        std::vector<double> right(size);
-        for (std::size_t i = 0; i < size; ++i) { right[i] = right_side(end - 1 - i, begin); }
-        std::vector<double> drawn = factor.solve_lower(std::move(right));
-        double log_density_nats = 0.0;
-        for (std::size_t i = 0; i < size; ++i) {
-            const double normal = noise_.normal(slots_[end - 1 - i]);
-            drawn[i] += normal;
-            if (end - 1 - i < kept_end) {
-                log_density_nats += std::log(factor.diagonal(i)) - 0.5 * normal * normal;
-            }
-        }
-        drawn = factor.solve_transposed(std::move(drawn));
-        for (std::size_t place = begin; place < kept_end; ++place) { steps_[place] = drawn[end - 1 - place]; }
-        return log_density_nats;
-    }
-
-    EnvelopeCholesky factor_of(std::size_t begin, std::size_t end) const {
-        EnvelopeCholesky factor(least_inverse_);
-        std::vector<double> row;
-        std::size_t last = end;  // of the slots, the first that is too far away
-        for (std::size_t place = end; place-- > begin;) {
-            while (slots_[last - 1] - slots_[place] >= inverse_.size()) { --last; }
+// Calls take(together, factor) for all parts of the missing samples. What is taken together is eliminated
+// from its end on: so the first of them do not depend on the last.
+template <typename Take>
+void for_each_part(std::span<const std::size_t> slots, const InverseCovariance& inverse, Take take) {
+    const std::vector<double>& by_lag = inverse.by_lag;
+    std::vector<double> row;
+    for (Together part; part.begin < slots.size(); part.begin = part.kept_end) {
+        part.end = std::min(part.begin + resolution::stand_ins_together, slots.size());
+        part.kept_end = part.end == slots.size() ? part.end : part.end - resolution::stand_ins_beyond;
+        EnvelopeCholesky factor(inverse.least);
+        std::size_t last = part.end;  // of the slots, the first that is too far away
+        for (std::size_t place = part.end; place-- > part.begin;) {
+            while (slots[last - 1] - slots[place] >= by_lag.size()) { --last; }
             row.clear();
             for (std::size_t other = last; other-- > place;) {
-                row.push_back(inverse_[slots_[other] - slots_[place]]);
+                row.push_back(by_lag[slots[other] - slots[place]]);
             }
             factor.add_row(row);
         }
-        return factor;
+        take(part, factor);
     }
-
-    // With the steps that those before `begin` have taken.
-    double right_side(std::size_t place, std::size_t begin) const {
-        double sum = -weighted_[slots_[place]];
-        for (std::size_t other = begin; other-- > 0;) {
-            const std::size_t lag = slots_[place] - slots_[other];
-            if (lag >= inverse_.size()) { break; }
-            sum -= inverse_[lag] * steps_[other];
-        }
-        return sum;
-    }
-
-    std::span<float> values_;
-    std::span<const double> weighted_;
-    std::span<const double> inverse_;
-    double least_inverse_;
-    const RandomStream& noise_;
-    std::vector<std::size_t> slots_;  // that hold no sample
-    std::vector<double> steps_;       // of the value of each of them
-};
+}
 
 }  // namespace
 
-std::vector<double> inverse_covariance(const SpectralBins& bins, std::span<const double> density,
-                                       double rate_hz, std::size_t length, std::size_t lags) {
+InverseCovariance inverse_covariance(const SpectralBins& bins, std::span<const double> density,
+                                     double rate_hz, std::size_t length, std::size_t lags) {
     std::vector<double> inverse(lags + 1, 0.0);
     const auto whole = static_cast<double>(length);
     double from = 0.0;  // in coefficients
@@ -123,13 +67,52 @@ std::vector<double> inverse_covariance(const SpectralBins& bins, std::span<const
         }
         from = to;
     }
-    return inverse;
+    return {std::move(inverse), 1.0 / (*std::ranges::max_element(density) * rate_hz)};
 }
 
-double draw_stand_ins(std::span<float> values, const std::vector<bool>& present,
-                      std::span<const double> weighted, std::span<const double> inverse, double least_inverse,
-                      const RandomStream& noise) {
-    return StandIns(values, present, weighted, inverse, least_inverse, noise).draw();
+// With C the inverse covariance of all and M the missing ones, x_M + d is drawn from their distribution given
+// the others by C_MM d = -(C x)_M + L e, C_MM = L L'.
+void draw_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
+                    std::span<const double> weighted, const InverseCovariance& inverse,
+                    const RandomStream& noise) {
+    std::vector<double> steps(slots.size(), 0.0);
+    // With the steps that those before `begin` have taken.
+    const auto right_side = [&](std::size_t place, std::size_t begin) {
+        double sum = -weighted[slots[place]];
+        for (std::size_t other = begin; other-- > 0;) {
+            const std::size_t lag = slots[place] - slots[other];
+            if (lag >= inverse.by_lag.size()) { break; }
+            sum -= inverse.by_lag[lag] * steps[other];
+        }
+        return sum;
+    };
+    for_each_part(slots, inverse, [&](const Together& part, const EnvelopeCholesky& factor) {
+        std::vector<double> drawn(factor.size());
+        for (std::size_t i = 0; i < drawn.size(); ++i) {
+            drawn[i] = right_side(part.end - 1 - i, part.begin);
+        }
+        drawn = factor.solve_lower(std::move(drawn));
+        for (std::size_t i = 0; i < drawn.size(); ++i) { drawn[i] += noise.normal(slots[part.end - 1 - i]); }
+        drawn = factor.solve_transposed(std::move(drawn));
+        for (std::size_t place = part.begin; place < part.kept_end; ++place) {
+            steps[place] = drawn[part.end - 1 - place];
+        }
+    });
+    for (std::size_t i = 0; i < slots.size(); ++i) { values[slots[i]] += static_cast<float>(steps[i]); }
+}
+
+double stand_ins_log_density_nats(std::span<const std::size_t> slots, std::span<const double> weighted,
+                                  const InverseCovariance& inverse) {
+    double nats = 0.0;
+    for_each_part(slots, inverse, [&](const Together& part, const EnvelopeCholesky& factor) {
+        std::vector<double> normal(factor.size());
+        for (std::size_t i = 0; i < normal.size(); ++i) { normal[i] = weighted[slots[part.end - 1 - i]]; }
+        normal = factor.solve_lower(std::move(normal));
+        for (std::size_t i = part.end - part.kept_end; i < normal.size(); ++i) {
+            nats += std::log(factor.diagonal(i)) - 0.5 * normal[i] * normal[i];
+        }
+    });
+    return nats;
 }
 
 }  // namespace gyrolog

@@ -13,21 +13,28 @@
 
 namespace gyrolog {
 
-// The inverse of a stationary process' covariance has in row i and column j the value at |i - j| of
+// The inverse of the covariance of stationary noise has in row i and column j the value at |i - j| of
 //   c_k = integral of cos(2 pi f k / rate) / (S rate^2) df over the whole band.
-// The function returns c_0 ... c_lags in 1/(rad/s)^2 from the density `S` by bin, two-sided, in (rad/s)^2/Hz,
-// of a record of `length` samples.
-std::vector<double> inverse_covariance(const SpectralBins& bins, std::span<const double> density,
-                                       double rate_hz, std::size_t length, std::size_t lags);
+struct InverseCovariance {
+    std::vector<double> by_lag;  // c_0 ... c_lags, 1/(rad/s)^2
+    double least = 0.0;          // No eigenvalue is below, 1/(rad/s)^2.
+};
 
-// The function draws new values for all slots that are not present. `weighted`: the product of the inverse
-// covariance with all values, by slot, in 1/(rad/s); so what all samples tell of one that is missing is in
-// it. `inverse`: c_0 ... c_lags as above, for what missing samples tell of each other; no eigenvalue of the
-// inverse covariance is below `least_inverse`, in the same unit. `noise` draws one number for each slot. The
-// function returns the logarithm of the density that the values were drawn from, at what was drawn, in nats
-// and without the factors 1 / sqrt(2 pi).
-double draw_stand_ins(std::span<float> values, const std::vector<bool>& present,
-                      std::span<const double> weighted, std::span<const double> inverse, double least_inverse,
-                      const RandomStream& noise);
+// `density`: S by bin, two-sided, in (rad/s)^2/Hz, of a record of `length` samples.
+InverseCovariance inverse_covariance(const SpectralBins& bins, std::span<const double> density,
+                                     double rate_hz, std::size_t length, std::size_t lags);
+
+// The function draws new values for `slots`, which are the missing ones in their order. `weighted`: the
+// product of the inverse covariance with all values, by slot, in 1/(rad/s); so what all samples tell of one
+// that is missing is in it. What missing samples tell of each other is in `inverse`. `noise` draws one number
+// for each slot.
+void draw_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
+                    std::span<const double> weighted, const InverseCovariance& inverse,
+                    const RandomStream& noise);
+
+// The function returns the logarithm of the density of the values of `slots` given all others, in nats and
+// without the factors 1 / sqrt(2 pi).
+double stand_ins_log_density_nats(std::span<const std::size_t> slots, std::span<const double> weighted,
+                                  const InverseCovariance& inverse);
 
 }  // namespace gyrolog
