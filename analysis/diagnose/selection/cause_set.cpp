@@ -202,7 +202,7 @@ std::vector<Finding> CauseSet::rivals_to_try(const FoundCause& cause) const {
     for (const Finding& rival : cause.rivals) {
         const EstimatorTraits& traits = traits_of(rival.effect, *first_.prediction);
         if (rival.effect == cause.finding.effect || traits.is_beside_spectra || traits.recurs) { continue; }
-        if (axes_explained_by(rival, cause.finding, decisions.nearly_all).empty()) { continue; }
+        if (axes_to_give(cause.finding, rival).empty()) { continue; }
         if (best.try_emplace(traits.method, rival).second || !is_simpler(rival)) { continue; }
         simpler.try_emplace(traits.method, rival);
     }
@@ -216,9 +216,21 @@ int CauseSet::parameters(const std::vector<FoundCause>& some) {
                            [](int sum, const FoundCause& cause) { return sum + cause.finding.parameters; });
 }
 
+std::vector<std::size_t> CauseSet::axes_to_give(const Finding& cause, const Finding& rival) const {
+    std::vector<std::size_t> axes;
+    const auto same = std::ranges::find(causes, rival.effect, effect_name);
+    for (const std::size_t axis : cause.where.axes) {
+        if (rival.axis_gain_nats.at(axis) < decisions.seen_nats()) { continue; }
+        if (std::ranges::count(rival.where.axes, axis) == 0) { continue; }
+        if (same != causes.end() && std::ranges::count(same->finding.where.axes, axis) != 0) { continue; }
+        axes.push_back(axis);
+    }
+    return axes;
+}
+
 bool CauseSet::give_to_rival(std::size_t place, const Finding& rival) {
     const Finding cause = causes[place].finding;
-    const std::vector<std::size_t> given = axes_explained_by(rival, cause, decisions.nearly_all);
+    const std::vector<std::size_t> given = axes_to_give(cause, rival);
     std::vector<std::size_t> kept;
     std::ranges::set_difference(cause.where.axes, given, std::back_inserter(kept));
     if (kept.empty() && traits_of(cause.effect).changes_likelihood) { return false; }
@@ -316,10 +328,7 @@ bool CauseSet::is_same_line(const Finding& a, const Finding& b) const {
 bool CauseSet::is_rival(const Finding& finding, const Finding& cause) const {
     if (is_new(finding)) { return true; }
     if (traits_of(finding.effect).recurs || is_told_by_twin(finding)) { return false; }
-    const auto same = std::ranges::find(causes, finding.effect, effect_name);
-    return same != causes.end() && std::ranges::none_of(cause.where.axes, [&](std::size_t axis) {
-               return std::ranges::count(same->finding.where.axes, axis) != 0;
-           });
+    return !axes_to_give(cause, finding).empty();
 }
 
 }  // namespace gyrolog

@@ -85,8 +85,8 @@ public:
 
     // Of these findings, those that may stand in the cause's place.
     std::vector<Finding> rivals_of(const Finding& cause, const std::vector<Finding>& findings) const;
-    // Of each estimator the best rival that explains axes of the cause nearly as well, the best first; then
-    // rivals that have fewer parameters than the cause and more evidence.
+    // Of each estimator the best rival that is seen on axes of the cause, the best first; then rivals that
+    // have fewer parameters than the cause and more evidence.
     std::vector<Finding> rivals_to_try(const FoundCause& cause) const;
     // The number of fitted parameters of these causes.
     static int parameters(const std::vector<FoundCause>& some);
@@ -119,6 +119,9 @@ private:
     double evidence_nats_of(const std::vector<std::size_t>& places) const;
     // What a steady line leaves beside itself is no other line: it wanders, or swells.
     bool is_same_line(const Finding& a, const Finding& b) const;
+    // The axes of the cause on which something of the rival is seen, less those that it has as a cause
+    // already.
+    std::vector<std::size_t> axes_to_give(const Finding& cause, const Finding& rival) const;
     // What is a cause already is no rival of another, unless on axes that it has not taken.
     bool is_rival(const Finding& finding, const Finding& cause) const;
 

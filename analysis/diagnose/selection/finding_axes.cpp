@@ -6,17 +6,6 @@
 
 namespace gyrolog {
 
-std::vector<std::size_t> axes_explained_by(const Finding& rival, const Finding& cause, double share_least) {
-    std::vector<std::size_t> axes;
-    for (const std::size_t axis : cause.where.axes) {
-        const double own_nats = cause.axis_gain_nats.at(axis);
-        if (own_nats > 0.0 && rival.axis_gain_nats.at(axis) >= share_least * own_nats) {
-            axes.push_back(axis);
-        }
-    }
-    return axes;
-}
-
 std::optional<Finding> on_axes(const Finding& finding, const std::vector<std::size_t>& axes) {
     Finding rest = finding;
     rest.entries.clear();

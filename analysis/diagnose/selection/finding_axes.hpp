@@ -9,9 +9,6 @@
 
 namespace gyrolog {
 
-// The axes of `cause` on which `rival` gains at least this share of what the cause does.
-std::vector<std::size_t> axes_explained_by(const Finding& rival, const Finding& cause, double share_least);
-
 // The finding on some of its axes, with what it gains on them. No value where its entries are not of single
 // axes.
 std::optional<Finding> on_axes(const Finding& finding, const std::vector<std::size_t>& axes);

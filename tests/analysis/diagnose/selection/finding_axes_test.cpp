@@ -28,17 +28,6 @@ Finding finding() {
     return finding;
 }
 
-TEST(FindingAxes, AreThoseOnWhichTheRivalGainsAsMuch) {
-    Finding rival = finding();
-    rival.axis_gain_nats = {44.0, 18.0, 12.0};
-    EXPECT_EQ(axes_explained_by(rival, finding(), 0.9), (Axes{1, 2}));
-    Finding of_one = finding();
-    of_one.where.axes = {1};
-    EXPECT_EQ(axes_explained_by(rival, of_one, 0.9), Axes{1});
-    rival.axis_gain_nats = {};
-    EXPECT_EQ(axes_explained_by(rival, finding(), 0.9), Axes{});
-}
-
 TEST(FindingAxes, KeepWhatTheyHave) {
     const auto rest = on_axes(finding(), {0, 2});
     ASSERT_TRUE(rest);
