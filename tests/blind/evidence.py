@@ -138,18 +138,20 @@ def _spectrum(context, description, axis, N, B, K):
     """(white, flicker, walk, fixed) parts of S on the context's bins."""
     f = context.bins.f
     white = N**2 * description.white[axis] * np.ones_like(f)
+    passed = 1.0
     if axis in description.level:
         white = white * np.mean(description.level[axis])
     for factor in description.colour[axis]:
         white = white * factor(f)
     if description.filter[axis]:
         fc_hz, order = description.filter[axis]
-        white = white * folded_lowpass(f, fc_hz, order, context.rate_hz)
+        passed = folded_lowpass(f, fc_hz, order, context.rate_hz)
+        white = white * passed
     fixed = np.full_like(f, context.floor_density)
     for density in description.extra[axis]:
         fixed = fixed + density(f)
     for square, gains in description.common:
-        fixed = fixed + square * gains[axis] ** 2
+        fixed = fixed + square * gains[axis] ** 2 * passed
     slow = 1.0 / (1.0 + (f / fc_hz) ** (2 * order)) if description.filter[axis] else 1.0
     return white, slow * B**2 / (2.0 * np.pi * f), slow * (K / (2.0 * np.pi * f)) ** 2, fixed
 

@@ -200,6 +200,14 @@ def filtered(series, gain_of_f, rate_hz):
     return np.fft.irfft(np.fft.rfft(both) * gain_of_f(f), 2 * n)[:n]
 
 
+def through_filters(effects, axis, white, around):
+    """White noise from outside: the sensor's filter follows it."""
+    for e in effects:
+        if e.name == "lowpass" and e.on(axis):
+            white = e.whitened(axis, white, around, None)
+    return white
+
+
 # ------------------------------------------------------------------ a recording
 
 
@@ -254,7 +262,10 @@ def record(context, effects, noise_name="noise"):
         for e in effects:
             if e.on(axis):
                 own = stream(context.seed, noise_name, "n" + e.name, "" if e.shared else axis)
-                value += e.noise(axis, own, around)
+                noise = e.noise(axis, own, around)
+                if e.family == "white" and np.ndim(noise):
+                    noise = through_filters(effects, axis, noise, around)
+                value += noise
         limit = FULL_SCALE_DPS + 17 * LSB_DPS
         step = LSB_DPS
         for e in effects:
