@@ -19,6 +19,8 @@ namespace {
 constexpr double sd_per_mad = 1.4826;     // of a normal distribution
 constexpr double fitted_per_block = 3.0;  // two means and where the step is
 constexpr std::size_t largest_left_out = 2;
+// In shortest blocks. Of a bump that swings slowly a short block sees a half period or two, which is a step.
+constexpr std::array<std::size_t, 2> block_lengths = {1, 2};
 
 struct Block {
     std::size_t first = 0;
@@ -31,9 +33,11 @@ struct Power {
     double largest = 0.0;
 };
 
-std::vector<Block> blocks_of(const Recording& recording, const DisturbanceOptions& options) {
+// `times` as long as the shortest.
+std::vector<Block> blocks_of(const Recording& recording, std::size_t times,
+                             const DisturbanceOptions& options) {
     const auto wanted = static_cast<std::size_t>(std::llround(options.block_s * recording.rate_hz));
-    const std::size_t count = std::max(options.block_samples_least, wanted);
+    const std::size_t count = times * std::max(options.block_samples_least, wanted);
     std::vector<Block> blocks;
     for (const Segment& segment : recording.segments) {
         for (std::size_t at = 0; at + count <= segment.count; at += count) {
@@ -386,7 +390,7 @@ std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals,
                                    std::span<const std::vector<double>> values,
                                    const std::vector<Block>& blocks, const DisturbanceOptions& options) {
     DisturbedBlocks disturbed(signals, values, blocks);
-    const auto tails = static_cast<double>(signals.size() + 2);
+    const auto tails = static_cast<double>((signals.size() + 2) * block_lengths.size());
     const double chance = options.false_alarms_most / tails;
     if (signals.size() > 1) {
         disturbed.take_loud_at_once({.share = 2.0 * options.together_share, .censored_share = 0.5}, chance);
@@ -394,6 +398,25 @@ std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals,
     }
     disturbed.take_loud_alone({}, chance);
     return disturbed.are();
+}
+
+struct Seen {
+    std::vector<Block> blocks;
+    std::vector<Signal> signals;
+    std::vector<bool> disturbed;  // by block
+};
+
+// Marks the blocks that begin in disturbed ones of the longer ones.
+void take_over(const Seen& longer, Seen& shorter) {
+    std::size_t at = 0;
+    for (std::size_t block = 0; block < longer.blocks.size(); ++block) {
+        if (!longer.disturbed[block]) { continue; }
+        const Block& here = longer.blocks[block];
+        while (at < shorter.blocks.size() && shorter.blocks[at].first < here.first) { ++at; }
+        for (; at < shorter.blocks.size() && shorter.blocks[at].first < here.first + here.count; ++at) {
+            shorter.disturbed[at] = true;
+        }
+    }
 }
 
 // Disturbed blocks as long as they follow without a hole.
@@ -425,15 +448,24 @@ std::vector<Disturbance> stretches(const Recording& recording, const std::vector
 std::vector<Disturbance> disturbances(const Recording& recording,
                                       std::span<const std::vector<double>> signals,
                                       const DisturbanceOptions& options) {
-    const std::vector<Block> blocks = blocks_of(recording, options);
-    if (signals.empty() || blocks.size() < options.blocks_least) { return {}; }
     const double longest_share = longest_share_of(recording, options);
-    std::vector<Signal> seen;
-    for (const std::vector<double>& signal : signals) {
-        seen.push_back(signal_of(signal, blocks, longest_share, options));
+    Seen shortest;
+    for (const std::size_t times : block_lengths) {
+        Seen seen{blocks_of(recording, times, options), {}, {}};
+        if (signals.empty() || seen.blocks.size() < options.blocks_least) { break; }
+        for (const std::vector<double>& signal : signals) {
+            seen.signals.push_back(signal_of(signal, seen.blocks, longest_share, options));
+        }
+        seen.disturbed = disturbed_blocks(seen.signals, signals, seen.blocks, options);
+        if (shortest.blocks.empty()) {
+            shortest = std::move(seen);
+        } else {
+            take_over(seen, shortest);
+        }
     }
+    if (shortest.blocks.empty()) { return {}; }
     std::vector<Disturbance> found =
-        stretches(recording, blocks, seen, disturbed_blocks(seen, signals, blocks, options));
+        stretches(recording, shortest.blocks, shortest.signals, shortest.disturbed);
     const auto rows = static_cast<double>(recording.rows());
     std::erase_if(
         found, [&](const Disturbance& one) { return static_cast<double>(one.rows) > longest_share * rows; });

@@ -5,7 +5,7 @@
 // power of a block of the recording is what is left about two means with one step between them, less its two
 // largest squares, so that neither a step of the bias nor single samples that are off count.
 // A block is loud on an axis where the logarithm of its power lies above the axis' median around it by more
-// than chance has it.
+// than chance has it. Blocks have two lengths: two half periods of a slow bump are a step in a short one.
 //
 // A block is disturbed that lies beyond the tail of one axis' own blocks, for a bump may move one axis alone,
 // or in which several axes are as loud at once as they are not by chance. So are the blocks that follow or
@@ -23,7 +23,7 @@
 namespace gyrolog {
 
 struct DisturbanceOptions {
-    double block_s = 0.25;                 // a bump's length
+    double block_s = 0.25;                 // a bump's length; longer blocks have twice as much
     std::size_t block_samples_least = 16;  // a power is known to a third
     // One block that is loud is a twentieth of the recording then, which is the longest disturbance.
     std::size_t blocks_least = 20;
