@@ -54,12 +54,15 @@ GapCurve repeats_curve(const Observation& observation, std::size_t axis) {
     }
     GapCurve curve{&measures::repeats, axis, axis, {}, {}};
     for (std::size_t lag = 0; lag < resolution::repeat_lags; ++lag) {
-        curve.x.push_back(static_cast<double>(lag + 1) / observation.prediction().rate_hz());
+        curve.x.push_back(static_cast<double>(lag + 1));  // in samples
         const double variance = counts[lag] + compared / static_cast<double>(resolution::compared_lags) + 1.0;
         curve.value.push_back((counts[lag] - compared) / std::sqrt(variance));
     }
     return curve;
 }
+
+constexpr std::array samples_compared = {"the one before", "the second before"};
+static_assert(samples_compared.size() == resolution::repeat_lags);
 
 void locate_repeats(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& where) {
     where.structure = "duplicated_samples";
@@ -68,11 +71,13 @@ void locate_repeats(const GapCurve& /*curve*/, const std::vector<double>& /*z*/,
 }  // namespace
 
 const Measure measures::repeats{.name = "repeated samples",
-                                .x_name = "lag (s)",
+                                .x_name = "",
                                 .y_name = "excess (its sd)",
                                 .shown_x = as_it_is,
                                 .shown_y = as_it_is,
                                 .locate = locate_repeats,
+                                .categories = samples_compared,
+                                .is_course = false,
                                 .least_sd = 1.0,
                                 .is_normal_far_out = false};
 
