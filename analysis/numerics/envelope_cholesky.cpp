@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/numerics/matrix_products.hpp"
+
 namespace gyrolog::resolution {
 
 // Of a row of L, by which two that are taken for the same differ.
-constexpr double same_row_rel = 1e-12;
+constexpr double same_row_rel = 1e-8;
 
 }  // namespace gyrolog::resolution
 
@@ -30,10 +32,9 @@ std::vector<double> EnvelopeCholesky::next_row(std::span<const double> row) cons
     for (std::size_t j = first; j <= i; ++j) {
         const std::vector<double>& other = j == i ? made : this->row(j);
         const std::size_t other_first = j + 1 - (j == i ? row.size() : other.size());
-        double sum = made[j - first];
-        for (std::size_t k = std::max(first, other_first); k < j; ++k) {
-            sum -= made[k - first] * other[k - other_first];
-        }
+        const std::size_t both = std::max(first, other_first);
+        const double sum = made[j - first] - dot(std::span(made).subspan(both - first, j - both),
+                                                 std::span(other).subspan(both - other_first, j - both));
         made[j - first] = j == i ? std::sqrt(std::max(sum, least_pivot_)) : sum / other.back();
     }
     return made;
@@ -56,7 +57,8 @@ std::vector<double> EnvelopeCholesky::solve_lower(std::vector<double> right) con
     for (std::size_t i = 0; i < size(); ++i) {
         const std::vector<double>& own = row(i);
         const std::size_t first = i + 1 - own.size();
-        for (std::size_t j = first; j < i; ++j) { right[i] -= own[j - first] * right[j]; }
+        const std::size_t before = i - first;
+        right[i] -= dot(std::span(own).first(before), std::span(right).subspan(first, before));
         right[i] /= own.back();
     }
     return right;

@@ -203,11 +203,14 @@ InverseCovariance inverse_covariance_of(const Prediction& prediction, const std:
                               resolution::stand_in_lags);
 }
 
-// The noise that was fitted, and where it is slow and the recording has more, that: drawn without it,
-// stand-ins would be outliers beside a drift that no cause explains yet.
-std::vector<double> density_of_stand_ins(const Prediction& prediction, const AxisObservation& seen) {
+// The noise that was fitted, and where it is slow and the recording has more, that: expected without
+// it, stand-ins would be outliers beside a drift that no cause explains yet.
+std::vector<double> density_of_expectation(const Prediction& prediction, const AxisObservation& seen) {
     const SpectralBins& bins = prediction.bins();
     std::vector<double> density = seen.density;
+    // What is left of a motion that the model answers wrongly is slow, too, and goes on in a hole as the
+    // motion does.
+    if (prediction.moves()) { return density; }
     const double slow_hz = 0.5 * prediction.rate_hz() / static_cast<double>(resolution::stand_in_lags);
     for (std::size_t i = 0; i < bins.size() && bins[i].f_hz < slow_hz; ++i) {
         double sum = 0.0;
@@ -231,9 +234,10 @@ void fill_holes(const Prediction& prediction, std::size_t axis, AxisObservation&
                 const std::vector<std::size_t>& missing, CosineTransform& transform, std::uint64_t seed) {
     std::vector<float> cosines = seen.cosines;
     take_off(prediction.uncertain(axis), seen.uncertain_fit, cosines);
-    const std::vector<double> density = density_of_stand_ins(prediction, seen);
+    const std::vector<double> density = density_of_expectation(prediction, seen);
     draw_stand_ins(seen.residual_rad_s, missing, weighted_residual(prediction, density, cosines, transform),
                    inverse_covariance_of(prediction, density),
+                   inverse_covariance_of(prediction, seen.density),
                    derived_stream(seed, RandomPurpose::stand_ins, axis));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "analysis/numerics/envelope_cholesky.hpp"
@@ -12,12 +13,31 @@ namespace gyrolog::resolution {
 // So many are drawn together, as memory is bounded; of these the last only for what they tell of the others.
 constexpr std::size_t stand_ins_together = 4096;
 constexpr std::size_t stand_ins_beyond = 256;
+// Of the frequency, where a series in so many lags is looked at.
+constexpr std::size_t steps_per_lag = 8;
 
 }  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
 namespace {
+
+// The least of c_0 + 2 sum of c_k cos(k w).
+double least_of_series(std::span<const double> by_lag) {
+    const std::size_t steps = resolution::steps_per_lag * by_lag.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t step = 0; step <= steps; ++step) {
+        // Clenshaw's recurrence.
+        const double cosine = std::cos(pi * static_cast<double>(step) / static_cast<double>(steps));
+        double here = 0.0;
+        double after = 0.0;
+        for (std::size_t k = by_lag.size(); k-- > 1;) {
+            after = std::exchange(here, by_lag[k] + 2.0 * cosine * here - after);
+        }
+        least = std::min(least, by_lag[0] + 2.0 * (cosine * here - after));
+    }
+    return least;
+}
 
 // Missing samples that are taken together, in the order of their slots.
 struct Together {
@@ -49,6 +69,35 @@ void for_each_part(std::span<const std::size_t> slots, const InverseCovariance& 
     }
 }
 
+// Of the slots' values x the steps d by C d = right + L e, where C = L L' is the inverse covariance among
+// them.
+template <typename Right, typename Normal>
+void take_steps(std::span<float> values, std::span<const std::size_t> slots, const InverseCovariance& inverse,
+                Right right_of, Normal normal_of) {
+    std::vector<double> steps(slots.size(), 0.0);
+    // With the steps that those before `begin` have taken.
+    const auto right_side = [&](std::size_t place, std::size_t begin) {
+        double sum = right_of(slots[place]);
+        for (std::size_t other = begin; other-- > 0;) {
+            const std::size_t lag = slots[place] - slots[other];
+            if (lag >= inverse.by_lag.size()) { break; }
+            sum -= inverse.by_lag[lag] * steps[other];
+        }
+        return sum;
+    };
+    for_each_part(slots, inverse, [&](const Together& part, const EnvelopeCholesky& factor) {
+        std::vector<double> step(factor.size());
+        for (std::size_t i = 0; i < step.size(); ++i) { step[i] = right_side(part.end - 1 - i, part.begin); }
+        step = factor.solve_lower(std::move(step));
+        for (std::size_t i = 0; i < step.size(); ++i) { step[i] += normal_of(slots[part.end - 1 - i]); }
+        step = factor.solve_transposed(std::move(step));
+        for (std::size_t place = part.begin; place < part.kept_end; ++place) {
+            steps[place] = step[part.end - 1 - place];
+        }
+    });
+    for (std::size_t i = 0; i < slots.size(); ++i) { values[slots[i]] += static_cast<float>(steps[i]); }
+}
+
 }  // namespace
 
 InverseCovariance inverse_covariance(const SpectralBins& bins, std::span<const double> density,
@@ -67,38 +116,25 @@ InverseCovariance inverse_covariance(const SpectralBins& bins, std::span<const d
         }
         from = to;
     }
-    return {std::move(inverse), 1.0 / (*std::ranges::max_element(density) * rate_hz)};
+    const double least = 1.0 / (*std::ranges::max_element(density) * rate_hz);
+    // Cut off, the series may fall below zero beside a strong band, and the matrix is no inverse of a
+    // covariance.
+    inverse[0] += std::max(0.0, least - least_of_series(inverse));
+    return {std::move(inverse), least};
 }
 
-// With C the inverse covariance of all and M the missing ones, x_M + d is drawn from their distribution given
-// the others by C_MM d = -(C x)_M + L e, C_MM = L L'.
 void draw_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
-                    std::span<const double> weighted, const InverseCovariance& inverse,
-                    const RandomStream& noise) {
-    std::vector<double> steps(slots.size(), 0.0);
-    // With the steps that those before `begin` have taken.
-    const auto right_side = [&](std::size_t place, std::size_t begin) {
-        double sum = -weighted[slots[place]];
-        for (std::size_t other = begin; other-- > 0;) {
-            const std::size_t lag = slots[place] - slots[other];
-            if (lag >= inverse.by_lag.size()) { break; }
-            sum -= inverse.by_lag[lag] * steps[other];
-        }
-        return sum;
-    };
-    for_each_part(slots, inverse, [&](const Together& part, const EnvelopeCholesky& factor) {
-        std::vector<double> drawn(factor.size());
-        for (std::size_t i = 0; i < drawn.size(); ++i) {
-            drawn[i] = right_side(part.end - 1 - i, part.begin);
-        }
-        drawn = factor.solve_lower(std::move(drawn));
-        for (std::size_t i = 0; i < drawn.size(); ++i) { drawn[i] += noise.normal(slots[part.end - 1 - i]); }
-        drawn = factor.solve_transposed(std::move(drawn));
-        for (std::size_t place = part.begin; place < part.kept_end; ++place) {
-            steps[place] = drawn[part.end - 1 - place];
-        }
-    });
-    for (std::size_t i = 0; i < slots.size(); ++i) { values[slots[i]] += static_cast<float>(steps[i]); }
+                    std::span<const double> weighted, const InverseCovariance& expectation,
+                    const InverseCovariance& scatter, const RandomStream& noise) {
+    const auto towards = [&](std::size_t slot) { return -weighted[slot]; };
+    const auto normal = [&](std::size_t slot) { return noise.normal(slot); };
+    const auto none = [](std::size_t) { return 0.0; };
+    if (expectation.by_lag == scatter.by_lag) {
+        take_steps(values, slots, scatter, towards, normal);
+    } else {
+        take_steps(values, slots, expectation, towards, none);
+        take_steps(values, slots, scatter, none, normal);
+    }
 }
 
 double stand_ins_log_density_nats(std::span<const std::size_t> slots, std::span<const double> weighted,

@@ -24,13 +24,13 @@ struct InverseCovariance {
 InverseCovariance inverse_covariance(const SpectralBins& bins, std::span<const double> density,
                                      double rate_hz, std::size_t length, std::size_t lags);
 
-// The function draws new values for `slots`, which are the missing ones in their order. `weighted`: the
-// product of the inverse covariance with all values, by slot, in 1/(rad/s); so what all samples tell of one
-// that is missing is in it. What missing samples tell of each other is in `inverse`. `noise` draws one number
-// for each slot.
+// The function draws new values for `slots`, which are the missing ones in their order: what the noise has
+// them be given all others, with C the inverse covariance of all and M the missing ones x_M - C_MM^-1 (C
+// x)_M, and noise of covariance C_MM^-1. `weighted`: C x by slot, in 1/(rad/s). C is `expectation` for the
+// former, `scatter` for the latter. `noise` draws one number for each slot.
 void draw_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
-                    std::span<const double> weighted, const InverseCovariance& inverse,
-                    const RandomStream& noise);
+                    std::span<const double> weighted, const InverseCovariance& expectation,
+                    const InverseCovariance& scatter, const RandomStream& noise);
 
 // The function returns the logarithm of the density of the values of `slots` given all others, in nats and
 // without the factors 1 / sqrt(2 pi).

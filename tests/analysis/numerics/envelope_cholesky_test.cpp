@@ -56,7 +56,7 @@ TEST(EnvelopeCholesky, KeepsOneRowForThoseThatNoLongerChange) {
     for (std::size_t i = 1; i < size; ++i) { factor.add_row(std::vector{-1.0, 2.5}); }
     double pivot = 2.5;
     for (std::size_t i = 0; i < size; ++i) {
-        ASSERT_NEAR(factor.diagonal(i), std::sqrt(pivot), 1e-12) << i;
+        ASSERT_NEAR(factor.diagonal(i), std::sqrt(pivot), 1e-8) << i;
         pivot = 2.5 - 1.0 / pivot;
     }
     EXPECT_LT(factor.distinct_rows(), 40U);

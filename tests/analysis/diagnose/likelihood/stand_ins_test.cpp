@@ -58,7 +58,8 @@ std::vector<double> weighted_by_autoregression(std::span<const float> values) {
 }
 
 void draw(std::span<float> values, std::span<const std::size_t> slots) {
-    draw_stand_ins(values, slots, weighted_by_autoregression(values), autoregression, RandomStream(3, 4));
+    draw_stand_ins(values, slots, weighted_by_autoregression(values), autoregression, autoregression,
+                   RandomStream(3, 4));
 }
 
 // Between neighbours a and b the missing one is phi (a + b) / (1 + phi^2) with variance 1 / (1 + phi^2).
@@ -136,6 +137,20 @@ TEST(StandIns, HaveTheDensityThatTheyWereDrawnFrom) {
     draw(values, slots);
     const double nats = stand_ins_log_density_nats(slots, weighted_by_autoregression(values), autoregression);
     EXPECT_NEAR(nats, wanted_nats, 1e-3);  // values have seven digits
+}
+
+// Beside a strong band with sharp edges the series is cut off where it matters.
+TEST(StandIns, OfALongHoleBesideStrongSlowNoiseAreNoLarger) {
+    const SpectralBins bins = spectral_bins(length, rate_hz);
+    std::vector<double> density;
+    for (const SpectralBin& bin : bins) { density.push_back((bin.f_hz < 0.8 ? 1e4 : 1.0) / rate_hz); }
+    const InverseCovariance inverse = inverse_covariance(bins, density, rate_hz, length, 64);
+    std::vector<float> values(length, 0.0F);
+    std::vector<std::size_t> slots;
+    for (std::size_t i = 100; i < 9000; ++i) { slots.push_back(i); }
+    draw_stand_ins(values, slots, std::vector<double>(length, 0.0), inverse, inverse, RandomStream(3, 4));
+    const double sd = std::sqrt(1e4 * 0.8 / (0.5 * rate_hz) + 1.0);
+    for (const float value : values) { ASSERT_LT(std::fabs(value), 6.0 * sd); }
 }
 
 // Of every 97 rows one is left out, of every ninth 97 five more, and once half a second.
