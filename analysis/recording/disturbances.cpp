@@ -359,8 +359,7 @@ private:
         return excess;
     }
 
-    // With those beside it as long as a signal that is loud there stays so, or all together are; and the
-    // neighbours.
+    // With those beside it as long as a signal that is loud there stays so, or all together are.
     void take(std::size_t block) {
         const auto goes_on = [&](std::size_t at) {
             return is_loud_in_sum(signals_, at) || std::ranges::any_of(signals_, [&](const Signal& signal) {
@@ -373,9 +372,7 @@ private:
         std::size_t to = block + 1;
         while (from > 0 && goes_on(from - 1)) { --from; }
         while (to < blocks && goes_on(to)) { ++to; }
-        for (std::size_t i = from == 0 ? 0 : from - 1; i < std::min(to + 1, blocks); ++i) {
-            is_disturbed_[i] = true;
-        }
+        for (std::size_t i = from; i < to; ++i) { is_disturbed_[i] = true; }
     }
 
     const std::vector<Signal>& signals_;
@@ -405,6 +402,17 @@ struct Seen {
     std::vector<Signal> signals;
     std::vector<bool> disturbed;  // by block
 };
+
+// With one more on either side.
+std::vector<bool> and_neighbours(const std::vector<bool>& disturbed) {
+    std::vector<bool> wider = disturbed;
+    for (std::size_t block = 0; block < disturbed.size(); ++block) {
+        if (!disturbed[block]) { continue; }
+        if (block > 0) { wider[block - 1] = true; }
+        if (block + 1 < disturbed.size()) { wider[block + 1] = true; }
+    }
+    return wider;
+}
 
 // Marks the blocks that begin in disturbed ones of the longer ones.
 void take_over(const Seen& longer, Seen& shorter) {
@@ -465,7 +473,7 @@ std::vector<Disturbance> disturbances(const Recording& recording,
     }
     if (shortest.blocks.empty()) { return {}; }
     std::vector<Disturbance> found =
-        stretches(recording, shortest.blocks, shortest.signals, shortest.disturbed);
+        stretches(recording, shortest.blocks, shortest.signals, and_neighbours(shortest.disturbed));
     const auto rows = static_cast<double>(recording.rows());
     std::erase_if(
         found, [&](const Disturbance& one) { return static_cast<double>(one.rows) > longest_share * rows; });
