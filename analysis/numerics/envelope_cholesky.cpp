@@ -8,7 +8,8 @@
 
 namespace gyrolog::resolution {
 
-// Of a row of L, by which two that are taken for the same differ.
+// Of the diagonal, by which two rows of L differ that are taken for the same: a million of them change the
+// logarithm of the determinant by 0.02.
 constexpr double same_row_rel = 1e-8;
 
 }  // namespace gyrolog::resolution

@@ -11,8 +11,7 @@ namespace gyrolog {
 
 class EnvelopeCholesky {
 public:
-    // No pivot of C is below `least_pivot`: what rounding, or a row that was cut off, takes from it is given
-    // back.
+    // `least_pivot`: the least that C can have. A pivot that rounding puts below it is raised to it.
     explicit EnvelopeCholesky(double least_pivot) : least_pivot_(least_pivot) {}
 
     // Appends row i of C: the entries of the columns i + 1 - row.size() ... i. Where rows repeat, as those of

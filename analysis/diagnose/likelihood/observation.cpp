@@ -20,7 +20,8 @@ constexpr std::size_t level_samples = 256;
 // Stand-ins farther apart tell nothing of each other. Behind a filter of 5 Hz at 100 Hz the weight there is
 // 1e-12 of the nearest one's, beside flicker noise 2e-3.
 constexpr std::size_t stand_in_lags = 64;
-// So many tell the power of slow noise, to a quarter.
+// Coefficients. Their mean square tells the power of slow noise to a quarter, sqrt(2 / 32) of a normal
+// variable's.
 constexpr double level_coefficients = 32.0;
 
 }  // namespace gyrolog::resolution

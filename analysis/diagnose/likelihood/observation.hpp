@@ -17,8 +17,8 @@ namespace gyrolog {
 class CosineTransform;
 
 struct AxisObservation {
-    // The residual by slot, about its mean. Slots without a sample hold what stands in for one, drawn from
-    // the model's noise given the samples beside them.
+    // The residual by slot, about its mean. Slots without a sample hold what stands in for one: its
+    // expectation given the samples, and noise of the model about that.
     std::vector<float> residual_rad_s;
     std::vector<float> cosines;               // DCT-II of the residual, Y_0 = 0; rad/s
     double mean_rad_s = 0.0;                  // that was taken off

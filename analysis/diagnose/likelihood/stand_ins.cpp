@@ -10,10 +10,12 @@
 
 namespace gyrolog::resolution {
 
-// So many are drawn together, as memory is bounded; of these the last only for what they tell of the others.
+// Samples that are drawn together: with 64 lags their factor has 2 MB at most.
 constexpr std::size_t stand_ins_together = 4096;
+// Samples at the end of these that only tell of the others: four times the lags.
 constexpr std::size_t stand_ins_beyond = 256;
-// Of the frequency, where a series in so many lags is looked at.
+// Frequencies for each lag, at which a series is looked at. Between two the fastest term falls by 2 % of
+// itself, 1 - cos(pi / 16).
 constexpr std::size_t steps_per_lag = 8;
 
 }  // namespace gyrolog::resolution

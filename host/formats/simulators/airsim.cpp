@@ -15,7 +15,7 @@
 namespace gyrolog {
 namespace {
 
-// The walk is GyroBiasStability / sqrt(tau), and nothing else is made of tau.
+// The walk is GyroBiasStability / sqrt(tau), and nothing else is made of tau: any would do.
 constexpr double written_tau_s = 100.0;
 
 constexpr std::string_view airsim_facts[] = {
