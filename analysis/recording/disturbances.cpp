@@ -19,8 +19,6 @@ namespace {
 constexpr double sd_per_mad = 1.4826;     // of a normal distribution
 constexpr double fitted_per_block = 3.0;  // two means and where the step is
 constexpr std::size_t largest_left_out = 2;
-// In shortest blocks. Of a bump that swings slowly a short block sees a half period or two, which is a step.
-constexpr std::array<std::size_t, 2> block_lengths = {1, 2};
 
 struct Block {
     std::size_t first = 0;
@@ -387,7 +385,7 @@ std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals,
                                    std::span<const std::vector<double>> values,
                                    const std::vector<Block>& blocks, const DisturbanceOptions& options) {
     DisturbedBlocks disturbed(signals, values, blocks);
-    const auto tails = static_cast<double>((signals.size() + 2) * block_lengths.size());
+    const auto tails = static_cast<double>((signals.size() + 2) * options.block_lengths.size());
     const double chance = options.false_alarms_most / tails;
     if (signals.size() > 1) {
         disturbed.take_loud_at_once({.share = 2.0 * options.together_share, .censored_share = 0.5}, chance);
@@ -402,6 +400,18 @@ struct Seen {
     std::vector<Signal> signals;
     std::vector<bool> disturbed;  // by block
 };
+
+// Nothing where there are no signals, or too few blocks.
+Seen seen_in_blocks(const Recording& recording, std::span<const std::vector<double>> signals,
+                    std::size_t times, double longest_share, const DisturbanceOptions& options) {
+    Seen seen{blocks_of(recording, times, options), {}, {}};
+    if (signals.empty() || seen.blocks.size() < options.blocks_least) { return {}; }
+    for (const std::vector<double>& signal : signals) {
+        seen.signals.push_back(signal_of(signal, seen.blocks, longest_share, options));
+    }
+    seen.disturbed = disturbed_blocks(seen.signals, signals, seen.blocks, options);
+    return seen;
+}
 
 // With one more on either side.
 std::vector<bool> and_neighbours(const std::vector<bool>& disturbed) {
@@ -457,21 +467,11 @@ std::vector<Disturbance> disturbances(const Recording& recording,
                                       std::span<const std::vector<double>> signals,
                                       const DisturbanceOptions& options) {
     const double longest_share = longest_share_of(recording, options);
-    Seen shortest;
-    for (const std::size_t times : block_lengths) {
-        Seen seen{blocks_of(recording, times, options), {}, {}};
-        if (signals.empty() || seen.blocks.size() < options.blocks_least) { break; }
-        for (const std::vector<double>& signal : signals) {
-            seen.signals.push_back(signal_of(signal, seen.blocks, longest_share, options));
-        }
-        seen.disturbed = disturbed_blocks(seen.signals, signals, seen.blocks, options);
-        if (shortest.blocks.empty()) {
-            shortest = std::move(seen);
-        } else {
-            take_over(seen, shortest);
-        }
-    }
+    Seen shortest = seen_in_blocks(recording, signals, options.block_lengths.front(), longest_share, options);
     if (shortest.blocks.empty()) { return {}; }
+    for (const std::size_t times : std::span(options.block_lengths).subspan(1)) {
+        take_over(seen_in_blocks(recording, signals, times, longest_share, options), shortest);
+    }
     std::vector<Disturbance> found =
         stretches(recording, shortest.blocks, shortest.signals, and_neighbours(shortest.disturbed));
     const auto rows = static_cast<double>(recording.rows());

@@ -23,7 +23,10 @@
 namespace gyrolog {
 
 struct DisturbanceOptions {
-    double block_s = 0.25;                 // a bump's length; longer blocks have twice as much
+    double block_s = 0.25;  // a bump's length
+    // In block_s, the shortest first. A bump that swings slowly has a half period or two in a short block,
+    // which are a step; in still longer ones rare pulses of a sensor's own look like a bump.
+    std::array<std::size_t, 2> block_lengths = {1, 2};
     std::size_t block_samples_least = 16;  // a power is known to a third
     // One block that is loud is a twentieth of the recording then, which is the longest disturbance.
     std::size_t blocks_least = 20;
