@@ -61,9 +61,6 @@ GapCurve repeats_curve(const Observation& observation, std::size_t axis) {
     return curve;
 }
 
-constexpr std::array samples_compared = {"the one before", "the second before"};
-static_assert(samples_compared.size() == resolution::repeat_lags);
-
 void locate_repeats(const GapCurve& /*curve*/, const std::vector<double>& /*z*/, Place& where) {
     where.structure = "duplicated_samples";
 }
@@ -71,12 +68,11 @@ void locate_repeats(const GapCurve& /*curve*/, const std::vector<double>& /*z*/,
 }  // namespace
 
 const Measure measures::repeats{.name = "repeated samples",
-                                .x_name = "",
+                                .x_name = "lag (samples)",
                                 .y_name = "excess (its sd)",
                                 .shown_x = as_it_is,
                                 .shown_y = as_it_is,
                                 .locate = locate_repeats,
-                                .categories = samples_compared,
                                 .is_course = false,
                                 .least_sd = 1.0,
                                 .is_normal_far_out = false};
