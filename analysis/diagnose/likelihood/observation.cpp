@@ -204,28 +204,32 @@ InverseCovariance inverse_covariance_of(const Prediction& prediction, const std:
                               resolution::stand_in_lags);
 }
 
-// The noise that was fitted, and where it is slow and the recording has more, that: expected without
-// it, stand-ins would be outliers beside a drift that no cause explains yet.
+// The mean power of the bins around this one, as few as have level_coefficients.
+double power_around(const SpectralBins& bins, const std::vector<double>& power, std::size_t bin) {
+    double sum = bins[bin].count() * power[bin];
+    double count = bins[bin].count();
+    const auto take = [&](std::size_t other) {
+        sum += bins[other].count() * power[other];
+        count += bins[other].count();
+    };
+    for (std::size_t reach = 1; reach < bins.size() && count < resolution::level_coefficients; ++reach) {
+        if (bin + reach < bins.size()) { take(bin + reach); }
+        if (reach <= bin) { take(bin - reach); }
+    }
+    return sum / count;
+}
+
+// The noise that was fitted; at rest, where the recording has more slow noise, that. Expected without it,
+// stand-ins would be outliers beside a drift that no cause explains yet. Where the sensor moves, a slow
+// residual may be an answer to the motion that the model has wrong, and does not go on in a hole as noise
+// does.
 std::vector<double> density_of_expectation(const Prediction& prediction, const AxisObservation& seen) {
-    const SpectralBins& bins = prediction.bins();
     std::vector<double> density = seen.density;
-    // What is left of a motion that the model answers wrongly is slow, too, and goes on in a hole as the
-    // motion does.
     if (prediction.moves()) { return density; }
+    const SpectralBins& bins = prediction.bins();
     const double slow_hz = 0.5 * prediction.rate_hz() / static_cast<double>(resolution::stand_in_lags);
     for (std::size_t i = 0; i < bins.size() && bins[i].f_hz < slow_hz; ++i) {
-        double sum = 0.0;
-        double count = 0.0;
-        const std::size_t reach_most = std::max(i, bins.size() - 1 - i);
-        for (std::size_t reach = 0; reach <= reach_most && count < resolution::level_coefficients; ++reach) {
-            const auto take = [&](std::size_t bin) {
-                sum += bins[bin].count() * seen.power[bin];
-                count += bins[bin].count();
-            };
-            if (i + reach < bins.size()) { take(i + reach); }
-            if (reach > 0 && reach <= i) { take(i - reach); }
-        }
-        density[i] = std::max(density[i], sum / count);
+        density[i] = std::max(density[i], power_around(bins, seen.power, i));
     }
     return density;
 }
