@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The program against the Linux kernel's own USB stack: boots one guest, runs every scenario of guest/scenarios in it,
-then judges what came back. See README.md.
+then checks and analyses the captures here and judges what came back. See README.md.
 
 Environment: GYROLOG_BUILD_DIR (programs under test), GYROLOG_GUEST_DIR (kernel and results),
 SCENARIOS (optional: only those whose names match one of these shell patterns, separated by spaces).
@@ -503,6 +503,19 @@ def load_tests(loader, _standard, _pattern):
                               if one.name and is_asked_for(one.name))
 
 
+def answer(folder):
+    """Carries out what a scenario asked of the program on the host; the answers lie beside the scenario's own results."""
+    asked = folder / "asked"
+    for line in asked.read_text().splitlines() if asked.exists() else []:
+        command, capture = line.split()
+        options = ["--json", "-"] if command == "check" else []
+        done = subprocess.run([BUILD / "gyrolog", command, capture, *options], cwd=folder, capture_output=True, text=True,
+                              timeout=120, check=False)
+        name = f"{Path(capture).stem}.{command}"
+        for suffix, text in (("out", done.stdout), ("err", done.stderr), ("exit", f"{done.returncode}\n")):
+            (folder / f"{name}.{suffix}").write_text(text)
+
+
 def main():
     try:
         status = guest.run(PROGRAMS, WORK, HERE / "guest" / "run_scenarios.sh", timeout_s=1800, scenarios=scenario_files())
@@ -511,6 +524,9 @@ def main():
         return 77
     log = SHARE / "script.log"
     print(log.read_text(errors="replace") if log.exists() else "the guest never reached the scenarios", flush=True)
+    for folder in sorted(SHARE.iterdir()):
+        if folder.is_dir():
+            answer(folder)
     result = unittest.main(exit=False, verbosity=2).result
     return 0 if status == 0 and result.wasSuccessful() else 1
 

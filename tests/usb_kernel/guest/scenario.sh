@@ -56,9 +56,7 @@ terminal_of() {
 # capture_is_running FILE: whether samples reach the file.
 capture_is_running() { [ "$(stat -c %s "$1")" -gt 4096 ]; }
 
-# judge CAPTURE: what the program says about a finished capture, as NAME.check.
-judge() { run "$(basename "$1" .pcapng).check" gyrolog check "$1" --json -; }
-
-# analyze CAPTURE: that it can be analysed, as NAME.analyze. Not for each capture: on the emulated processor it takes
-# longer than most captures.
-analyze() { run "$(basename "$1" .pcapng).analyze" gyrolog analyze "$1"; }
+# judge CAPTURE, analyze CAPTURE: asks the test to check or to analyse the finished capture on the host, where it takes a
+# hundredth of the time; the answers are NAME.check and NAME.analyze.
+judge() { echo "check $1" >> asked; }
+analyze() { echo "analyze $1" >> asked; }
