@@ -58,13 +58,20 @@ NormalMixture::NormalMixture(double nu, double share, double lattice) {
     for (const Weighted& variance : student_variances(nu)) {
         const double sd = std::sqrt(share * variance.value + rest);
         if (!wide) {
-            parts_.push_back({variance.log_weight, sd, 0.0});
+            add(variance.log_weight, sd, 0.0);
             continue;
         }
         for (const Weighted& point : uniform_points(lattice)) {
-            parts_.push_back({variance.log_weight + point.log_weight, sd, point.value});
+            add(variance.log_weight + point.log_weight, sd, point.value);
         }
     }
+}
+
+void NormalMixture::add(double log_weight, double sd, double shift) {
+    parts_.push_back({.weight = std::exp(log_weight),
+                      .log_weight_over_sd = log_weight - std::log(sd),
+                      .sd = sd,
+                      .shift = shift});
 }
 
 double NormalMixture::log_density(double x) const {
@@ -72,7 +79,7 @@ double NormalMixture::log_density(double x) const {
     double sum = 0.0;
     for (const Part& part : parts_) {
         const double z = (x - part.shift) / part.sd;
-        const double term = part.log_weight - std::log(part.sd) - 0.5 * z * z;
+        const double term = part.log_weight_over_sd - 0.5 * z * z;
         if (term <= most) {
             sum += std::exp(term - most);
         } else {
@@ -86,7 +93,7 @@ double NormalMixture::log_density(double x) const {
 double NormalMixture::probability_below(double x) const {
     double sum = 0.0;
     for (const Part& part : parts_) {
-        sum += std::exp(part.log_weight) * 0.5 * std::erfc((part.shift - x) / (part.sd * std::sqrt(2.0)));
+        sum += part.weight * 0.5 * std::erfc((part.shift - x) / (part.sd * std::sqrt(2.0)));
     }
     return sum;
 }

@@ -18,10 +18,13 @@ public:
 
 private:
     struct Part {
-        double log_weight;
+        double weight;
+        double log_weight_over_sd;
         double sd;
         double shift;
     };
+    void add(double log_weight, double sd, double shift);
+
     std::vector<Part> parts_;
 };
 

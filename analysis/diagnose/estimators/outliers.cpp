@@ -105,15 +105,29 @@ double trimmed_sd(const WhitenedHistogram& histogram) {
     return samples > 0.0 ? std::sqrt(squares / samples) : 1.0;
 }
 
+// A limit, and for each entry looked at the probability that noise on a spike of that size stays below it.
+struct LimitAt {
+    double size = 0.0;
+    std::vector<double> noise_below;
+};
+
+LimitAt limit_at(const AxisSamples& samples, double size) {
+    LimitAt limit{size, {}};
+    for (const std::size_t entry : samples.far) {
+        limit.noise_below.push_back(
+            samples.noise->probability_below((samples.histogram.at[entry] - size) / samples.scale));
+    }
+    return limit;
+}
+
 // EM for the share of samples that are off, then the likelihood ratio against none.
-Mixed mix(const AxisSamples& samples, const Limits& limits) {
+Mixed mix(const AxisSamples& samples, const LimitAt& from, const LimitAt& to) {
     std::vector<double> log_ratio(samples.far.size());
     double expected = 0.0;
     for (std::size_t i = 0; i < samples.far.size(); ++i) {
         const double at = samples.histogram.at[samples.far[i]];
-        const double inside = samples.noise->probability_below((at - limits.from) / samples.scale) -
-                              samples.noise->probability_below((at - limits.to) / samples.scale);
-        log_ratio[i] = std::log(inside / (2.0 * (limits.to - limits.from))) - samples.log_noise_at[i];
+        const double inside = from.noise_below[i] - to.noise_below[i];
+        log_ratio[i] = std::log(inside / (2.0 * (to.size - from.size))) - samples.log_noise_at[i];
         if (at > decisions.certain_sigma && log_ratio[i] > 0.0) {
             expected += samples.histogram.count[samples.far[i]];
         }
@@ -161,12 +175,12 @@ public:
             }
         }
         if (all.empty()) { return std::nullopt; }
-        const std::vector<Limits> limits_dps = limits_to_try(all);
-        // By axis and limits: gain less the cost of the number.
-        std::vector<std::vector<double>> nats(all.size());
-        for (std::size_t a = 0; a < all.size(); ++a) {
-            for (const Limits& limits : limits_dps) { nats[a].push_back(worth_nats(all[a], limits)); }
-        }
+        const std::vector<double> sizes_dps = sizes_to_try(all);
+        const std::vector<Limits> limits_dps = pairs_of(sizes_dps);
+        // By axis and limits.
+        std::vector<std::vector<double>> nats;
+        nats.reserve(all.size());
+        for (const AxisSamples& samples : all) { nats.push_back(worth_of_pairs_nats(samples, sizes_dps)); }
         std::vector<std::size_t> members(all.size());
         std::iota(members.begin(), members.end(), std::size_t{0});
         Choice best;
@@ -226,7 +240,7 @@ private:
         return excess > resolution::worth_refining_nats ? std::optional(std::move(samples)) : std::nullopt;
     }
 
-    std::vector<Limits> limits_to_try(const std::vector<AxisSamples>& all) const {
+    std::vector<double> sizes_to_try(const std::vector<AxisSamples>& all) const {
         // Of one sample, in means of several.
         const auto in_rows = static_cast<double>(prediction_->world().recording().samples_per_row);
         double largest_dps = resolution::size_step * effect_.params[2].plausible_to / in_rows;
@@ -237,6 +251,10 @@ private:
         }
         std::vector<double> sizes = {effect_.params[1].plausible_from / (resolution::size_step * in_rows)};
         while (sizes.back() < largest_dps) { sizes.push_back(sizes.back() * resolution::size_step); }
+        return sizes;
+    }
+
+    static std::vector<Limits> pairs_of(const std::vector<double>& sizes) {
         std::vector<Limits> limits;
         for (std::size_t from = 0; from < sizes.size(); ++from) {
             for (std::size_t to = from + 1; to < sizes.size(); ++to) {
@@ -246,8 +264,26 @@ private:
         return limits;
     }
 
+    // In the order of pairs_of(). What the noise says of a size is worked out once, for all its pairs.
+    std::vector<double> worth_of_pairs_nats(const AxisSamples& samples,
+                                            const std::vector<double>& sizes_dps) const {
+        std::vector<LimitAt> limits;
+        limits.reserve(sizes_dps.size());
+        for (const double size_dps : sizes_dps) {
+            limits.push_back(limit_at(samples, size_dps * samples.per_dps));
+        }
+        std::vector<double> nats;
+        for (std::size_t from = 0; from < limits.size(); ++from) {
+            for (std::size_t to = from + 1; to < limits.size(); ++to) {
+                nats.push_back(worth_nats(samples, mix(samples, limits[from], limits[to])));
+            }
+        }
+        return nats;
+    }
+
     static Mixed mix_dps(const AxisSamples& samples, const Limits& limits_dps) {
-        return mix(samples, {limits_dps.from * samples.per_dps, limits_dps.to * samples.per_dps});
+        return mix(samples, limit_at(samples, limits_dps.from * samples.per_dps),
+                   limit_at(samples, limits_dps.to * samples.per_dps));
     }
 
     // Of a number of Poisson events: known to one in its square root.
@@ -255,8 +291,8 @@ private:
         return parameter_cost_nats(log_number_range_, 1.0 / std::sqrt(std::max(number, 1.0)));
     }
 
-    double worth_nats(const AxisSamples& samples, const Limits& limits_dps) const {
-        const Mixed mixed = mix_dps(samples, limits_dps);
+    // Gain less the cost of the number.
+    double worth_nats(const AxisSamples& samples, const Mixed& mixed) const {
         return mixed.gain_nats + samples.core_gain_nats -
                number_cost_nats(mixed.share * samples.histogram.samples);
     }
@@ -265,7 +301,9 @@ private:
         if (choice.evidence_nats < 0.0) { return; }
         const auto worth = [&](const Limits& limits) {
             double sum = 0.0;
-            for (const std::size_t member : choice.members) { sum += worth_nats(all[member], limits); }
+            for (const std::size_t member : choice.members) {
+                sum += worth_nats(all[member], mix_dps(all[member], limits));
+            }
             return sum;
         };
         Limits limits = choice.limits_dps;
