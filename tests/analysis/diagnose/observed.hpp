@@ -13,8 +13,14 @@
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recording_simulator.hpp"
 #include "tests/analysis/simulate/simulated.hpp"
+#include "tests/support/asked.hpp"
 
 namespace gyrolog {
+
+// Of whole selections the long tier asks for more.
+inline std::uint64_t seeds_asked(std::uint64_t otherwise) {
+    return static_cast<std::uint64_t>(asked("GYROLOG_REALISATIONS", static_cast<double>(otherwise)));
+}
 
 inline std::shared_ptr<const Recording> recorded(const SensorModel& model, std::uint64_t samples,
                                                  std::uint64_t seed,

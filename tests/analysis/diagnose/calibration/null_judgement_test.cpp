@@ -13,7 +13,7 @@ namespace {
 
 // Where there is no gap every probability is as likely as any other.
 TEST(NullJudgement, OfASensorAsItsModelSaysIsRightOverItsWholeRange) {
-    constexpr int recordings = 60;
+    const auto recordings = static_cast<int>(seeds_asked(30));
     const SensorModel model = calibrated_sensor();
     NullJudgementOptions options;
     options.simulations.simulations = 40;

@@ -105,7 +105,7 @@ TEST(NarrowBands, AreSeveral) {
 // Beside each other both are told; a line is one whatever its height.
 TEST(NarrowBands, AreNoSteadyLinesNorTheyBands) {
     const SensorModel model = calibrated_sensor();
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds_asked(1); ++seed) {
         for (const double amplitude_dps : {0.002, 0.005, 0.05}) {
             const SensorModel line = with_effect(
                 model, "tone", {{"f_hz", 31.37}, {"amplitude_dps", amplitude_dps}, {"phase_rad", 1.0}});
@@ -127,7 +127,7 @@ TEST(NarrowBands, AreNotTakenForOtherNoise) {
         effect_entry("flicker_missing", {{"B_dps", 0.004}}),
     };
     for (const EffectModel& neighbour : neighbours) {
-        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        for (std::uint64_t seed = 1; seed <= seeds_asked(1); ++seed) {
             SensorModel sensor = model;
             sensor.effects = {neighbour};
             EXPECT_EQ(causes_of(sensor, 100 + seed), Names{neighbour.effect}) << seed;

@@ -47,7 +47,7 @@ TEST(NoiseColour, IsFoundWithItsGainAndItsMiddle) {
 }
 
 TEST(NoiseColour, IsTheOnlyCauseWhereItIsOne) {
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds_asked(1); ++seed) {
         for (const auto& [gain, middle] : {std::pair(0.4, 0.25), std::pair(2.0, 0.15)}) {
             const SensorModel sensor = with_effect(calibrated_sensor(), "noise_colour",
                                                    {{"gain", gain}, {"middle_of_rate", middle}});
@@ -67,7 +67,7 @@ TEST(NoiseColour, IsNotTakenForItsNeighbours) {
         effect_entry("gauss_markov", {{"sigma_dps", 0.01}, {"tau_s", 5.0}}),
     };
     for (const EffectModel& neighbour : neighbours) {
-        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        for (std::uint64_t seed = 1; seed <= seeds_asked(1); ++seed) {
             SensorModel sensor = model;
             sensor.effects = {neighbour};
             EXPECT_EQ(causes_of(sensor, 10 + seed), Names{neighbour.effect}) << seed;
@@ -81,7 +81,7 @@ TEST(NoiseColour, IsNotTakenForSlowNoiseWhereTheWhiteIsNotKnown) {
     model.sd_rel["N"] = 0.5;
     const SensorModel sensor =
         with_effect(model, "gauss_markov", {{"sigma_dps", 0.02}, {"tau_s", 0.5}}, {"x"});
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds_asked(1); ++seed) {
         EXPECT_EQ(causes_of(sensor, 20 + seed, model), Names{"gauss_markov"}) << seed;
     }
 }

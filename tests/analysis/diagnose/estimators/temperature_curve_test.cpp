@@ -63,7 +63,7 @@ TEST(TemperatureCurve, OfEachOrderIsItself) {
         {{"c1_dps_per_C", 0.002}, {"c2_dps_per_C2", 2e-4}},
         {{"c1_dps_per_C", 0.002}, {"c2_dps_per_C2", 2e-4}, {"c3_dps_per_C3", 3e-5}}};
     for (std::size_t order = 0; order < curves.size(); ++order) {
-        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        for (std::uint64_t seed = 1; seed <= seeds_asked(2); ++seed) {
             const SensorModel sensor =
                 with_effect(calibrated_sensor(), curves.at(order), params.at(order), {"x"});
             const std::map<std::string, double> nats = evidences(sensor, 100 * order + seed);
@@ -109,7 +109,7 @@ TEST(TemperatureCurve, ThatIsALineOverANarrowRangeIsALine) {
     auto world = std::make_shared<FormulaWorld>();
     world->temperature_C = [](double t_s) { return 25.4 + 0.25 * triangle(t_s / 1800.0); };
     int lines = 0;
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds_asked(4); ++seed) {
         const SensorModel sensor =
             with_effect(calibrated_sensor(), "temp_linear", {{"c1_dps_per_C", 0.06}}, {"x"});
         const auto recording = recorded(sensor, half_an_hour, 300 + seed, world);
@@ -126,7 +126,7 @@ TEST(TemperatureCurve, ThatIsALineOverANarrowRangeIsALine) {
         EXPECT_NEAR(rival->evidence_nats, cause.finding.evidence_nats, 3.0) << seed;
         if (!is_line) { EXPECT_GT(cause.finding.evidence_nats, rival->evidence_nats) << seed; }
     }
-    EXPECT_GE(lines, 4);
+    EXPECT_GE(2 * lines, static_cast<int>(seeds_asked(4)));
 }
 
 TEST(TemperatureCurve, IsNoneWhereNothingFollowsTheTemperature) {
