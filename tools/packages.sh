@@ -6,7 +6,7 @@ packages_build="g++ cmake ninja-build pkg-config libusb-1.0-0-dev libeigen3-dev 
   fonts-dejavu-core python3"
 packages_test="ccache libgtest-dev libgmock-dev libvalijson-dev zlib1g-dev libumockdev-dev umockdev tshark
   xz-utils python3-numpy python3-jsonschema git"
-packages_all="parallel slurmctld slurmd slurm-client chromium libbenchmark-dev clang clang-format clang-tidy libclang-rt-14-dev gcc-arm-none-eabi
+packages_all="parallel slurmctld slurmd slurm-client chromium libbenchmark-dev clang lld clang-format clang-tidy libclang-rt-14-dev gcc-arm-none-eabi
   libnewlib-arm-none-eabi python3-unicorn
   qemu-system-arm qemu-system-x86 busybox-static kmod lintian libmujoco-dev libsdformat-dev"
 packages_package="dpkg-dev file"
