@@ -12,6 +12,7 @@
 #include "analysis/numerics/distributions.hpp"
 #include "analysis/numerics/exponential_tail.hpp"
 #include "analysis/recording/grid_step.hpp"
+#include "analysis/recording/ringing.hpp"
 
 namespace gyrolog {
 namespace {
@@ -91,18 +92,24 @@ TwoMeans two_means(std::span<const double> values) {
     return {step, mean, is_one ? mean : origin + (sum - before) / (n - static_cast<double>(step))};
 }
 
-// About two means, less its largest squares. `least`: a power that the numbers' grid has by itself.
-Power power_of(std::span<const double> values, double least) {
-    const TwoMeans means = two_means(values);
+// Less the largest squares. `least`: a power that the numbers' grid has by itself.
+Power power_of_rest(std::span<const double> rest, double least) {
     std::array<double, largest_left_out> largest{};
     double squares = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const double off = means.off(values, i);
+    for (const double off : rest) {
         squares += off * off;
         keep_largest(largest, off * off);
     }
     const double kept = squares - largest[0] - largest[1];
-    return {std::log(std::max(kept / static_cast<double>(values.size()), least)), std::sqrt(largest.back())};
+    return {std::log(std::max(kept / static_cast<double>(rest.size()), least)), std::sqrt(largest.back())};
+}
+
+// About two means.
+Power power_of(std::span<const double> values, double least) {
+    const TwoMeans means = two_means(values);
+    std::vector<double> rest(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) { rest[i] = means.off(values, i); }
+    return power_of_rest(rest, least);
 }
 
 double median_of(std::vector<double> values) {
@@ -230,10 +237,12 @@ Signal signal_of(std::span<const double> values, const std::vector<Block>& block
     return signal;
 }
 
-// Two jumps of one bias in a block are no bump.
+// Two jumps of one bias in a block are no bump. Two half periods of a bump are hardly more than a pulse and a
+// step, which have as many parameters as an oscillation that dies out: what leaves less of the block is it.
 bool is_pulse(const Signal& signal, std::span<const double> values, std::size_t block) {
     const Power rest = power_of(without_pulse({values.begin(), values.end()}), signal.least_power);
-    return (rest.log - signal.levels[block]) / signal.sd_log <= signal.loud_from;
+    if ((rest.log - signal.levels[block]) / signal.sd_log > signal.loud_from) { return false; }
+    return rest.log <= power_of_rest(without_ringing(values), signal.least_power).log;
 }
 
 // -ln (P(X >= least) / p^least) of a binomial variable X. The power of p, which may be too small for a

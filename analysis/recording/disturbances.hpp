@@ -8,9 +8,9 @@
 // than chance has it. Blocks have two lengths: two half periods of a slow bump are a step in a short one.
 //
 // A block is disturbed that lies beyond the tail of one axis' own blocks, for a bump may move one axis alone,
-// or in which several axes are as loud at once as they are not by chance. So are the blocks that follow or
-// lead to it as long as the axis, or the axes together, stay loud, for what was bumped rings out, and one
-// more on either side.
+// unless it is a pulse of the sensor's own rather than a swing that dies out, or in which several axes are as
+// loud at once as they are not by chance. So are the blocks that follow or lead to it as long as the axis, or
+// the axes together, stay loud, for what was bumped rings out, and one more on either side.
 #pragma once
 
 #include <array>
