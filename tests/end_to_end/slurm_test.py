@@ -196,9 +196,13 @@ def main():
         sys.exit(77)
     with KeptFolder() as name:
         folder = pathlib.Path(name)
-        # Slow enough that the plug can be pulled while tasks run.
-        slow = folder / "slow gyrolog"
-        slow.write_text(f'#!/bin/sh\n[ "$1" = table ] || sleep 1\nexec "{program}" "$@"\n')
+        # Slow enough that not all tasks are done when the plug is pulled; and held, so that it is pulled while one runs.
+        slow, hold, held = folder / "slow gyrolog", folder / "hold", folder / "held"
+        slow.write_text(f"""#!/bin/sh
+[ "$1" = table ] || sleep 1
+while [ -e "{hold}" ]; do : > "{held}"; sleep 0.1; done
+exec "{program}" "$@"
+""")
         slow.chmod(0o755)
         environment = {**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin", "HOME": name, "GYROLOG": str(program)}
         recordings, listed, failed = make_recordings(program, folder)
@@ -227,10 +231,13 @@ def main():
             out = folder / "out of a node that dies"
             submit(out, slow)
             until("some tasks are done and some are not", lambda: len(list((out / "lines").glob("*.jsonl"))) >= 3)
-            until("a task runs", lambda: cluster.jobs("running"))
+            hold.touch()
+            until("a task is held", held.exists)
             done = {path.name: path.stat().st_mtime_ns for path in (out / "lines").glob("*.jsonl")}
             cut = cluster.jobs("running")
             cluster.pull_the_plug()
+            hold.unlink()
+            assert cut, "no task was running: this test tests nothing"
             assert len(done) < -(-RECORDINGS // EACH_TASK), "nothing was left to do: this test tests nothing"
             cluster.start("slurmd")
             until("all tasks have ended", cluster.has_ended)
