@@ -9,16 +9,6 @@
 namespace gyrolog {
 namespace {
 
-constexpr std::size_t values_least = 8;
-// The grid. Half a step beside an onset, a frequency or a decay a twentieth of what an oscillation explains
-// is left.
-constexpr std::size_t onsets = 32;
-constexpr double half_periods_least = 1.0;
-constexpr double half_periods_most = 8.0;  // in means of a 64th of all values eight a half period
-constexpr double half_periods_step = 0.33;
-constexpr std::array<double, 4> decays = {0.1, 0.25, 0.6, 2.0};  // time constants in the length of all values
-constexpr std::size_t means_most = 64;
-
 double dot(std::span<const double> a, std::span<const double> b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) { sum += a[i] * b[i]; }
@@ -68,7 +58,7 @@ private:
     static void normalise(std::vector<double>& part) {
         take_mean_off(part);
         const double squares = dot(part, part);
-        constexpr double rounding = 1e-12;
+        constexpr double rounding = 1e-12;  // of a sum of squares of values up to 1
         const double factor = squares > rounding ? 1.0 / std::sqrt(squares) : 0.0;
         for (double& value : part) { value *= factor; }
     }
@@ -90,19 +80,19 @@ std::vector<double> means_of(std::span<const double> values, std::size_t group) 
 }
 
 // Of values without their mean, looked for in means of some of them.
-Oscillation best_of(std::span<const double> values) {
-    const std::size_t group = (values.size() + means_most - 1) / means_most;
+Oscillation best_of(std::span<const double> values, const RingingOptions& options) {
+    const std::size_t group = (values.size() + options.means_most - 1) / options.means_most;
     std::vector<double> means = means_of(values, group);
     take_mean_off(means);
     const auto length = static_cast<double>(means.size());
     Oscillation tried(means.size());
     double most = 0.0;
-    std::array<double, 3> place = {0.0, half_periods_least, decays.front()};
-    const std::size_t step = (means.size() + onsets - 1) / onsets;
-    for (std::size_t onset = 0; onset + values_least <= means.size(); onset += step) {
-        for (double half_periods = half_periods_least; half_periods <= half_periods_most;
-             half_periods += half_periods_step) {
-            for (const double decay : decays) {
+    std::array<double, 3> place = {0.0, options.half_periods_least, options.decays.front()};
+    const std::size_t step = (means.size() + options.onsets - 1) / options.onsets;
+    for (std::size_t onset = 0; onset + options.values_least <= means.size(); onset += step) {
+        for (double half_periods = options.half_periods_least; half_periods <= options.half_periods_most;
+             half_periods += options.half_periods_step) {
+            for (const double decay : options.decays) {
                 tried.set(onset, 0.5 * half_periods / length, decay * length);
                 const double explained = tried.explained(means);
                 if (explained > most) {
@@ -120,11 +110,11 @@ Oscillation best_of(std::span<const double> values) {
 
 }  // namespace
 
-std::vector<double> without_ringing(std::span<const double> values) {
+std::vector<double> without_ringing(std::span<const double> values, const RingingOptions& options) {
     std::vector<double> left(values.begin(), values.end());
     take_mean_off(left);
-    if (values.size() < values_least) { return left; }
-    best_of(left).take_off(left);
+    if (values.size() < options.values_least) { return left; }
+    best_of(left, options).take_off(left);
     return left;
 }
 

@@ -59,7 +59,6 @@ TEST(Ringing, LeavesAPartOfAPulse) {
     }
 }
 
-// Six parameters of fifty values, and the best of a grid.
 // At any rate the same block in seconds has the same left.
 TEST(Ringing, IsTakenOffManyValuesAsOffFew) {
     const auto shape = [](double share) {
@@ -75,6 +74,7 @@ TEST(Ringing, IsTakenOffManyValuesAsOffFew) {
     }
 }
 
+// Six parameters of fifty values, and the best of a grid.
 TEST(Ringing, LeavesMostOfNoise) {
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;

@@ -23,7 +23,7 @@ HERE = Path(__file__).resolve().parent
 def boot(work, kernel, archive, share, timeout_s):
     """Runs the guest until it powers off. The processor is emulated: the tests must run where no other way exists, and
     hardware acceleration inside a virtual machine is not to be relied on. Its clock counts instructions, 2 ns each, and
-    leaps where it is idle: how busy the host is makes the guest neither slow nor lose data."""
+    leaps where it is idle: a busy host costs the guest no data."""
     command = [
         tool("qemu-system-x86_64"), "-accel", "tcg,thread=single", "-icount", "shift=1,sleep=off", "-rtc", "clock=vm",
         "-m", "1024", "-nodefaults", "-display", "none", "-serial", "stdio", "-no-reboot",
