@@ -90,8 +90,9 @@ Oscillation best_of(std::span<const double> values, const RingingOptions& option
     std::array<double, 3> place = {0.0, options.half_periods_least, options.decays.front()};
     const std::size_t step = (means.size() + options.onsets - 1) / options.onsets;
     for (std::size_t onset = 0; onset + options.values_least <= means.size(); onset += step) {
-        for (double half_periods = options.half_periods_least; half_periods <= options.half_periods_most;
-             half_periods += options.half_periods_step) {
+        for (std::size_t swing = 0; swing < options.swings; ++swing) {
+            const double half_periods =
+                options.half_periods_least + static_cast<double>(swing) * options.half_periods_step;
             for (const double decay : options.decays) {
                 tried.set(onset, 0.5 * half_periods / length, decay * length);
                 const double explained = tried.explained(means);

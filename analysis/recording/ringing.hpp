@@ -13,10 +13,11 @@ namespace gyrolog {
 struct RingingOptions {
     std::size_t values_least = 8;  // six parameters, and two more
     std::size_t onsets = 32;       // in the block
-    // Half periods in the block. A faster swing is no pulse, and is not asked about.
+    // Half periods in the block, from the least on: up to eight. A faster swing is no pulse, and is not asked
+    // about.
     double half_periods_least = 1.0;
-    double half_periods_most = 8.0;
     double half_periods_step = 0.33;
+    std::size_t swings = 22;
     std::array<double, 4> decays = {0.1, 0.25, 0.6, 2.0};  // time constants, in the block's length
     std::size_t means_most = 64;  // looked at, of the block: eight a half period at the fastest
 };

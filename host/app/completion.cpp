@@ -30,7 +30,7 @@ std::vector<std::string> named_choices(const std::string& type) {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-std::vector<CompletedOption> options_of(const CLI::App& app) {
+std::vector<CompletedOption> completed_options_of(const CLI::App& app) {
     std::vector<CompletedOption> options;
     for (const CLI::Option* option : app.get_options()) {
         for (const std::string& name : option->get_lnames()) {
@@ -45,7 +45,7 @@ std::vector<CompletedCommand> commands_of(const CLI::App& root) {
     std::vector<CompletedCommand> commands;
     for (const CLI::App* command : root.get_subcommands([](const CLI::App*) { return true; })) {
         commands.push_back(
-            {command->get_name(), first_line(command->get_description()), options_of(*command)});
+            {command->get_name(), first_line(command->get_description()), completed_options_of(*command)});
     }
     return commands;
 }
@@ -101,7 +101,9 @@ std::string bash_script(const CLI::App& root) {
         "    while IFS= read -r match; do COMPREPLY+=(\"$match\"); done < <(compgen -W \"$words\" -- "
         "\"$word\")\n}}\n"
         "complete -o default -F _gyrolog gyrolog\n",
-        in_single_quotes(fmt::format("{} {}", fmt::join(names, " "), option_names(options_of(root)))), cases);
+        in_single_quotes(
+            fmt::format("{} {}", fmt::join(names, " "), option_names(completed_options_of(root)))),
+        cases);
 }
 
 // In _arguments' "--name[summary]:message:action" brackets and colons have a meaning.
@@ -142,7 +144,7 @@ std::string zsh_script(const CLI::App& root) {
         "if ((CURRENT == 2)); then\n    if [[ $words[2] == -* ]]; then\n        _arguments{}\n    else\n"
         "        _describe command commands\n    fi\nelse\n    local command=$words[2]\n    shift words\n"
         "    ((CURRENT--))\n    case $command in\n{}    esac\nfi\n",
-        described, zsh_options(options_of(root)), cases);
+        described, zsh_options(completed_options_of(root)), cases);
 }
 
 std::string fish_option(const CompletedOption& option, const std::string& condition) {
@@ -157,7 +159,7 @@ std::string fish_option(const CompletedOption& option, const std::string& condit
 
 std::string fish_script(const CLI::App& root) {
     std::string text = "# Completion of gyrolog for fish.\n";
-    for (const CompletedOption& option : options_of(root)) {
+    for (const CompletedOption& option : completed_options_of(root)) {
         text += fish_option(option, "__fish_use_subcommand");
     }
     for (const CompletedCommand& command : commands_of(root)) {
