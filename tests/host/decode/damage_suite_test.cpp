@@ -1,14 +1,17 @@
-// Damage of every kind that a link does, a hundred thousand times, with the numbers that are promised: at
-// most 1.3 good frames lost for each event, nothing false accepted, and what was lost counted exactly.
+// Damage of every kind that a link does, a hundred thousand times (an eighth of that under a sanitizer), with
+// the numbers that are promised: at most 1.3 good frames lost for each event, nothing false accepted, and
+// what was lost counted exactly.
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "tests/host/decode/made_stream.hpp"
+#include "tests/support/instrumented.hpp"
 
 namespace gyrolog {
 namespace {
@@ -16,7 +19,8 @@ namespace {
 constexpr std::ptrdiff_t packet = 64;  // of USB full speed
 constexpr std::uint32_t frames_per_event = 6;
 constexpr std::uint32_t events_per_stream = 500;
-constexpr std::uint32_t streams_per_kind = 24;
+constexpr std::uint32_t streams_per_kind = GYROLOG_IS_INSTRUMENTED ? 3 : 24;
+constexpr double frames_lost_sd = 0.55;  // of one event: some damage nothing, some two frames
 
 struct Damage {
     const char* name;
@@ -163,9 +167,10 @@ TEST(DamageSuite, EventCostsAtMostOneFrameAndThreeTenthsAndNothingFalseIsAccepte
         std::printf("  %-18s %llu events, %.3f frames lost each, %llu false accepts\n", damage.name,
                     static_cast<unsigned long long>(tally.events), per_event,
                     static_cast<unsigned long long>(tally.false_accepts));
-        // The frames that so many neighbouring bytes lie in, on average; 0.02 is four standard deviations.
+        // The frames that so many neighbouring bytes lie in, on average.
         const double touched = 1.0 + static_cast<double>(damage.bytes_touched - 1) / frame_bytes;
-        EXPECT_LE(per_event, touched + 0.02) << damage.name;
+        EXPECT_LE(per_event, touched + 4.0 * frames_lost_sd / std::sqrt(static_cast<double>(tally.events)))
+            << damage.name;
         EXPECT_EQ(tally.false_accepts, 0U) << damage.name;
         all.events += tally.events;
         all.frames_lost += tally.frames_lost;
@@ -175,7 +180,7 @@ TEST(DamageSuite, EventCostsAtMostOneFrameAndThreeTenthsAndNothingFalseIsAccepte
     std::printf("  all                %llu events, %.3f frames lost each, %llu false accepts\n",
                 static_cast<unsigned long long>(all.events), per_event,
                 static_cast<unsigned long long>(all.false_accepts));
-    EXPECT_GE(all.events, 100'000U);
+    EXPECT_GE(all.events, damages.size() * streams_per_kind * events_per_stream * 9 / 10);
     EXPECT_LE(per_event, 1.3);
     EXPECT_GE(per_event, 0.8) << "the damage did no damage";
     EXPECT_EQ(all.false_accepts, 0U);

@@ -17,6 +17,7 @@
 #include "host/formats/model_json.hpp"
 #include "host/formats/recording_csv.hpp"
 #include "host/formats/text_file.hpp"
+#include "tests/support/instrumented.hpp"
 #include "tests/support/program.hpp"
 
 namespace gyrolog {
@@ -131,10 +132,14 @@ TEST_F(HostileText, OfAModelHasNoMoreKeysThanAnyModel) {
     EXPECT_THAT(refusal_of_model(file("deep.json", std::string(100'000, '['))), HasSubstr("nested more"));
 }
 
+// A sanitizer makes each of them ten times as long.
+constexpr int readings = GYROLOG_IS_INSTRUMENTED ? 2 : 5;
+constexpr std::size_t few_keys = GYROLOG_IS_INSTRUMENTED ? 400 : 1200;
+
 // Processor time of the fastest of some readings, and of writing what was read.
 double reading_s(const std::string& model) {
     double least_s = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < readings; ++i) {
         const std::clock_t begin = std::clock();
         const auto read = parse_model(model, "made.json");
         if (read.ok()) { static_cast<void>(format_model(*read)); }
@@ -178,12 +183,12 @@ TEST_F(HostileText, IsReadInTimeThatGrowsWithItAndNoFaster) {
                          R"({"effect": "warmup", "axes": [], "params": {)" + keys(n) + "}}");
          }},
         {"elements of a list", [&](std::size_t n) { return with("", elements(4 * n)); }}};
-    constexpr std::size_t few = 1200;
     constexpr double times = 8.0;
     for (const auto& [what, make] : made) {
-        ASSERT_TRUE(parse_model(make(few), "made.json").ok())
-            << what << parse_model(make(few), "made.json").error().message;
-        const double ratio = reading_s(make(static_cast<std::size_t>(times * few))) / reading_s(make(few));
+        ASSERT_TRUE(parse_model(make(few_keys), "made.json").ok())
+            << what << parse_model(make(few_keys), "made.json").error().message;
+        const double ratio =
+            reading_s(make(static_cast<std::size_t>(times * few_keys))) / reading_s(make(few_keys));
         // Halfway, in powers, between in proportion and with the square.
         EXPECT_LT(ratio, times * std::sqrt(times)) << what;
     }
