@@ -9,6 +9,7 @@
 
 #include "host/app/live_view.hpp"
 #include "host/app/quantity.hpp"
+#include "host/base/byte_size.hpp"
 #include "host/base/counted.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/json.hpp"

@@ -4,8 +4,8 @@
 
 #include "host/app/command.hpp"
 #include "host/app/output_paths.hpp"
-#include "host/app/quantity.hpp"
 #include "host/app/result_output.hpp"
+#include "host/base/byte_size.hpp"
 #include "host/base/counted.hpp"
 #include "host/capture/recover.hpp"
 #include "host/formats/json.hpp"

@@ -8,6 +8,7 @@
 
 #include "host/app/allan_chart.hpp"
 #include "host/app/quantity.hpp"
+#include "host/base/byte_size.hpp"
 #include "host/base/counted.hpp"
 #include "host/base/printable.hpp"
 

@@ -1,6 +1,5 @@
 #include "host/app/quantity.hpp"
 
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -71,17 +70,6 @@ Result<std::vector<std::int64_t>> parse_whole_numbers(std::string_view text) {
 std::string format_elapsed(double duration_s) {
     const auto seconds = static_cast<std::int64_t>(duration_s);
     return fmt::format("{}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60);
-}
-
-std::string format_bytes(std::uint64_t bytes) {
-    constexpr std::array units{"B", "kB", "MB", "GB", "TB"};
-    auto value = static_cast<double>(bytes);
-    std::size_t unit = 0;
-    while (value >= 999.5 && unit + 1 < units.size()) {
-        value /= 1000.0;
-        ++unit;
-    }
-    return fmt::format("{:.3g} {}", value, units[unit]);
 }
 
 std::string format_duration(double duration_s) {

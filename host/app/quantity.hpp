@@ -22,9 +22,6 @@ Result<std::vector<std::int64_t>> parse_whole_numbers(std::string_view text);
 // 3723.4 as "1:02:03".
 std::string format_elapsed(double duration_s);
 
-// 123456789 as "123 MB": decimal multiples, three digits.
-std::string format_bytes(std::uint64_t bytes);
-
 // 43200 as "12 h", 655.1 as "10.9 min": one unit, three digits.
 std::string format_duration(double duration_s);
 

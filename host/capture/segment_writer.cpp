@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "host/base/byte_size.hpp"
 #include "host/capture/segment_files.hpp"
 
 namespace gyrolog {
@@ -43,15 +44,9 @@ Status SegmentWriter::check_room() {
         room_until_bytes_ = bytes_written() + (free_bytes - spoken_for);
         return {};
     }
-    const auto size_text = [](std::uint64_t bytes) {
-        constexpr std::uint64_t kilobyte = 1'000;
-        constexpr std::uint64_t megabyte = 1'000'000;
-        return bytes < 10 * megabyte ? std::to_string(bytes / kilobyte) + " kB"
-                                     : std::to_string(bytes / megabyte) + " MB";
-    };
     return Error{ErrorCode::disk_full,
                  "write '" + (paths_.empty() ? plan_.path : paths_.back()) + "': the disk has " +
-                     size_text(free_bytes) + " left, and " + size_text(plan_.min_free_bytes) +
+                     format_bytes(free_bytes) + " left, and " + format_bytes(plan_.min_free_bytes) +
                      " are to stay free (--min-free); make room, or choose another disk"};
 }
 

@@ -176,23 +176,25 @@ public:
         }
         if (all.empty()) { return std::nullopt; }
         const std::vector<double> sizes_dps = sizes_to_try(all);
-        const std::vector<Limits> limits_dps = pairs_of(sizes_dps);
-        // By axis and limits.
+        const std::vector<SizePair> pairs = pairs_of(sizes_dps.size());
+        // By axis and pair.
         std::vector<std::vector<double>> nats;
         nats.reserve(all.size());
-        for (const AxisSamples& samples : all) { nats.push_back(worth_of_pairs_nats(samples, sizes_dps)); }
+        for (const AxisSamples& samples : all) {
+            nats.push_back(worth_of_pairs_nats(samples, sizes_dps, pairs));
+        }
         std::vector<std::size_t> members(all.size());
         std::iota(members.begin(), members.end(), std::size_t{0});
         Choice best;
         for (const std::vector<std::size_t>& subset : axis_subsets(members)) {
-            std::vector<double> sum(limits_dps.size(), 0.0);
+            std::vector<double> sum(pairs.size(), 0.0);
             for (const std::size_t member : subset) {
                 for (std::size_t i = 0; i < sum.size(); ++i) { sum[i] += nats[member][i]; }
             }
             const double evidence = log_sum_exp(sum) - std::log(static_cast<double>(sum.size()));
             if (best.members.empty() || evidence > best.evidence_nats) {
                 const auto top = static_cast<std::size_t>(std::ranges::max_element(sum) - sum.begin());
-                best = {subset, evidence, sum[top], limits_dps[top]};
+                best = {subset, evidence, sum[top], {sizes_dps[pairs[top].from], sizes_dps[pairs[top].to]}};
             }
         }
         refine(all, best);
@@ -200,6 +202,12 @@ public:
     }
 
 private:
+    // Places in a list of sizes.
+    struct SizePair {
+        std::size_t from = 0;
+        std::size_t to = 0;
+    };
+
     struct Choice {
         std::vector<std::size_t> members;
         double evidence_nats = 0.0;
@@ -254,29 +262,26 @@ private:
         return sizes;
     }
 
-    static std::vector<Limits> pairs_of(const std::vector<double>& sizes) {
-        std::vector<Limits> limits;
-        for (std::size_t from = 0; from < sizes.size(); ++from) {
-            for (std::size_t to = from + 1; to < sizes.size(); ++to) {
-                limits.push_back({sizes[from], sizes[to]});
-            }
+    static std::vector<SizePair> pairs_of(std::size_t sizes) {
+        std::vector<SizePair> pairs;
+        for (std::size_t from = 0; from < sizes; ++from) {
+            for (std::size_t to = from + 1; to < sizes; ++to) { pairs.push_back({from, to}); }
         }
-        return limits;
+        return pairs;
     }
 
-    // In the order of pairs_of(). What the noise says of a size is worked out once, for all its pairs.
-    std::vector<double> worth_of_pairs_nats(const AxisSamples& samples,
-                                            const std::vector<double>& sizes_dps) const {
+    // What the noise says of a size is worked out once, for all its pairs.
+    std::vector<double> worth_of_pairs_nats(const AxisSamples& samples, const std::vector<double>& sizes_dps,
+                                            const std::vector<SizePair>& pairs) const {
         std::vector<LimitAt> limits;
         limits.reserve(sizes_dps.size());
         for (const double size_dps : sizes_dps) {
             limits.push_back(limit_at(samples, size_dps * samples.per_dps));
         }
         std::vector<double> nats;
-        for (std::size_t from = 0; from < limits.size(); ++from) {
-            for (std::size_t to = from + 1; to < limits.size(); ++to) {
-                nats.push_back(worth_nats(samples, mix(samples, limits[from], limits[to])));
-            }
+        nats.reserve(pairs.size());
+        for (const SizePair& pair : pairs) {
+            nats.push_back(worth_nats(samples, mix(samples, limits[pair.from], limits[pair.to])));
         }
         return nats;
     }

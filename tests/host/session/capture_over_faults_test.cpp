@@ -375,7 +375,9 @@ TEST_F(CaptureOverFaults, RoomThatIsToStayFreeEndsTheCaptureWithAClosedFile) {
     EXPECT_EQ(outcome->end, CaptureEnd::storage_failed);
     ASSERT_TRUE(outcome->error.has_value());
     EXPECT_EQ(outcome->error->code, ErrorCode::disk_full);
-    EXPECT_NE(outcome->error->message.find("--min-free"), std::string::npos) << outcome->error->message;
+    EXPECT_NE(outcome->error->message.find("999 MB left, and 1 GB are to stay free (--min-free)"),
+              std::string::npos)
+        << outcome->error->message;
     const LoadedCapture stored = loaded();
     EXPECT_EQ(stored.file.blocks.end, FileEnd::clean);
     ASSERT_TRUE(stored.last_checkpoint.has_value());
