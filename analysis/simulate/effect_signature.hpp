@@ -101,6 +101,8 @@ struct EffectSignature {
     std::span<const std::span<const TrialValues>> trials{};
     // Positive parameters of the spectrum that are fitted, from the trial values on where they have some.
     std::span<const std::string_view> spectral{};
+    // Those of them that all axes have in common.
+    std::span<const std::string_view> common{};
     // The coefficient of the model's slow noise, B or K, that the effect adds to; 0: none.
     char slow_coefficient = 0;
     // Changes the expected parts, one for each frequency, in place. The frequencies rise; what is narrower

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,9 @@ constexpr std::size_t narrowest = 8;
 constexpr double bins_per_width = 8.0;
 // To either side of the middle, in widths: beyond, a Lorentzian has a fiftieth of itself.
 constexpr double finely_within_widths = 16.0;
+// Bins of the prediction within a band's width, to fit it by them: with fewer, one bin has half of it, and
+// does not tell where in it.
+constexpr double resolved_bins = 2.0;
 
 }  // namespace gyrolog::resolution
 
@@ -37,6 +41,14 @@ struct Band {
     double width_hz = 0.0;
     double sigma_rad_s = 0.0;
 };
+
+double coefficients_per_hz(const Prediction& prediction) {
+    return 2.0 * static_cast<double>(prediction.length()) / prediction.rate_hz();
+}
+
+double narrowest_band_hz(const Prediction& prediction) {
+    return static_cast<double>(resolution::narrowest) / coefficients_per_hz(prediction);
+}
 
 // One axis' bins, small about a band, and what the model expects in them.
 class LocalSpectrum {
@@ -157,8 +169,8 @@ public:
 
 private:
     std::size_t length() const { return prediction_->length(); }
-    double per_hz() const { return 2.0 * static_cast<double>(length()) / prediction_->rate_hz(); }
-    double narrowest_hz() const { return static_cast<double>(resolution::narrowest) / per_hz(); }
+    double per_hz() const { return coefficients_per_hz(*prediction_); }
+    double narrowest_hz() const { return narrowest_band_hz(*prediction_); }
 
     // Sums of the coefficients' squares in units of what is expected, and how many they are, up to each.
     struct Sums {
@@ -228,8 +240,7 @@ private:
     }
 
     bool is_allowed(const Band& band) const {
-        return band.f_hz > decisions.slowest_line_hz && band.f_hz < 0.5 * prediction_->rate_hz() &&
-               band.width_hz > narrowest_hz() && band.width_hz * decisions.band_quality_least < band.f_hz &&
+        return is_band(band.f_hz, band.width_hz, *prediction_) &&
                band.sigma_rad_s * deg_per_rad <
                    param_of(effect_, "sigma_dps").plausible_to * decisions.beyond_plausible;
     }
@@ -343,6 +354,20 @@ private:
 };
 
 }  // namespace
+
+bool is_band(double f_hz, double width_hz, const Prediction& prediction) {
+    return f_hz > decisions.slowest_line_hz && f_hz < 0.5 * prediction.rate_hz() &&
+           width_hz > narrowest_band_hz(prediction) && width_hz * decisions.band_quality_least < f_hz;
+}
+
+bool is_resolved(double f_hz, double width_hz, const Prediction& prediction) {
+    const double per_hz = coefficients_per_hz(prediction);
+    const auto at = static_cast<std::size_t>(std::max(1.0, f_hz * per_hz));
+    const auto after = std::ranges::upper_bound(prediction.bins(), at, {}, &SpectralBin::first);
+    if (after == prediction.bins().begin()) { return false; }
+    const SpectralBin& bin = *std::prev(after);
+    return resolution::resolved_bins * static_cast<double>(bin.end - bin.first) <= width_hz * per_hz;
+}
 
 MadeEstimator make_narrow_band_estimator(const EffectDefinition& effect,
                                          std::shared_ptr<const Prediction> prediction) {

@@ -11,6 +11,13 @@
 
 namespace gyrolog {
 
+// Whether noise about a frequency is a band that a record of this length and rate can show: between the
+// slowest line and half the rate, wider than a steady line, and narrower than its own frequency by the least
+// quality.
+bool is_band(double f_hz, double width_hz, const Prediction& prediction);
+// Whether several of the prediction's bins lie within the band's width: narrower ones need the coefficients.
+bool is_resolved(double f_hz, double width_hz, const Prediction& prediction);
+
 MadeEstimator make_narrow_band_estimator(const EffectDefinition& effect,
                                          std::shared_ptr<const Prediction> prediction);
 

@@ -8,6 +8,7 @@
 
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/catalogue.hpp"
+#include "analysis/diagnose/estimators/narrow_band.hpp"
 #include "analysis/diagnose/estimators/spectral_range.hpp"
 #include "analysis/diagnose/likelihood/noise_nuisance.hpp"
 #include "analysis/numerics/cholesky.hpp"
@@ -33,10 +34,11 @@ namespace {
 
 struct SpectralParameter {
     std::size_t finding = 0;
-    std::size_t entry = 0;        // of the finding
-    std::size_t model_entry = 0;  // of the model's effects
+    std::vector<std::size_t> entries;        // of the finding; several have it in common
+    std::vector<std::size_t> model_entries;  // the same of the model's effects
     std::string name;
     SpectralRange range;
+    double step_most = resolution::log_step_most;  // of the logarithm
 };
 
 class SpectraFit {
@@ -55,7 +57,10 @@ public:
     std::vector<Finding> run() {
         if (places_.size() < 2) { return std::move(findings_); }
         std::vector<double> logs;
-        for (const SpectralParameter& place : places_) { logs.push_back(std::log(value_at(place))); }
+        for (const SpectralParameter& place : places_) {
+            logs.push_back(
+                std::log(findings_[place.finding].entries[place.entries.front()].params.at(place.name)));
+        }
         double nats = fitted(logs);
         for (int step = 0; step < resolution::spectra_steps_most; ++step) {
             const auto [by, promised_nats] = step_from(logs);
@@ -64,7 +69,7 @@ public:
             for (int i = 0; i < resolution::spectra_shortenings_most && !better; ++i) {
                 const std::vector<double> there = moved(logs, by, std::ldexp(1.0, -i));
                 const std::array<NoiseNuisance, 3> noise = noise_;
-                const double nats_there = fitted(there);
+                const double nats_there = has_bands(there) ? fitted(there) : -1e300;
                 better = nats_there > nats;
                 if (better) {
                     logs = there;
@@ -75,7 +80,11 @@ public:
             }
             if (!better) { break; }
         }
-        for (std::size_t i = 0; i < places_.size(); ++i) { value_at(places_[i]) = std::exp(logs[i]); }
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            for (const std::size_t entry : places_[i].entries) {
+                findings_[places_[i].finding].entries[entry].params.at(places_[i].name) = std::exp(logs[i]);
+            }
+        }
         return std::move(findings_);
     }
 
@@ -86,33 +95,61 @@ private:
     };
 
     void add_parameters(std::size_t f, std::size_t e, std::size_t model_entry) {
-        const EffectDefinition& effect = *find_effect(findings_[f].effect);
-        if (traits_of(effect.name, prediction_).method != EvidenceMethod::spectrum) { return; }
-        if (e >= findings_[f].sd.size()) { return; }  // nothing in it was fitted
-        for (const auto& [name, sd] : findings_[f].sd[e]) {
-            if (std::ranges::count(effect.signature->spectral, name) == 0) { continue; }
-            const SpectralRange range =
-                spectral_range(*effect.signature, param_of(effect, name), prediction_.rate_hz());
-            places_.push_back({f, e, model_entry, name, range});
+        const Finding& finding = findings_[f];
+        const EffectSignature& signature = *find_effect(finding.effect)->signature;
+        const EvidenceMethod method = traits_of(finding.effect, prediction_).method;
+        const bool is_band = method == EvidenceMethod::narrow_band && is_resolved(finding.entries[e]);
+        if (method != EvidenceMethod::spectrum && !is_band) { return; }
+        if (e >= finding.sd.size()) { return; }  // nothing in it was fitted
+        for (const auto& [name, sd] : finding.sd[e]) {
+            if (std::ranges::count(signature.spectral, name) == 0) { continue; }
+            const auto of_others =
+                std::ranges::find_if(places_, [&, &name = name](const SpectralParameter& place) {
+                    return place.finding == f && place.name == name;
+                });
+            if (std::ranges::count(signature.common, name) != 0 && of_others != places_.end()) {
+                of_others->entries.push_back(e);
+                of_others->model_entries.push_back(model_entry);
+                continue;
+            }
+            const SpectralRange range = spectral_range(
+                signature, param_of(*find_effect(finding.effect), name), prediction_.rate_hz());
+            places_.push_back({f, {e}, {model_entry}, name, range});
+            // Farther than its width from the middle a Lorentzian is another shape.
+            if (is_band && name == "f_hz") {
+                places_.back().step_most =
+                    finding.entries[e].params.at("width_hz") / finding.entries[e].params.at("f_hz");
+            }
         }
     }
 
-    double& value_at(const SpectralParameter& place) {
-        return findings_[place.finding].entries[place.entry].params.at(place.name);
+    bool is_resolved(const EffectModel& band) const {
+        return gyrolog::is_resolved(band.params.at("f_hz"), band.params.at("width_hz"), prediction_);
+    }
+
+    // Whether what is a band is one there.
+    bool has_bands(const std::vector<double>& logs) const {
+        const SensorModel model = model_at(logs);
+        return std::ranges::all_of(places_, [&](const SpectralParameter& place) {
+            const EffectModel& entry = model.effects[place.model_entries.front()];
+            return traits_of(entry.effect, prediction_).method != EvidenceMethod::narrow_band ||
+                   is_band(entry.params.at("f_hz"), entry.params.at("width_hz"), prediction_);
+        });
     }
 
     SensorModel model_at(const std::vector<double>& logs) const {
         SensorModel model = prediction_.model();
         for (std::size_t i = 0; i < places_.size(); ++i) {
-            model.effects[places_[i].model_entry].params.at(places_[i].name) = std::exp(logs[i]);
+            for (const std::size_t entry : places_[i].model_entries) {
+                model.effects[entry].params.at(places_[i].name) = std::exp(logs[i]);
+            }
         }
         return model;
     }
 
     std::vector<double> moved(std::vector<double> logs, const std::vector<double>& by, double share) const {
         for (std::size_t i = 0; i < logs.size(); ++i) {
-            const double step =
-                std::clamp(share * by[i], -resolution::log_step_most, resolution::log_step_most);
+            const double step = share * std::clamp(by[i], -places_[i].step_most, places_[i].step_most);
             logs[i] =
                 std::clamp(logs[i] + step, std::log(places_[i].range.least), std::log(places_[i].range.most));
         }
@@ -156,7 +193,10 @@ private:
         std::vector<std::size_t> own;             // the parameter of each
         std::vector<double> there(parts.size());
         for (std::size_t i = 0; i < places_.size(); ++i) {
-            if (!acts_on(model.effects[places_[i].model_entry], axis)) { continue; }
+            const bool acts = std::ranges::any_of(places_[i].model_entries, [&](std::size_t entry) {
+                return acts_on(model.effects[entry], axis);
+            });
+            if (!acts) { continue; }
             std::vector<double> more = logs;
             more[i] += resolution::log_step;
             expected_density(prediction_.parts_of(model_at(more), axis), sd_rel, noise.z, there);

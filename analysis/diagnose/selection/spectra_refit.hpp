@@ -1,6 +1,7 @@
 // A spectra refit fits the noise spectra among the causes together. One by one, each is fitted to what the
 // others' errors leave, and where two resemble each other over the recording's octaves (flicker noise and a
-// random walk, a filter and the level of the white noise) the turns hardly move.
+// random walk, a filter and the level of the white noise, a filter and a band on its skirt) the turns hardly
+// move.
 //
 // The parameters are the logarithms of those that the effects' signatures call spectral. The likelihood is
 // Whittle's, with N, B and K of each axis at their most likely (likelihood/noise_nuisance.hpp). The search is
@@ -18,7 +19,7 @@
 namespace gyrolog {
 
 // `findings`: their entries are those of `seen`'s model from `first_entry` on, in this order. Those of other
-// estimators stay as they are.
+// estimators stay as they are, and so do bands that are too narrow for the spectral bins.
 std::vector<Finding> refit_spectra(const Observation& seen, std::size_t first_entry,
                                    std::vector<Finding> findings);
 

@@ -122,9 +122,14 @@ void narrowband_spectrum(std::span<const double> f_hz, double rate_hz, const Eff
     }
 }
 
+constexpr std::string_view narrowband_fitted[] = {"f_hz", "width_hz", "sigma_dps"};
+constexpr std::span<const std::string_view> narrowband_common = std::span(narrowband_fitted).first(2);
+
 constexpr EffectSignature narrowband_signature = {
     .method = EvidenceMethod::narrow_band,
     .folds = true,
+    .spectral = narrowband_fitted,
+    .common = narrowband_common,
     .spectrum = narrowband_spectrum,
     .words =
         "Noise of {sigma_dps} stands about {f_hz}, {width_hz} wide (a resonance, or a line that wanders); "

@@ -64,6 +64,21 @@ TEST(ForwardSelection, OfALineBeyondALowPassFindsBoth) {
     EXPECT_NEAR(entry_of(result, "tone")->params.at("amplitude_dps"), 0.0143, 5e-4);
 }
 
+// One by one the filter is found with too low a corner and order, the band too narrow; three further causes
+// made up for it.
+TEST(ForwardSelection, OfWideNoiseOnAFiltersSkirtFindsBothAndNothingBeside) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel sensor =
+        with_effect(model, "narrowband", {{"sigma_dps", 0.013}, {"f_hz", 33.0}, {"width_hz", 8.0}}, {});
+    sensor = with_effect(sensor, "lowpass", {{"fc_hz", 8.2}, {"order", 2.0}}, {});
+    const CauseSelection result = searched(sensor, model, 16);
+    ASSERT_EQ(effects_of(result), (std::set<std::string>{"lowpass", "narrowband"}));
+    EXPECT_EQ(result.causes.size(), 2U);
+    EXPECT_NEAR(entry_of(result, "lowpass")->params.at("fc_hz"), 8.2, 0.2);
+    EXPECT_EQ(entry_of(result, "lowpass")->params.at("order"), 2.0);
+    EXPECT_NEAR(entry_of(result, "narrowband")->params.at("width_hz"), 8.0, 0.5);
+}
+
 // Gauss-Markov noise with sizes and times of its own on each axis comes first and takes up the flicker noise,
 // which has nothing left to explain beside it. A walk and Gauss-Markov noise are not told apart in half an
 // hour.

@@ -120,6 +120,70 @@ TEST_P(SpectraRefitOfARecording, LeavesWhatOtherEstimatorsFound) {
     EXPECT_EQ(refit.back().entries[0].params.at("c1_dps_per_C"), 0.01);
 }
 
+// A filter with a band of noise on its skirt: each looks like a part of the other.
+std::vector<Finding> filter_and_band(double width_hz) {
+    Finding band = noise_finding("narrowband", {}, {});
+    band.sd.clear();
+    band.entries.clear();
+    for (const auto& [axis, sigma_dps] : {std::pair{"x", 0.013}, std::pair{"y", 0.010}}) {
+        const Finding one = noise_finding(
+            "narrowband", {{"f_hz", 33.0}, {"width_hz", width_hz}, {"sigma_dps", sigma_dps}}, {axis});
+        band.sd.push_back(one.sd.front());
+        band.entries.push_back(one.entries.front());
+    }
+    return {noise_finding("lowpass", {{"fc_hz", 8.0}, {"order", 2.0}}, {"x", "y", "z"}), band};
+}
+
+double param_at(const Finding& finding, std::size_t entry, const char* name) {
+    return finding.entries[entry].params.at(name);
+}
+
+class SpectraRefitOfABand : public testing::TestWithParam<std::uint64_t> {
+protected:
+    Observation observed(const std::vector<Finding>& findings) const {
+        return {prediction_of(recording_, with_findings(white_only(), findings)), recording_, 1};
+    }
+    double log_likelihood(const std::vector<Finding>& findings) const {
+        return log_likelihood_nats(observed(findings));
+    }
+
+    std::shared_ptr<const Recording> recording_ =
+        recorded(with_findings(white_only(), filter_and_band(8.0)), 60'000, GetParam());
+};
+
+// Found after each other: the filter as low as the band's skirt lets it seem, the band as what is left. Five
+// parameters are free; see above.
+TEST_P(SpectraRefitOfABand, FindsItBesideAFilter) {
+    std::vector<Finding> begun = filter_and_band(8.0);
+    begun[0].entries[0].params.at("fc_hz") = 5.0;
+    for (EffectModel& entry : begun[1].entries) {
+        entry.params.at("f_hz") = 34.0;
+        entry.params.at("width_hz") = 4.0;
+        entry.params.at("sigma_dps") *= 0.7;
+    }
+    const std::vector<Finding> refit = refit_spectra(observed(begun), white_only().effects.size(), begun);
+    const double at_truth = log_likelihood(filter_and_band(8.0));
+    EXPECT_GT(log_likelihood(refit), at_truth);
+    EXPECT_LT(log_likelihood(refit), at_truth + 10.0);
+    for (const char* common : {"f_hz", "width_hz"}) {
+        EXPECT_EQ(param_at(refit[1], 0, common), param_at(refit[1], 1, common));
+    }
+    EXPECT_NEAR(param_at(refit[0], 0, "fc_hz"), 8.0, 0.15);
+    EXPECT_NEAR(param_at(refit[1], 0, "width_hz"), 8.0, 0.4);
+    EXPECT_GT(param_at(refit[1], 0, "sigma_dps"), param_at(refit[1], 1, "sigma_dps"));
+}
+
+// Several of such a line would lie in one bin, which do not tell where in it it is.
+TEST_P(SpectraRefitOfABand, LeavesALineThatTheBinsDoNotResolve) {
+    std::vector<Finding> begun = filter_and_band(0.3);
+    begun[0].entries[0].params.at("fc_hz") = 6.0;
+    begun.push_back(noise_finding("arw_scale", {{"factor", 1.01}}, {"x"}));
+    const std::vector<Finding> refit = refit_spectra(observed(begun), white_only().effects.size(), begun);
+    EXPECT_GT(log_likelihood(refit), log_likelihood(begun));
+    EXPECT_EQ(refit[1].entries[0].params, begun[1].entries[0].params);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, SpectraRefitOfABand, testing::Values(24U, 25U, 26U));
 INSTANTIATE_TEST_SUITE_P(Seeds, SpectraRefitOfARecording, testing::Values(21U, 22U, 23U));
 
 }  // namespace
