@@ -1,6 +1,6 @@
 // The constants that decide what the diagnosis calls, names or admits, of all that lies below the judgement.
 // Those of the judgement itself stand with it: DiagnosisOptions, NullJudgementOptions, RemainderOptions,
-// SelectionOptions, ShapeOptions.
+// SelectionOptions, ShapeOptions, SpectraRefitOptions.
 //
 // How finely or how far something is searched or computed is no decision: that is a `resolution`, which is
 // meant to change no answer when made finer, and stands in a namespace of that name where it is used.

@@ -26,9 +26,6 @@ constexpr std::size_t narrowest = 8;
 constexpr double bins_per_width = 8.0;
 // To either side of the middle, in widths: beyond, a Lorentzian has a fiftieth of itself.
 constexpr double finely_within_widths = 16.0;
-// Bins of the prediction within a band's width, to fit it by them: with fewer, one bin has half of it, and
-// does not tell where in it.
-constexpr double resolved_bins = 2.0;
 
 }  // namespace gyrolog::resolution
 
@@ -360,13 +357,13 @@ bool is_band(double f_hz, double width_hz, const Prediction& prediction) {
            width_hz > narrowest_band_hz(prediction) && width_hz * decisions.band_quality_least < f_hz;
 }
 
-bool is_resolved(double f_hz, double width_hz, const Prediction& prediction) {
+double bins_within(double f_hz, double width_hz, const Prediction& prediction) {
     const double per_hz = coefficients_per_hz(prediction);
     const auto at = static_cast<std::size_t>(std::max(1.0, f_hz * per_hz));
     const auto after = std::ranges::upper_bound(prediction.bins(), at, {}, &SpectralBin::first);
-    if (after == prediction.bins().begin()) { return false; }
+    if (after == prediction.bins().begin()) { return 0.0; }
     const SpectralBin& bin = *std::prev(after);
-    return resolution::resolved_bins * static_cast<double>(bin.end - bin.first) <= width_hz * per_hz;
+    return width_hz * per_hz / static_cast<double>(bin.end - bin.first);
 }
 
 MadeEstimator make_narrow_band_estimator(const EffectDefinition& effect,

@@ -15,8 +15,8 @@ namespace gyrolog {
 // slowest line and half the rate, wider than a steady line, and narrower than its own frequency by the least
 // quality.
 bool is_band(double f_hz, double width_hz, const Prediction& prediction);
-// Whether several of the prediction's bins lie within the band's width: narrower ones need the coefficients.
-bool is_resolved(double f_hz, double width_hz, const Prediction& prediction);
+// The number of the prediction's bins within a band's width.
+double bins_within(double f_hz, double width_hz, const Prediction& prediction);
 
 MadeEstimator make_narrow_band_estimator(const EffectDefinition& effect,
                                          std::shared_ptr<const Prediction> prediction);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -43,8 +44,9 @@ struct SpectralParameter {
 
 class SpectraFit {
 public:
-    SpectraFit(const Observation& seen, std::size_t first_entry, std::vector<Finding> findings)
-        : seen_(seen), prediction_(seen.prediction()), findings_(std::move(findings)) {
+    SpectraFit(const Observation& seen, std::size_t first_entry, std::vector<Finding> findings,
+               const SpectraRefitOptions& options)
+        : seen_(seen), prediction_(seen.prediction()), options_(options), findings_(std::move(findings)) {
         std::size_t model_entry = first_entry;
         for (std::size_t f = 0; f < findings_.size(); ++f) {
             for (std::size_t e = 0; e < findings_[f].entries.size(); ++e, ++model_entry) {
@@ -61,7 +63,7 @@ public:
             logs.push_back(
                 std::log(findings_[place.finding].entries[place.entries.front()].params.at(place.name)));
         }
-        double nats = fitted(logs);
+        double nats = fitted(model_at(logs));
         for (int step = 0; step < resolution::spectra_steps_most; ++step) {
             const auto [by, promised_nats] = step_from(logs);
             if (!(promised_nats > resolution::spectra_settled_nats)) { break; }
@@ -69,11 +71,13 @@ public:
             for (int i = 0; i < resolution::spectra_shortenings_most && !better; ++i) {
                 const std::vector<double> there = moved(logs, by, std::ldexp(1.0, -i));
                 const std::array<NoiseNuisance, 3> noise = noise_;
-                const double nats_there = has_bands(there) ? fitted(there) : -1e300;
-                better = nats_there > nats;
+                const SensorModel model = model_at(there);
+                const std::optional<double> nats_there =
+                    has_bands(model) ? std::optional(fitted(model)) : std::nullopt;
+                better = nats_there && *nats_there > nats;
                 if (better) {
                     logs = there;
-                    nats = nats_there;
+                    nats = *nats_there;
                 } else {
                     noise_ = noise;
                 }
@@ -98,8 +102,8 @@ private:
         const Finding& finding = findings_[f];
         const EffectSignature& signature = *find_effect(finding.effect)->signature;
         const EvidenceMethod method = traits_of(finding.effect, prediction_).method;
-        const bool is_band = method == EvidenceMethod::narrow_band && is_resolved(finding.entries[e]);
-        if (method != EvidenceMethod::spectrum && !is_band) { return; }
+        const bool is_of_band = method == EvidenceMethod::narrow_band;
+        if (is_of_band ? !is_resolved(finding.entries[e]) : method != EvidenceMethod::spectrum) { return; }
         if (e >= finding.sd.size()) { return; }  // nothing in it was fitted
         for (const auto& [name, sd] : finding.sd[e]) {
             if (std::ranges::count(signature.spectral, name) == 0) { continue; }
@@ -116,7 +120,7 @@ private:
                 signature, param_of(*find_effect(finding.effect), name), prediction_.rate_hz());
             places_.push_back({f, {e}, {model_entry}, name, range});
             // Farther than its width from the middle a Lorentzian is another shape.
-            if (is_band && name == "f_hz") {
+            if (is_of_band && name == "f_hz") {
                 places_.back().step_most =
                     finding.entries[e].params.at("width_hz") / finding.entries[e].params.at("f_hz");
             }
@@ -124,12 +128,12 @@ private:
     }
 
     bool is_resolved(const EffectModel& band) const {
-        return gyrolog::is_resolved(band.params.at("f_hz"), band.params.at("width_hz"), prediction_);
+        return bins_within(band.params.at("f_hz"), band.params.at("width_hz"), prediction_) >=
+               options_.band_bins_least;
     }
 
-    // Whether what is a band is one there.
-    bool has_bands(const std::vector<double>& logs) const {
-        const SensorModel model = model_at(logs);
+    // Whether what is a band is one in this model.
+    bool has_bands(const SensorModel& model) const {
         return std::ranges::all_of(places_, [&](const SpectralParameter& place) {
             const EffectModel& entry = model.effects[place.model_entries.front()];
             return traits_of(entry.effect, prediction_).method != EvidenceMethod::narrow_band ||
@@ -157,8 +161,7 @@ private:
     }
 
     // The nuisance is fitted as well.
-    double fitted(const std::vector<double>& logs) {
-        const SensorModel model = model_at(logs);
+    double fitted(const SensorModel& model) {
         double nats = 0.0;
         for (const std::size_t axis : prediction_.axes()) {
             noise_[axis] = fit_nuisance(prediction_.bins(), prediction_.parts_of(model, axis),
@@ -257,6 +260,7 @@ private:
 
     const Observation& seen_;
     const Prediction& prediction_;
+    SpectraRefitOptions options_;
     std::vector<Finding> findings_;
     std::vector<SpectralParameter> places_;
     std::array<NoiseNuisance, 3> noise_;
@@ -265,8 +269,8 @@ private:
 }  // namespace
 
 std::vector<Finding> refit_spectra(const Observation& seen, std::size_t first_entry,
-                                   std::vector<Finding> findings) {
-    return SpectraFit(seen, first_entry, std::move(findings)).run();
+                                   std::vector<Finding> findings, const SpectraRefitOptions& options) {
+    return SpectraFit(seen, first_entry, std::move(findings), options).run();
 }
 
 }  // namespace gyrolog

@@ -18,9 +18,15 @@
 
 namespace gyrolog {
 
+struct SpectraRefitOptions {
+    // Spectral bins within a band's width at half its height. Of two, none has more than 2 / pi atan(1/2) =
+    // 0.3 of the band's power (a Lorentzian); one alone could hide where in it the band is.
+    double band_bins_least = 2.0;
+};
+
 // `findings`: their entries are those of `seen`'s model from `first_entry` on, in this order. Those of other
 // estimators stay as they are, and so do bands that are too narrow for the spectral bins.
 std::vector<Finding> refit_spectra(const Observation& seen, std::size_t first_entry,
-                                   std::vector<Finding> findings);
+                                   std::vector<Finding> findings, const SpectraRefitOptions& options = {});
 
 }  // namespace gyrolog

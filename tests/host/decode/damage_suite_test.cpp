@@ -20,7 +20,7 @@ constexpr std::ptrdiff_t packet = 64;  // of USB full speed
 constexpr std::uint32_t frames_per_event = 6;
 constexpr std::uint32_t events_per_stream = 500;
 constexpr std::uint32_t streams_per_kind = GYROLOG_IS_INSTRUMENTED ? 3 : 24;
-constexpr double frames_lost_sd = 0.55;  // of one event: some damage nothing, some two frames
+constexpr double frames_lost_sd = 0.547;  // of one event, as measured: some damage nothing, some two frames
 
 struct Damage {
     const char* name;
@@ -180,7 +180,7 @@ TEST(DamageSuite, EventCostsAtMostOneFrameAndThreeTenthsAndNothingFalseIsAccepte
     std::printf("  all                %llu events, %.3f frames lost each, %llu false accepts\n",
                 static_cast<unsigned long long>(all.events), per_event,
                 static_cast<unsigned long long>(all.false_accepts));
-    EXPECT_GE(all.events, damages.size() * streams_per_kind * events_per_stream * 9 / 10);
+    EXPECT_GE(all.events, damages.size() * streams_per_kind * events_per_stream);
     EXPECT_LE(per_event, 1.3);
     EXPECT_GE(per_event, 0.8) << "the damage did no damage";
     EXPECT_EQ(all.false_accepts, 0U);

@@ -173,7 +173,7 @@ TEST_P(SpectraRefitOfABand, FindsItBesideAFilter) {
     EXPECT_GT(param_at(refit[1], 0, "sigma_dps"), param_at(refit[1], 1, "sigma_dps"));
 }
 
-// Several of such a line would lie in one bin, which do not tell where in it it is.
+// Several of such lines would lie in one bin, which does not tell where in it one is.
 TEST_P(SpectraRefitOfABand, LeavesALineThatTheBinsDoNotResolve) {
     std::vector<Finding> begun = filter_and_band(0.3);
     begun[0].entries[0].params.at("fc_hz") = 6.0;
