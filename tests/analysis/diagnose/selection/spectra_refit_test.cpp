@@ -134,6 +134,16 @@ std::vector<Finding> filter_and_band(double width_hz) {
     return {noise_finding("lowpass", {{"fc_hz", 8.0}, {"order", 2.0}}, {"x", "y", "z"}), band};
 }
 
+std::vector<Finding> begun_at(double fc_hz, double f_hz, double width_hz, double of_sigma) {
+    std::vector<Finding> findings = filter_and_band(width_hz);
+    findings[0].entries[0].params.at("fc_hz") = fc_hz;
+    for (EffectModel& entry : findings[1].entries) {
+        entry.params.at("f_hz") = f_hz;
+        entry.params.at("sigma_dps") *= of_sigma;
+    }
+    return findings;
+}
+
 double param_at(const Finding& finding, std::size_t entry, const char* name) {
     return finding.entries[entry].params.at(name);
 }
@@ -154,13 +164,7 @@ protected:
 // Found after each other: the filter as low as the band's skirt lets it seem, the band as what is left. Five
 // parameters are free; see above.
 TEST_P(SpectraRefitOfABand, FindsItBesideAFilter) {
-    std::vector<Finding> begun = filter_and_band(8.0);
-    begun[0].entries[0].params.at("fc_hz") = 5.0;
-    for (EffectModel& entry : begun[1].entries) {
-        entry.params.at("f_hz") = 34.0;
-        entry.params.at("width_hz") = 4.0;
-        entry.params.at("sigma_dps") *= 0.7;
-    }
+    const std::vector<Finding> begun = begun_at(5.0, 34.0, 4.0, 0.7);
     const std::vector<Finding> refit = refit_spectra(observed(begun), white_only().effects.size(), begun);
     const double at_truth = log_likelihood(filter_and_band(8.0));
     EXPECT_GT(log_likelihood(refit), at_truth);
@@ -173,10 +177,18 @@ TEST_P(SpectraRefitOfABand, FindsItBesideAFilter) {
     EXPECT_GT(param_at(refit[1], 0, "sigma_dps"), param_at(refit[1], 1, "sigma_dps"));
 }
 
+// From a band that is far too wide the whole step is no better; a part of it is.
+TEST_P(SpectraRefitOfABand, ShortensAStepThatLeadsTooFar) {
+    for (const double f_hz : {31.0, 36.0}) {
+        const std::vector<Finding> begun = begun_at(8.0, f_hz, 15.0, 0.3);
+        const std::vector<Finding> refit = refit_spectra(observed(begun), white_only().effects.size(), begun);
+        EXPECT_GT(log_likelihood(refit), log_likelihood(filter_and_band(8.0))) << f_hz;
+    }
+}
+
 // Several of such lines would lie in one bin, which does not tell where in it one is.
 TEST_P(SpectraRefitOfABand, LeavesALineThatTheBinsDoNotResolve) {
-    std::vector<Finding> begun = filter_and_band(0.3);
-    begun[0].entries[0].params.at("fc_hz") = 6.0;
+    std::vector<Finding> begun = begun_at(6.0, 33.0, 0.3, 1.0);
     begun.push_back(noise_finding("arw_scale", {{"factor", 1.01}}, {"x"}));
     const std::vector<Finding> refit = refit_spectra(observed(begun), white_only().effects.size(), begun);
     EXPECT_GT(log_likelihood(refit), log_likelihood(begun));
