@@ -16,14 +16,15 @@ EvidenceTail::EvidenceTail(std::vector<double> simulated_nats) : sorted_nats_(st
     tail_probability_ = tail->count() / static_cast<double>(sorted_nats_.size());
 }
 
-double EvidenceTail::probability(double nats) const {
+double EvidenceTail::surprise_nats(double nats) const {
     if (nats > tail_from_nats_) {
-        return tail_probability_ * std::exp(-(nats - tail_from_nats_) / tail_scale_nats_);
+        return (nats - tail_from_nats_) / tail_scale_nats_ - std::log(tail_probability_);
     }
     const auto as_large = sorted_nats_.end() - std::ranges::lower_bound(sorted_nats_, nats);
-    return std::min(1.0,
-                    (1.0 + static_cast<double>(as_large)) / (1.0 + static_cast<double>(sorted_nats_.size())));
+    return std::log((1.0 + static_cast<double>(sorted_nats_.size())) / (1.0 + static_cast<double>(as_large)));
 }
+
+double EvidenceTail::probability(double nats) const { return std::exp(-surprise_nats(nats)); }
 
 double EvidenceTail::threshold_nats(double p) const {
     if (p < tail_probability_) {

@@ -15,6 +15,8 @@ public:
     // an exponential tail fitted to it, which falls no faster than exp(-nats), as the tail of log likelihood
     // ratios does (S. S. Wilks, Ann. Math. Statist. 9 (1938) 60).
     double probability(double nats) const;
+    // -ln of it, which is finite where the probability is less than the smallest number.
+    double surprise_nats(double nats) const;
     // The evidence with probability() = p.
     double threshold_nats(double p) const;
 

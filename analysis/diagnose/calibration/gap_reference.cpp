@@ -63,25 +63,33 @@ namespace {
 
 using UsedSimulations = std::vector<const std::vector<GapCurve>*>;
 
-void add_points(const UsedSimulations& used, std::size_t c, GapReference& reference) {
+// By point: of the variance that z counts with at least, the part that the simulations do not have.
+std::vector<double> add_points(const UsedSimulations& used, std::size_t c, GapReference& reference) {
     const auto count = static_cast<double>(used.size());
     const GapCurve& first = (*used.front())[c];
     const std::size_t points = first.value.size();
     std::vector<double> mean(points, 0.0);
     std::vector<double> sd(points, 0.0);
+    std::vector<double> unseen(points, 0.0);
     for (std::size_t i = 0; i < points; ++i) {
         for (const auto* simulation : used) { mean[i] += (*simulation)[c].value[i] / count; }
         for (const auto* simulation : used) {
             const double off = (*simulation)[c].value[i] - mean[i];
             sd[i] += off * off / (count - 1.0);
         }
-        sd[i] = std::max(std::sqrt(sd[i]), first.measure->least_sd);
+        const double least = first.measure->least_sd;
+        unseen[i] = std::max(0.0, 1.0 - sd[i] / (least * least));
+        sd[i] = std::max(std::sqrt(sd[i]), least);
     }
     reference.mean.push_back(std::move(mean));
     reference.sd.push_back(std::move(sd));
+    return unseen;
 }
 
-void add_sums(const UsedSimulations& used, std::size_t c, GapReference& reference) {
+// What the simulations do not have of a point's least scatter counts as a normal deviate's: their sums of
+// squares alone would take a point that is off by a hundredth of it for a wonder.
+void add_sums(const UsedSimulations& used, std::size_t c, const std::vector<double>& unseen,
+              GapReference& reference) {
     const auto count = static_cast<double>(used.size());
     double sum = 0.0;
     double squares = 0.0;
@@ -98,11 +106,16 @@ void add_sums(const UsedSimulations& used, std::size_t c, GapReference& referenc
         }
     }
     for (double& sd : window_sd) { sd = std::max(std::sqrt(sd), 1.0); }
-    const double average = sum / count;
+    double average = sum / count;
+    double variance = std::max(squares / count - average * average, 0.0);
+    for (const double part : unseen) {
+        average += part;
+        variance += 2.0 * part * part;
+    }
     const std::size_t points = reference.mean[c].size();
     reference.window_sd.push_back(std::move(window_sd));
     reference.square_mean.push_back(average);
-    reference.square_variance.push_back(std::max(squares / count - average * average, 0.0));
+    reference.square_variance.push_back(variance);
     reference.rms_scale.push_back(std::sqrt(average / static_cast<double>(std::max<std::size_t>(points, 1))));
 }
 
@@ -146,8 +159,7 @@ GapReference gap_reference(const SimulatedCurves& simulations, std::optional<std
     GapReference reference;
     reference.degrees_of_freedom = static_cast<double>(used.size()) - 1.0;
     for (std::size_t c = 0; c < used.front()->size(); ++c) {
-        add_points(used, c, reference);
-        add_sums(used, c, reference);
+        add_sums(used, c, add_points(used, c, reference), reference);
     }
     return reference;
 }

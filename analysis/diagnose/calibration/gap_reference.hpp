@@ -16,7 +16,8 @@ struct GapReference {
     // By curve, by window over neighbouring points: the standard deviation of the sum of their z.
     std::vector<std::vector<double>> window_sd;
     std::vector<double> rms_scale;  // by curve: root mean square, over simulations, of their own rms z
-    // By curve: mean and variance, over the simulations, of the sum of z^2.
+    // By curve: mean and variance, over the simulations, of the sum of z^2. A point at which they scatter by
+    // less than the measure's least_sd has its share as if they scattered by that.
     std::vector<double> square_mean, square_variance;
     double degrees_of_freedom = 0.0;  // of every sd
 };

@@ -39,7 +39,7 @@ public:
         : effects_(std::move(effects_nats)), curves_(std::move(curves_nats)) {}
 
     double nats(double effect_nats, double curve_nats) const {
-        return -std::log(std::min(effects_.probability(effect_nats), curves_.probability(curve_nats)));
+        return std::max(effects_.surprise_nats(effect_nats), curves_.surprise_nats(curve_nats));
     }
 
 private:

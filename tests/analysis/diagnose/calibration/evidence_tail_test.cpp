@@ -41,6 +41,13 @@ TEST(EvidenceTail, FallsNoFasterThanALikelihoodRatioDoes) {
     EXPECT_NEAR(tail.probability(10.2), tail.probability(0.2) * std::exp(-10.0), 1e-9);
 }
 
+TEST(EvidenceTail, OfWhatIsRarerThanTheSmallestNumberHasAFiniteSurprise) {
+    const EvidenceTail tail(exponential_draws(200, 4));
+    const double per_nat = tail.surprise_nats(20.0) - tail.surprise_nats(19.0);
+    EXPECT_NEAR(tail.surprise_nats(1e5), tail.surprise_nats(20.0) + per_nat * (1e5 - 20.0), 1e-3);
+    EXPECT_EQ(tail.probability(1e5), 0.0);
+}
+
 TEST(EvidenceTail, HasTheThresholdOfEveryProbability) {
     const EvidenceTail tail(exponential_draws(200, 9));
     for (const double p : {0.05, 0.01, 1e-4}) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/measures/courses.hpp"
+#include "analysis/diagnose/measures/repeats.hpp"
 #include "analysis/diagnose/measures/spectrum.hpp"
 
 namespace gyrolog {
@@ -51,6 +52,22 @@ TEST(GapReference, HoldsARecordingAndASimulationToTheSameStandard) {
     };
     EXPECT_TRUE(within(above_all, 1.0 / 31.0)) << above_all;
     EXPECT_TRUE(within(above_half, 15.0 / 31.0)) << above_half;
+}
+
+// A measure in its own standard deviation is 0 in most simulations, and next to nothing in some: one that has
+// what its own scatter is, or less, is no wonder. One that is far off is.
+TEST(GapReference, TakesLessThanTheLeastScatterForNoWonder) {
+    std::mt19937_64 random(9);
+    std::normal_distribution<double> normal(0.0, 1e-4);
+    const auto curve_with = [](double value) {
+        return std::vector{GapCurve{&measures::repeats, 0, 0, {0.0, 1.0}, {0.0, value}}};
+    };
+    SimulatedCurves simulated;
+    for (int i = 0; i < 30; ++i) { simulated.push_back(curve_with(normal(random))); }
+    const GapReference reference = gap_reference(simulated);
+    EXPECT_LT(worst_surprise_nats(curve_with(0.5), reference), 2.0);
+    EXPECT_GT(worst_surprise_nats(curve_with(8.0), reference), 12.0);
+    EXPECT_LT(gap_of(curve_with(0.5).front(), reference, 0).distance, 1.0);
 }
 
 TEST(GapReference, LeavesTheOneOutThatItIsAskedTo) {

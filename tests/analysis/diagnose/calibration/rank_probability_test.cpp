@@ -53,6 +53,16 @@ TEST(ProbabilityByRank, IsRightOverItsWholeRange) {
     }
 }
 
+// One simulation that is unlike all others must not make a number of none.
+TEST(ProbabilityByRank, IsANumberWhereASimulationStandsFarOut) {
+    std::mt19937_64 engine(4);
+    Looks looks = looks_of(20, 0.0, engine);
+    looks.curves_nats[7] = 13000.0;
+    const double p = probability_by_rank(1740.0, looks.effects_nats, 3900.0, looks.curves_nats);
+    EXPECT_GE(p, 0.0);
+    EXPECT_LE(p, 0.1);
+}
+
 // Beyond the simulations' number it falls as the looks' own tails do.
 TEST(ProbabilityByRank, FallsOnBeyondTheSimulations) {
     std::mt19937_64 engine(3);
