@@ -4,6 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
+#include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,6 +29,9 @@ constexpr std::size_t narrowest = 8;
 constexpr double bins_per_width = 8.0;
 // To either side of the middle, in widths: beyond, a Lorentzian has a fiftieth of itself.
 constexpr double finely_within_widths = 16.0;
+// A spectrum does not tell how fast a line wanders whose density it shows: what machines that hold their
+// speed by hand or by load take.
+constexpr double wander_s = 30.0;
 
 }  // namespace gyrolog::resolution
 
@@ -37,6 +43,13 @@ struct Band {
     double f_hz = 0.0;
     double width_hz = 0.0;
     double sigma_rad_s = 0.0;
+    double wander_s = 0.0;  // 0: noise with a Lorentzian density; else a line with a Gaussian one
+
+    std::map<std::string, double> shape() const {
+        std::map<std::string, double> params{{"f_hz", f_hz}, {"width_hz", width_hz}};
+        if (wander_s > 0.0) { params["wander_s"] = wander_s; }
+        return params;
+    }
 };
 
 double coefficients_per_hz(const Prediction& prediction) {
@@ -80,11 +93,8 @@ public:
 
     double gain_nats(const EffectDefinition& effect, const Band& band) const {
         std::vector<SpectralParts> parts = parts_;
-        const EffectModel entry{
-            std::string(effect.name),
-            {},
-            {{"f_hz", band.f_hz}, {"width_hz", band.width_hz}, {"sigma_dps", band.sigma_rad_s * deg_per_rad}},
-            ""};
+        EffectModel entry{std::string(effect.name), {}, band.shape(), ""};
+        entry.params["sigma_dps"] = band.sigma_rad_s * deg_per_rad;
         effect.signature->spectrum(f_hz_, rate_hz_, EffectValues(entry, axis_), parts);
         return fit_nuisance(bins_, parts, power_, sd_rel_, start_).log_likelihood_nats - without_nats_;
     }
@@ -155,10 +165,14 @@ public:
         for (const std::size_t axis : prediction_->axes()) {
             const std::optional<Band> start = scan(observation.axis(axis));
             if (!start) { continue; }
-            BandFit fit = fitted(observation, {axis}, {*start});
-            // Once more, with bins that suit the width.
-            fit = fitted(observation, {axis}, fit.bands);
-            if (!best || fit.total_nats() > best->total_nats()) { best = std::move(fit); }
+            for (const double wander_s : {0.0, resolution::wander_s}) {
+                Band from = *start;
+                from.wander_s = wander_s;
+                BandFit fit = fitted(observation, {axis}, {from});
+                // Once more, with bins that suit the width.
+                fit = fitted(observation, {axis}, fit.bands);
+                if (!best || fit.total_nats() > best->total_nats()) { best = std::move(fit); }
+            }
         }
         if (!best || best->total_nats() < resolution::worth_refining_nats) { return std::nullopt; }
         return finding_of(with_other_axes(observation, *std::move(best)));
@@ -233,7 +247,7 @@ private:
         // Half of it lies within its width.
         const double variance =
             2.0 * excess * seen.density[bin] * prediction_->rate_hz() * width / static_cast<double>(length());
-        return {middle / per_hz(), std::min(width, middle) / per_hz(), std::sqrt(variance)};
+        return {middle / per_hz(), std::min(width, middle) / per_hz(), std::sqrt(variance), 0.0};
     }
 
     bool is_allowed(const Band& band) const {
@@ -256,7 +270,8 @@ private:
             variables.push_back(std::log(start[i].sigma_rad_s));
         }
         const auto band = [&](const std::vector<double>& at, std::size_t i) {
-            return Band{from.f_hz + at[0] * from.width_hz, std::exp(at[1]), std::exp(at[2 + i])};
+            return Band{from.f_hz + at[0] * from.width_hz, std::exp(at[1]), std::exp(at[2 + i]),
+                        from.wander_s};
         };
         const Objective objective = [&](const std::vector<double>& at) {
             double sum = 0.0;
@@ -327,14 +342,14 @@ private:
             fits.push_back(std::move(one));
         }
         const double common_nats =
+            std::numbers::ln2 +  // one of two shapes
             parameter_cost_nats(0.5 * prediction_->rate_hz(), fit.f_sd_hz) +
             occam_cost_nats(param_of(effect_, "width_hz"), width_hz, width_hz * fit.log_width_sd);
         std::optional<Finding> finding = best_of(effect_, fits, common_nats, std::nullopt);
         if (!finding) { return std::nullopt; }
         finding->parameters += 2;
         for (std::size_t i = 0; i < finding->entries.size(); ++i) {
-            finding->entries[i].params["f_hz"] = f_hz;
-            finding->entries[i].params["width_hz"] = width_hz;
+            finding->entries[i].params.merge(fit.bands.front().shape());
             finding->sd[i]["f_hz"] = fit.f_sd_hz;
             finding->sd[i]["width_hz"] = width_hz * fit.log_width_sd;
         }

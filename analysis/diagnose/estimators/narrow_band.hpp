@@ -3,8 +3,9 @@
 // Windows of the cosine coefficients of every width from a few on that stand out against both neighbours say
 // where to look. There the spectral bins, a thirty-second of their frequency wide, are cut into so small ones
 // that a line has several across its width; frequency, width and heights are then those of the largest
-// Whittle likelihood, with N, B and K fitted again. What is narrower than some coefficients is a steady line,
-// and not looked for: steady_line.hpp.
+// Whittle likelihood, with N, B and K fitted again, and so is the shape: a resonance's Lorentzian, or the
+// Gaussian of a line whose frequency wanders (simulate/effects/narrowband.cpp). What is narrower than some
+// coefficients is a steady line, and not looked for: steady_line.hpp.
 #pragma once
 
 #include "analysis/diagnose/estimators/estimator.hpp"

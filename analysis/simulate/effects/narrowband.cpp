@@ -14,8 +14,18 @@
 //
 // u and v the angles of the frequency and of f in a sample, and the integral of P from 0 to x
 // 2 atan(tan(x/2) / tanh(pi width T / 2)).
+//
+// With a time of wandering it is a line of constant height instead,
+//
+//   sqrt(2) sigma cos(phase),   d phase / dt = 2 pi (f + s n(t)),
+//
+// n a first-order Gauss-Markov process of variance one and that correlation time. While s times it is well
+// over one, the line's density is the distribution of its frequency (R. Kubo, in Fluctuation, Relaxation and
+// Resonance in Magnetic Systems, 1962, "slow modulation"): Gaussian, of standard deviation
+// s = width / (2 sqrt(2 ln 2)), without a Lorentzian's skirts.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/simulate/effects/effects.hpp"
 #include "analysis/simulate/portable_math.hpp"
@@ -55,7 +65,49 @@ struct NarrowbandNoise {
     }
 };
 
+// Of a Gaussian: its standard deviation in widths at half its height.
+const double sd_per_width = 1.0 / std::sqrt(8.0 * std::numbers::ln2);
+
+struct WanderingLine {
+    RandomStream frequency;
+    double phase_turns;
+    double amplitude_rad_s;
+    double middle_turns;  // of a sample
+    double spread_turns;
+    double kept;
+    double innovation;
+    double offset = 0.0;  // in units of the spread
+
+    void add(std::uint64_t first_index, std::span<double> rate_rad_s) {
+        std::array<double, block_samples> draws;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+        const std::size_t count = rate_rad_s.size();
+        frequency.normals(first_index, std::span(draws).first(count));
+        for (std::size_t i = 0; i < count; ++i) {
+            offset = first_index + i == 0 ? draws[i] : kept * offset + innovation * draws[i];
+            phase_turns += middle_turns + spread_turns * offset;
+            phase_turns -= std::floor(phase_turns);
+            rate_rad_s[i] += amplitude_rad_s * portable_sine_of_turns(phase_turns);
+        }
+    }
+};
+
+std::unique_ptr<Stage> make_wandering_line(const EffectUse& use) {
+    const double rate_hz = use.context().rate_hz;
+    return PerAxis<WanderingLine>::make([&](std::size_t axis) -> std::optional<WanderingLine> {
+        if (!use.acts_on(axis)) { return std::nullopt; }
+        const double kept = portable_exp(-std::min(1.0 / (use["wander_s"] * rate_hz), 700.0));
+        return WanderingLine{use.stream(axis, 0),
+                             use.stream(axis, 1).uniform(0),
+                             std::numbers::sqrt2 * use["sigma_dps"] * rad_per_deg,
+                             use["f_hz"] / rate_hz,
+                             sd_per_width * use["width_hz"] / rate_hz,
+                             kept,
+                             std::sqrt(1.0 - kept * kept)};
+    });
+}
+
 std::unique_ptr<Stage> make_narrowband(const EffectUse& use) {
+    if (use["wander_s"] > 0.0) { return make_wandering_line(use); }
     return PerAxis<NarrowbandNoise>::make([&](std::size_t axis) -> std::optional<NarrowbandNoise> {
         if (!use.acts_on(axis)) { return std::nullopt; }
         const double turns = use["f_hz"] / use.context().rate_hz;
@@ -85,12 +137,28 @@ constexpr EffectParam narrowband_params[] = {
      .range = EffectParam::Range::not_negative,
      .plausible_from = 0.001,
      .plausible_to = 0.5},
+    {.name = "wander_s",
+     .meaning = "0: noise; else a line of constant height whose frequency wanders with this correlation "
+                "time",
+     .range = EffectParam::Range::not_negative,
+     .plausible_from = 10.0,
+     .plausible_to = 100.0,
+     .otherwise = 0.0},
 };
 
 // Of P from 0 to the angle, over 2 pi: a half at half a turn.
 double share_up_to(double angle, double narrowness) {
     const double turns = std::round(angle / (2.0 * pi));
     return turns + std::atan(narrowness * std::tan(0.5 * (angle - 2.0 * pi * turns))) / pi;
+}
+
+// Of the distribution of frequencies with its images at every multiple of the rate, from 0 to this one.
+double gaussian_share_up_to(double off_hz, double spread_hz, double rate_hz) {
+    double share = 0.0;
+    for (int image = -3; image <= 3; ++image) {
+        share += 0.5 * std::erf((off_hz + image * rate_hz) / (std::numbers::sqrt2 * spread_hz));
+    }
+    return share;
 }
 
 // A line that is narrower than the distance of the frequencies is averaged over it.
@@ -100,10 +168,14 @@ void narrowband_spectrum(std::span<const double> f_hz, double rate_hz, const Eff
     const double narrowness = 1.0 / std::tanh(0.5 * pi * effect["width_hz"] / rate_hz);
     const double folded_hz = std::fabs(std::remainder(effect["f_hz"], rate_hz));
     const double per_hz = 2.0 * pi / rate_hz;
+    const bool wanders = effect["wander_s"] > 0.0;
+    const double spread_hz = sd_per_width * effect["width_hz"];
+    const auto share = [&](double off_hz) {
+        return wanders ? gaussian_share_up_to(off_hz, spread_hz, rate_hz)
+                       : share_up_to(per_hz * off_hz, narrowness);
+    };
     const auto power_below = [&](double edge_hz) {
-        return 0.5 * sigma_rad_s * sigma_rad_s *
-               (share_up_to(per_hz * (edge_hz - folded_hz), narrowness) +
-                share_up_to(per_hz * (edge_hz + folded_hz), narrowness));
+        return 0.5 * sigma_rad_s * sigma_rad_s * (share(edge_hz - folded_hz) + share(edge_hz + folded_hz));
     };
     const auto middle_hz = [&](std::size_t i) {
         if (i == 0) { return f_hz[0] * std::sqrt(f_hz[0] / f_hz[1]); }
@@ -145,8 +217,10 @@ constinit const EffectDefinition narrowband_effect = {
     .name = "narrowband",
     .model =
         "stationary Gaussian, covariance sigma_dps^2 exp(-pi width_hz |t|) cos(2 pi f_hz t), independent on "
-        "each axis",
-    .source = "the real part of a complex Gauss-Markov process, whose real one is IEEE 952-1997, C.1.5",
+        "each axis; with wander_s a line of constant height with a Gaussian density",
+    .source =
+        "the real part of a complex Gauss-Markov process, whose real one is IEEE 952-1997, C.1.5; the "
+        "line of R. Kubo (1962), slowly modulated",
     .params = narrowband_params,
     .make = make_narrowband,
     .noise_only = true,

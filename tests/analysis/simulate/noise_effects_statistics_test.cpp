@@ -278,6 +278,65 @@ TEST_P(NarrowbandAt, IsStationaryFromTheFirstSample) {
     expect_covariance_at_the_start_and_later(law.model(), law.rate_hz, expected);
 }
 
+// A line of constant height whose frequency wanders: the phase between two samples is normal, so that the
+// covariance is cos(2 pi f t) exp(-variance of the phase / 2) (Kubo), which a slow wander makes Gaussian.
+struct WanderingLaw {
+    double f_hz = 31.0;
+    double width_hz = 6.0;
+    double wander_s = 0.5;
+    double rate_hz = 100.0;
+
+    double spread_hz() const { return width_hz / std::sqrt(8.0 * std::log(2.0)); }
+    double covariance(std::size_t lag) const {
+        const double kept = std::exp(-1.0 / (wander_s * rate_hz));
+        double sum = static_cast<double>(lag);  // of the covariances of all pairs of steps
+        for (std::size_t apart = 1; apart < lag; ++apart) {
+            sum += 2.0 * static_cast<double>(lag - apart) * std::pow(kept, static_cast<double>(apart));
+        }
+        const double step_rad = 2.0 * pi * spread_hz() / rate_hz;
+        const double turn_rad = 2.0 * pi * f_hz / rate_hz;
+        return std::cos(turn_rad * static_cast<double>(lag)) * std::exp(-0.5 * step_rad * step_rad * sum);
+    }
+    SensorModel model() const {
+        return with_effect(
+            ideal_model(), "narrowband",
+            {{"f_hz", f_hz}, {"width_hz", width_hz}, {"sigma_dps", 1.0}, {"wander_s", wander_s}});
+    }
+};
+
+TEST(WanderingLine, IsStationaryFromTheFirstSample) {
+    const WanderingLaw law;
+    std::array<double, lags> expected{};
+    for (std::size_t lag = 0; lag < lags; ++lag) { expected[lag] = law.covariance(lag); }
+    expect_covariance_at_the_start_and_later(law.model(), law.rate_hz, expected);
+}
+
+TEST(WanderingLine, HasAConstantHeight) {
+    const Simulated out = simulate(WanderingLaw{}.model(), 100.0, 3, 8);
+    double most = 0.0;
+    for (const double rate_rad_s : out.rate_rad_s[0]) { most = std::max(most, std::fabs(rate_rad_s)); }
+    EXPECT_NEAR(most * deg_per_rad, std::sqrt(2.0), 1e-3);
+}
+
+// The distribution of the frequency, which here reaches beyond half the rate.
+TEST(WanderingLine, SignatureIsTheGaussianAndWhatFolds) {
+    const WanderingLaw law{.f_hz = 44.0, .width_hz = 8.0, .wander_s = 30.0};
+    const EffectModel entry = law.model().effects.front();
+    std::vector<double> f_hz;
+    for (int i = 1; i < 2500; ++i) { f_hz.push_back(0.02 * i); }
+    std::vector<SpectralParts> parts(f_hz.size());
+    find_effect("narrowband")->signature->spectrum(f_hz, law.rate_hz, EffectValues(entry), parts);
+    const double spread_hz = law.spread_hz();
+    const auto gaussian = [&](double off_hz) {
+        return std::exp(-0.5 * off_hz * off_hz / (spread_hz * spread_hz)) / (std::sqrt(2.0 * pi) * spread_hz);
+    };
+    for (std::size_t i = 1500; i + 1 < f_hz.size(); i += 7) {
+        const double density =
+            0.5 * (gaussian(f_hz[i] - law.f_hz) + gaussian(law.rate_hz - f_hz[i] - law.f_hz));
+        EXPECT_NEAR(parts[i].other * deg_per_rad * deg_per_rad / density, 1.0, 1e-3) << f_hz[i];
+    }
+}
+
 // The signature averages over the bins: over many small ones it is the density itself, and over few large
 // ones all of the variance is in them.
 TEST_P(NarrowbandAt, SignatureHasTheSameSpectrum) {

@@ -40,6 +40,24 @@ std::optional<Finding> band_in(const SensorModel& sensor, std::uint64_t seed) {
                  calibrated_sensor());
 }
 
+// A resonance has a Lorentzian's skirts, a line that wanders has none.
+TEST(NarrowBandShape, IsToldByItsSkirts) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        for (const double wander_s : {0.0, 2.0}) {
+            SensorModel sensor = with_band(calibrated_sensor(), 34.0, 2.0, 0.01);
+            sensor.effects.back().params["wander_s"] = wander_s;
+            const auto finding = band_in(sensor, 90 + seed);
+            ASSERT_TRUE(finding);
+            const auto& params = finding->entries.front().params;
+            EXPECT_EQ(params.count("wander_s"), wander_s > 0.0 ? 1 : 0) << "seed " << seed;
+            // Four standard deviations: 150 independent frequencies in ten minutes, 0.85 Hz apart.
+            EXPECT_NEAR(params.at("f_hz"), 34.0, 0.28);
+            EXPECT_NEAR(params.at("width_hz"), 2.0, 0.4);
+            EXPECT_NEAR(params.at("sigma_dps"), 0.01, 0.001);
+        }
+    }
+}
+
 struct BandCase {
     double f_hz;
     double width_hz;
