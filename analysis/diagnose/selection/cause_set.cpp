@@ -182,6 +182,15 @@ bool CauseSet::is_of_another(const Finding& finding, std::size_t own) const {
     return false;
 }
 
+std::optional<std::size_t> CauseSet::place_of(const Finding& finding) const {
+    const bool recurs = traits_of(finding.effect).recurs;
+    const auto same = std::ranges::find_if(causes, [&](const FoundCause& cause) {
+        return cause.finding.effect == finding.effect && (!recurs || is_same_line(cause.finding, finding));
+    });
+    if (same == causes.end()) { return std::nullopt; }
+    return static_cast<std::size_t>(same - causes.begin());
+}
+
 std::vector<Finding> CauseSet::rivals_of(const Finding& cause, const std::vector<Finding>& findings) const {
     std::vector<Finding> rivals;
     std::ranges::copy_if(findings, std::back_inserter(rivals), [&](const Finding& f) {

@@ -82,6 +82,8 @@ public:
     // tells nothing of this one.
     bool is_of_another(const Finding& finding, std::size_t own) const;
     bool is_noise(const Finding& finding) const;
+    // Where the cause is that the finding was, no value where it is none any more.
+    std::optional<std::size_t> place_of(const Finding& finding) const;
 
     // Of these findings, those that may stand in the cause's place.
     std::vector<Finding> rivals_of(const Finding& cause, const std::vector<Finding>& findings) const;

@@ -54,6 +54,7 @@ public:
             std::optional<bool> grown = freed ? true : take_further(*latest);
             if (grown && !*grown) { grown = exchange(); }
             if (!grown) { return std::nullopt; }
+            if (!*grown && leave_out_needless()) { grown = true; }
             if (!*grown) { break; }
             forget_null_bias();
             latest = set_.with_causes();
@@ -74,8 +75,7 @@ public:
         forget_null_bias();
         static_cast<void>(set_.settle_responses());
         // Those that are refitted first are so beside the others as these were.
-        set_.settle_spectra();
-        if (!refit_own() || !refit_own()) { return std::nullopt; }
+        if (!refit_in_turns()) { return std::nullopt; }
         static_cast<void>(set_.settle_responses());
         set_.settle_spectra();
         if (!weigh()) { return std::nullopt; }
@@ -291,9 +291,12 @@ private:
     // early.
     std::optional<bool> exchange() {
         bool any = false;
-        for (std::size_t i = 0; !was_exchanged_ && i < set_.causes.size(); ++i) {
-            for (const Finding& rival : set_.rivals_to_try(set_.causes[i])) {
-                const std::optional<bool> is_better = exchange_for(i, rival);
+        const std::vector<FoundCause> each = was_exchanged_ ? std::vector<FoundCause>{} : set_.causes;
+        for (const FoundCause& cause : each) {
+            const std::optional<std::size_t> place = set_.place_of(cause.finding);
+            if (!place) { continue; }  // gone by an exchange of another
+            for (const Finding& rival : set_.rivals_to_try(set_.causes[*place])) {
+                const std::optional<bool> is_better = exchange_for(*place, rival);
                 if (!is_better) { return std::nullopt; }
                 if (!*is_better) { continue; }
                 any = true;
@@ -305,14 +308,41 @@ private:
         return any;
     }
 
+    // A cause has its evidence beside the others as they are. Without it, the spectra that are fitted
+    // together may explain what it does: then it is left out. Whether any is.
+    bool leave_out_needless() {
+        bool any = false;
+        for (std::size_t i = 0; set_.causes.size() > 1 && i < set_.causes.size();) {
+            if (is_needless(i)) {
+                any = true;
+            } else {
+                ++i;
+            }
+        }
+        return any;
+    }
+
+    // Takes the cause out where the others, fitted again, explain all measures nearly as well.
+    bool is_needless(std::size_t place) {
+        if (CauseSet::is_of_codes(set_.causes[place].finding)) { return false; }
+        const std::vector<FoundCause> before = set_.causes;
+        const double before_nats = set_.worth_nats(set_.observed());
+        set_.causes.erase(set_.causes.begin() + static_cast<std::ptrdiff_t>(place));
+        set_.settle_spectra();
+        const bool is_needless =
+            CauseSet::change_likelihood_among(set_.causes) == CauseSet::change_likelihood_among(before) &&
+            set_.worth_nats(set_.observed()) > before_nats - decisions.strong_nats;
+        if (!is_needless) { set_.causes = before; }
+        return is_needless;
+    }
+
     // Whether the exchange stays.
     std::optional<bool> exchange_for(std::size_t place, const Finding& rival) {
         const std::vector<FoundCause> before = set_.causes;
         if (!set_.give_to_rival(place, rival)) { return false; }
         const double before_nats = worth_nats_of(before);
         // What was fitted beside the cause is fitted beside the rival before that is judged.
-        set_.settle_spectra();
-        if (!refit_own() || !refit_own()) { return std::nullopt; }
+        if (!refit_in_turns()) { return std::nullopt; }
         set_.settle_spectra();
         const double more_nats = decisions.strong_nats;
         const bool were_weighed = std::exchange(are_weighed_, false);
@@ -416,6 +446,16 @@ private:
             const std::optional<Finding> again = set_.found_again(i);
             if (take_again(i, again ? &*again : nullptr)) { ++i; }
             if (!told()) { return false; }
+        }
+        return true;
+    }
+
+    // The spectra together, then each cause by its own estimator, twice: that takes an axis off a cause that
+    // the spectra no longer need it on. False when ended early.
+    bool refit_in_turns() {
+        for (int turn = 0; turn < 2; ++turn) {
+            set_.settle_spectra();
+            if (!refit_own()) { return false; }
         }
         return true;
     }
