@@ -1,5 +1,7 @@
 #include "analysis/diagnose/estimators/hypotheses.hpp"
 
+#include <utility>
+
 #include "analysis/parallel/parallel_for.hpp"
 #include "analysis/simulate/chain.hpp"
 
@@ -17,9 +19,14 @@ const Finding* Hypotheses::best() const {
 
 Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
                    const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads) {
+    return examine(prediction, std::make_shared<const Observation>(prediction, recording, seed), threads);
+}
+
+Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
+                   std::shared_ptr<const Observation> observation, unsigned threads) {
     Hypotheses hypotheses;
     hypotheses.prediction = prediction;
-    hypotheses.observation = std::make_shared<const Observation>(prediction, recording, seed);
+    hypotheses.observation = std::move(observation);
     hypotheses.catalogue = make_catalogue(prediction, threads);
     hypotheses.findings.resize(hypotheses.catalogue.size());
     parallel_for(hypotheses.catalogue.size(), threads, [&](std::size_t i) {
@@ -32,9 +39,9 @@ Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
 
 std::optional<Finding> examine_for(std::string_view effect,
                                    const std::shared_ptr<const Prediction>& prediction,
-                                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed) {
+                                   const Observation& completed) {
     const MadeEstimator made = make_estimator(*find_effect(effect), prediction);
-    return made.estimator ? made.estimator->find(Observation(prediction, recording, seed)) : std::nullopt;
+    return made.estimator ? made.estimator->find(Observation(prediction, completed)) : std::nullopt;
 }
 
 }  // namespace gyrolog

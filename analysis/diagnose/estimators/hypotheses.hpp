@@ -26,10 +26,14 @@ struct Hypotheses {
 Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
                    const std::shared_ptr<const Recording>& recording, std::uint64_t seed, unsigned threads);
 
-// The function asks the estimator of one effect, which the recording can show. No value where the data have
-// no trace of it.
+// The same of what is observed under the prediction already.
+Hypotheses examine(const std::shared_ptr<const Prediction>& prediction,
+                   std::shared_ptr<const Observation> observation, unsigned threads);
+
+// The function asks the estimator of one effect, which the recording of `completed` can show. Holes are
+// filled as there. No value where the data have no trace of the effect.
 std::optional<Finding> examine_for(std::string_view effect,
                                    const std::shared_ptr<const Prediction>& prediction,
-                                   const std::shared_ptr<const Recording>& recording, std::uint64_t seed);
+                                   const Observation& completed);
 
 }  // namespace gyrolog

@@ -275,6 +275,15 @@ void measure_power(const SpectralBins& bins, double rate_hz, const std::vector<f
 Observation::Observation(std::shared_ptr<const Prediction> prediction,
                          std::shared_ptr<const Recording> recording, std::uint64_t seed,
                          ReferenceNoise reference_noise)
+    : Observation(std::move(prediction), std::move(recording), seed, reference_noise, nullptr) {}
+
+Observation::Observation(std::shared_ptr<const Prediction> prediction, const Observation& completed)
+    : Observation(std::move(prediction), completed.recording_, completed.seed_, completed.reference_noise_,
+                  &completed) {}
+
+Observation::Observation(std::shared_ptr<const Prediction> prediction,
+                         std::shared_ptr<const Recording> recording, std::uint64_t seed,
+                         ReferenceNoise reference_noise, const Observation* completed)
     : prediction_(std::move(prediction)),
       recording_(std::move(recording)),
       seed_(seed),
@@ -290,12 +299,29 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
         if (!present_[slot]) { missing_.push_back(slot); }
     }
     const TransformPool::Lease transform = prediction_->transform();
-    for (const std::size_t axis : prediction_->axes()) { observe(axis, *transform); }
+    if (completed != nullptr && !can_complete(*completed)) { completed = nullptr; }
+    for (const std::size_t axis : prediction_->axes()) { observe(axis, completed, *transform); }
     // What moved before the recording began is not known, and a sensor that lags shows it.
     const double unknown_s = prediction_->moves() ? KnownMotionOptions{}.memory_s : 0.0;
     for (std::size_t slot = 0; slot < length; ++slot) {
         const bool known = static_cast<double>(slot) >= unknown_s * prediction_->rate_hz();
         present_[slot] = present_[slot] && known && has_slot(prediction_->half(), slot, length);
+    }
+}
+
+bool Observation::can_complete(const Observation& other) const {
+    return !prediction_->moves() && std::ranges::includes(other.missing_, missing_);
+}
+
+// As numbers of the recording: the two models may expect others.
+void Observation::copy_stand_ins(const Observation& from, std::size_t axis,
+                                 std::vector<float>& residual_rad_s) const {
+    const std::vector<float>& theirs = from.prediction_->response_rad_s(axis);
+    const std::vector<float>& ours = prediction_->response_rad_s(axis);
+    const AxisObservation& other = from.axes_[axis];
+    const auto mean = static_cast<float>(other.mean_rad_s - axes_[axis].mean_rad_s);
+    for (const std::size_t slot : missing_) {
+        residual_rad_s[slot] = other.residual_rad_s[slot] + theirs[slot] - ours[slot] + mean;
     }
 }
 
@@ -353,7 +379,7 @@ void Observation::fit_model(std::size_t axis, CosineTransform& transform) {
     }
 }
 
-void Observation::observe(std::size_t axis, CosineTransform& transform) {
+void Observation::observe(std::size_t axis, const Observation* completed, CosineTransform& transform) {
     const Prediction& prediction = *prediction_;
     const std::size_t length = prediction.length();
     AxisObservation& seen = axes_[axis];
@@ -362,11 +388,16 @@ void Observation::observe(std::size_t axis, CosineTransform& transform) {
     take_expected_off(axis, residual);
     seen.mean_rad_s = take_mean_off(residual, present_);
     const UncertainMean& uncertain = prediction.uncertain(axis);
-    if (!missing_.empty()) { draw_first_guesses(prediction, axis, residual, present_, seed_); }
+    if (completed != nullptr) {
+        copy_stand_ins(*completed, axis, residual);
+    } else if (!missing_.empty()) {
+        draw_first_guesses(prediction, axis, residual, present_, seed_);
+    }
     fit_model(axis, transform);
     // What stands in for a sample has noise like that which was fitted, and follows the motion as the samples
     // do.
-    const int rounds = missing_.empty() ? 0 : uncertain.empty() ? 1 : 2;
+    const bool is_filled = missing_.empty() || completed != nullptr;
+    const int rounds = is_filled ? 0 : uncertain.empty() ? 1 : 2;
     for (int round = 0; round < rounds; ++round) {
         fill_holes(prediction, axis, seen, missing_, transform, seed_);
         fit_model(axis, transform);

@@ -44,6 +44,10 @@ public:
     // draws what stands in holes.
     Observation(std::shared_ptr<const Prediction> prediction, std::shared_ptr<const Recording> recording,
                 std::uint64_t seed, ReferenceNoise reference_noise = ReferenceNoise::recorded);
+    // What stands in for a sample is what does so in `completed`, an observation of the same recording under
+    // a model that explains more: noise of a model that lacks a filter is far too loud where the filter
+    // leaves little. Where the sensor moves, or a hole of this observation is none there, it is drawn as ever.
+    Observation(std::shared_ptr<const Prediction> prediction, const Observation& completed);
 
     // The same recording, with the same draws, under another model for the same world.
     Observation under(const SensorModel& model) const {
@@ -60,7 +64,12 @@ public:
     const std::vector<std::size_t>& missing() const { return missing_; }
 
 private:
-    void observe(std::size_t axis, CosineTransform& transform);
+    Observation(std::shared_ptr<const Prediction> prediction, std::shared_ptr<const Recording> recording,
+                std::uint64_t seed, ReferenceNoise reference_noise, const Observation* completed);
+    bool can_complete(const Observation& other) const;
+    void copy_stand_ins(const Observation& from, std::size_t axis, std::vector<float>& residual_rad_s) const;
+    // `completed` may be null.
+    void observe(std::size_t axis, const Observation* completed, CosineTransform& transform);
     void fit_model(std::size_t axis, CosineTransform& transform);
     double drawn_clock_rel() const;
     void take_expected_off(std::size_t axis, std::vector<float>& residual_rad_s) const;

@@ -59,19 +59,21 @@ SensorModel CauseSet::model_with_all_but(std::size_t left_out) const {
 }
 
 Hypotheses CauseSet::without(std::size_t left_out) const {
-    return examine(first_.prediction->with(model_with_all_but(left_out)), recording_, options_.seed,
-                   options_.threads);
+    auto prediction = first_.prediction->with(model_with_all_but(left_out));
+    return examine(prediction, std::make_shared<const Observation>(prediction, observed()), options_.threads);
 }
 
 std::optional<Finding> CauseSet::found_again(std::size_t cause) const {
-    std::optional<Finding> found =
-        examine_for(causes[cause].finding.effect, first_.prediction->with(model_with_all_but(cause)),
-                    recording_, options_.seed);
+    std::optional<Finding> found = examine_for(
+        causes[cause].finding.effect, first_.prediction->with(model_with_all_but(cause)), observed());
     if (found) { found->evidence_nats = evidence_less_bias_nats(*found); }
     return found;
 }
 
-Hypotheses CauseSet::with_causes() const { return without(causes.size()); }
+Hypotheses CauseSet::with_causes() const {
+    auto prediction = first_.prediction->with(model_with_all_but(causes.size()));
+    return examine(prediction, recording_, options_.seed, options_.threads);
+}
 
 Observation CauseSet::observed() const {
     return {first_.prediction->with(model_with_all_but(causes.size())), recording_, options_.seed};

@@ -46,7 +46,8 @@ public:
     SensorModel without_causes;
     NullBias null_bias;  // is taken off findings beside the main cause
 
-    // What the causes leave, or all but one of them.
+    // What the causes leave, or all but one of them: holes are filled as with all, or the others would be
+    // fitted to noise that only the model without that cause has.
     Hypotheses with_causes() const;
     Hypotheses without(std::size_t left_out) const;
     // What the effect of one of them finds there, less bias.

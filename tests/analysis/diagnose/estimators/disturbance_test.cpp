@@ -1,8 +1,13 @@
 #include "analysis/diagnose/estimators/disturbance.hpp"
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/diagnosis.hpp"
+#include "analysis/diagnose/selection/forward_selection.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -34,6 +39,28 @@ TEST(Disturbance, IsTheOnlyCauseOfBumps) {
 }
 
 // A second recording's bumps lie elsewhere: they are found in it and left out as well.
+// The stretches that are left out are filled with noise. That of a model without the filter is louder than
+// the filter leaves it, and looks like the floor of coloured noise.
+TEST(Disturbance, IsTheOnlyCauseBesideAFilter) {
+    const SensorModel model = calibrated_sensor();
+    const SensorModel sensor = with_effect(
+        with_effect(model, "disturbance",
+                    {{"per_hour", 30.0}, {"size_dps", 2.0}, {"decay_s", 0.17}, {"f_hz", 20.0}}, {}),
+        "lowpass", {{"fc_hz", 5.7}, {"order", 1.0}}, {});
+    const auto recording = recorded(sensor, 60'000, 3);
+    const Hypotheses first = examine(prediction_of(recording, model), recording, 1, 1);
+    const auto selection = select_causes(first, recording, {});
+    std::vector<std::string> names;
+    for (const FoundCause& cause : selection->causes) { names.push_back(cause.finding.effect); }
+    std::ranges::sort(names);
+    EXPECT_EQ(names, (std::vector<std::string>{"disturbance", "lowpass"}));
+    for (const FoundCause& cause : selection->causes) {
+        if (cause.finding.effect != "lowpass") { continue; }
+        EXPECT_NEAR(cause.finding.entries.front().params.at("fc_hz"), 5.7,
+                    4.0 * cause.finding.sd.front().at("fc_hz"));
+    }
+}
+
 TEST(Disturbance, IsLeftOutOfASecondRecordingToo) {
     const SensorModel model = calibrated_sensor();
     DiagnosisOptions options;

@@ -113,6 +113,40 @@ TEST(Observation, FillsHolesWithoutLosingPower) {
     }
 }
 
+// A twentieth of the samples are missing, and the sensor's filter leaves a thousandth of the noise near half
+// the rate. What a model without the filter puts in their place is many times louder there.
+TEST(Observation, CompletedUnderABetterModelHasNoNoiseOfItsOwnInTheHoles) {
+    SensorModel model = calibrated_sensor();
+    model.lsb_rad_s = 0.0;
+    const SensorModel filtered = with_effect(model, "lowpass", {{"fc_hz", 8.0}, {"order", 2.0}});
+    const Recording whole = *recorded(filtered, 40000, 33);
+    Recording holed = whole;
+    holed.segments.clear();
+    const Segment& all = whole.segments.front();
+    for (std::size_t row = 0; row + 200 <= all.count; row += 200) {
+        holed.segments.push_back({row, 190, all.first_index + static_cast<std::int64_t>(row)});
+    }
+    const auto recording = std::make_shared<const Recording>(std::move(holed));
+    const auto without_filter = prediction_of(recording, model);
+    const Observation with_filter(without_filter->with(filtered), recording, 1);
+    const auto power_near_half_the_rate = [](const Observation& seen) {
+        double power = 0.0;
+        double count = 0.0;
+        const SpectralBins& bins = seen.prediction().bins();
+        for (std::size_t i = 0; i < bins.size(); ++i) {
+            if (bins[i].f_hz < 35.0) { continue; }
+            power += bins[i].count() * seen.axis(0).power[i];
+            count += bins[i].count();
+        }
+        return power / count;
+    };
+    const double wanted = power_near_half_the_rate(
+        Observation(prediction_of(std::make_shared<const Recording>(whole), filtered),
+                    std::make_shared<const Recording>(whole), 1));
+    EXPECT_NEAR(power_near_half_the_rate(Observation(without_filter, with_filter)) / wanted, 1.0, 0.1);
+    EXPECT_GT(power_near_half_the_rate(Observation(without_filter, recording, 1)) / wanted, 3.0);
+}
+
 // What stands in for missing samples is no evidence: the likelihoods of two levels of white noise differ by
 // those of the samples that are there. With every fifth one missing, stand-ins would add some 200 nats of
 // their own.
