@@ -46,7 +46,8 @@ public:
                 std::uint64_t seed, ReferenceNoise reference_noise = ReferenceNoise::recorded);
     // What stands in for a sample is what does so in `completed`, an observation of the same recording under
     // a model that explains more: noise of a model that lacks a filter is far too loud where the filter
-    // leaves little. Where the sensor moves, or a hole of this observation is none there, it is drawn as ever.
+    // leaves little. Where the sensor moves, or a hole of this observation is none there, it is drawn as
+    // ever.
     Observation(std::shared_ptr<const Prediction> prediction, const Observation& completed);
 
     // The same recording, with the same draws, under another model for the same world.
