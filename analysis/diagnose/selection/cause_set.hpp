@@ -46,8 +46,8 @@ public:
     SensorModel without_causes;
     NullBias null_bias;  // is taken off findings beside the main cause
 
-    // What the causes leave, or all but one of them: holes are filled as with all, or the others would be
-    // fitted to noise that only the model without that cause has.
+    // What the causes leave, or all but one of them. Holes are filled as with all: noise of the model without
+    // the cause would be fitted, too.
     Hypotheses with_causes() const;
     Hypotheses without(std::size_t left_out) const;
     // What the effect of one of them finds there, less bias.
@@ -83,7 +83,7 @@ public:
     // tells nothing of this one.
     bool is_of_another(const Finding& finding, std::size_t own) const;
     bool is_noise(const Finding& finding) const;
-    // Where the cause is that the finding was, no value where it is none any more.
+    // The place of the cause with the finding's effect and line; no value where there is none.
     std::optional<std::size_t> place_of(const Finding& finding) const;
 
     // Of these findings, those that may stand in the cause's place.
@@ -117,6 +117,10 @@ public:
     bool settle_responses();
     // Fits the noise spectra among the causes together.
     void settle_spectra();
+    // Leaves the cause out where all measures, the other spectra fitted together without it, lose less than
+    // strong evidence. `with_it_nats` is the worth with it. The function returns the worth without it; no
+    // value where the cause stays. Codes stay, and so does what changes the spectra's likelihood.
+    std::optional<double> leave_out_if_needless(std::size_t place, double with_it_nats);
 
 private:
     double evidence_nats_of(const std::vector<std::size_t>& places) const;

@@ -54,7 +54,8 @@ public:
             std::optional<bool> grown = freed ? true : take_further(*latest);
             if (grown && !*grown) { grown = exchange(); }
             if (!grown) { return std::nullopt; }
-            if (!*grown && leave_out_needless()) { grown = true; }
+            if (!*grown) { grown = leave_out_needless(); }
+            if (!grown) { return std::nullopt; }
             if (!*grown) { break; }
             forget_null_bias();
             latest = set_.with_causes();
@@ -294,7 +295,7 @@ private:
         const std::vector<FoundCause> each = was_exchanged_ ? std::vector<FoundCause>{} : set_.causes;
         for (const FoundCause& cause : each) {
             const std::optional<std::size_t> place = set_.place_of(cause.finding);
-            if (!place) { continue; }  // gone by an exchange of another
+            if (!place) { continue; }  // an exchange has removed it
             for (const Finding& rival : set_.rivals_to_try(set_.causes[*place])) {
                 const std::optional<bool> is_better = exchange_for(*place, rival);
                 if (!is_better) { return std::nullopt; }
@@ -308,32 +309,24 @@ private:
         return any;
     }
 
-    // A cause has its evidence beside the others as they are. Without it, the spectra that are fitted
-    // together may explain what it does: then it is left out. Whether any is.
-    bool leave_out_needless() {
+    // A cause has its evidence beside the others as they are. Fitted together without it, the other spectra
+    // may explain as much: then it is left out. The function returns whether any is; no value when ended
+    // early.
+    std::optional<bool> leave_out_needless() {
         bool any = false;
+        double worth_nats = set_.worth_nats(set_.observed());
         for (std::size_t i = 0; set_.causes.size() > 1 && i < set_.causes.size();) {
-            if (is_needless(i)) {
+            if (!told()) { return std::nullopt; }
+            const std::optional<double> without_nats = set_.leave_out_if_needless(i, worth_nats);
+            if (without_nats) {
+                worth_nats = *without_nats;
                 any = true;
             } else {
                 ++i;
             }
         }
+        if (any) { are_weighed_ = false; }
         return any;
-    }
-
-    // Takes the cause out where the others, fitted again, explain all measures nearly as well.
-    bool is_needless(std::size_t place) {
-        if (CauseSet::is_of_codes(set_.causes[place].finding)) { return false; }
-        const std::vector<FoundCause> before = set_.causes;
-        const double before_nats = set_.worth_nats(set_.observed());
-        set_.causes.erase(set_.causes.begin() + static_cast<std::ptrdiff_t>(place));
-        set_.settle_spectra();
-        const bool is_needless =
-            CauseSet::change_likelihood_among(set_.causes) == CauseSet::change_likelihood_among(before) &&
-            set_.worth_nats(set_.observed()) > before_nats - decisions.strong_nats;
-        if (!is_needless) { set_.causes = before; }
-        return is_needless;
     }
 
     // Whether the exchange stays.
@@ -450,8 +443,8 @@ private:
         return true;
     }
 
-    // The spectra together, then each cause by its own estimator, twice: that takes an axis off a cause that
-    // the spectra no longer need it on. False when ended early.
+    // Fits the spectra together and then each cause by its own estimator, twice: after the first, estimators
+    // drop the axes that a cause is not needed on any more. False when ended early.
     bool refit_in_turns() {
         for (int turn = 0; turn < 2; ++turn) {
             set_.settle_spectra();

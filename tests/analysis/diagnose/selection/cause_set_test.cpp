@@ -1,6 +1,7 @@
 #include "analysis/diagnose/selection/cause_set.hpp"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,56 @@ TEST_F(CauseSetTest, GivesTheAxesThatACauseOfOthersHasNot) {
 TEST_F(CauseSetTest, GivesNothingWhereNothingIsSeen) {
     set.causes = {{finding("temp_cubic", {0.0, 150.0, 120.0}), {finding("rrw_missing", {40.0, 1.0, 2.0})}}};
     EXPECT_TRUE(set.rivals_to_try(set.causes.front()).empty());
+}
+
+// An exchange may remove a cause and move others; of causes that recur the line tells which one it is.
+TEST_F(CauseSetTest, FindsTheCauseThatAFindingWas) {
+    const auto tone_at = [](double f_hz) {
+        Finding tone = finding("tone", {20.0, 0.0, 0.0});
+        tone.where.freq_hz = Span{f_hz, f_hz};
+        return tone;
+    };
+    set.causes = {{finding("temp_cubic", {10.0, 0.0, 0.0}), {}}, {tone_at(12.0), {}}, {tone_at(31.0), {}}};
+    EXPECT_EQ(set.place_of(tone_at(31.0)), 2U);
+    EXPECT_EQ(set.place_of(finding("temp_cubic", {30.0, 0.0, 0.0})), 0U);
+    EXPECT_EQ(set.place_of(tone_at(20.0)), std::nullopt);
+    EXPECT_EQ(set.place_of(finding("lowpass", {30.0, 0.0, 0.0})), std::nullopt);
+}
+
+// A filter with a wrong corner, and a level of the white noise that makes up for it: needed as long as the
+// corner stays.
+TEST(CauseSetOfSpectra, LeavesOutWhatTheOthersExplainFittedAgain) {
+    const SensorModel model = calibrated_sensor();
+    const SensorModel sensor = with_effect(with_effect(model, "lowpass", {{"fc_hz", 8.0}, {"order", 1.0}}),
+                                           "gauss_markov", {{"sigma_dps", 0.01}, {"tau_s", 1.0}});
+    const auto recording = recorded(sensor, 30'000, 5);
+    const Hypotheses first = examine(prediction_of(recording, model), recording, 1, 1);
+    CauseSet set(first, recording, {});
+    const auto take = [&](const char* effect) {
+        const auto found = examine_for(
+            effect, first.prediction->with(set.model_with_all_but(set.causes.size())), set.observed());
+        ASSERT_TRUE(found) << effect;
+        set.causes.push_back({*found, {}});
+    };
+    take("lowpass");
+    take("gauss_markov");
+    for (EffectModel& entry : set.causes.front().finding.entries) { entry.params.at("fc_hz") *= 1.1; }
+    take("arw_scale");
+    const std::vector<FoundCause> before = set.causes;
+    const double before_nats = set.worth_nats(set.observed());
+
+    set.causes = {before[0], before[1]};
+    EXPECT_LT(set.worth_nats(set.observed()), before_nats - 100.0);  // needed beside the others as they are
+    set.causes = before;
+    const std::optional<double> without_nats = set.leave_out_if_needless(2, before_nats);
+    ASSERT_TRUE(without_nats);
+    EXPECT_DOUBLE_EQ(*without_nats, set.worth_nats(set.observed()));
+    ASSERT_EQ(set.causes.size(), 2U);
+    EXPECT_NEAR(set.causes.front().finding.entries.front().params.at("fc_hz"), 8.0, 0.15);
+
+    set.causes = before;
+    EXPECT_FALSE(set.leave_out_if_needless(1, before_nats));  // nothing else is a second slow
+    EXPECT_EQ(set.causes.size(), 3U);
 }
 
 }  // namespace
