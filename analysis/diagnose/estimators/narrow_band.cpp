@@ -29,9 +29,6 @@ constexpr std::size_t narrowest = 8;
 constexpr double bins_per_width = 8.0;
 // To either side of the middle, in widths: beyond, a Lorentzian has a fiftieth of itself.
 constexpr double finely_within_widths = 16.0;
-// A spectrum does not tell how fast a line wanders whose density it shows: what machines that hold their
-// speed by hand or by load take.
-constexpr double wander_s = 30.0;
 
 }  // namespace gyrolog::resolution
 
@@ -165,7 +162,7 @@ public:
         for (const std::size_t axis : prediction_->axes()) {
             const std::optional<Band> start = scan(observation.axis(axis));
             if (!start) { continue; }
-            for (const double wander_s : {0.0, resolution::wander_s}) {
+            for (const double wander_s : {0.0, plausible_wander_s()}) {
                 Band from = *start;
                 from.wander_s = wander_s;
                 BandFit fit = fitted(observation, {axis}, {from});
@@ -182,6 +179,12 @@ private:
     std::size_t length() const { return prediction_->length(); }
     double per_hz() const { return coefficients_per_hz(*prediction_); }
     double narrowest_hz() const { return narrowest_band_hz(*prediction_); }
+
+    // The density of a line does not tell how fast it wanders: the middle of what is plausible.
+    double plausible_wander_s() const {
+        const EffectParam& wander = param_of(effect_, "wander_s");
+        return std::sqrt(wander.plausible_from * wander.plausible_to);
+    }
 
     // Sums of the coefficients' squares in units of what is expected, and how many they are, up to each.
     struct Sums {

@@ -15,14 +15,14 @@
 // u and v the angles of the frequency and of f in a sample, and the integral of P from 0 to x
 // 2 atan(tan(x/2) / tanh(pi width T / 2)).
 //
-// With a time of wandering it is a line of constant height instead,
+// With wander_s above 0 it is a line of constant height instead,
 //
 //   sqrt(2) sigma cos(phase),   d phase / dt = 2 pi (f + s n(t)),
 //
-// n a first-order Gauss-Markov process of variance one and that correlation time. While s times it is well
-// over one, the line's density is the distribution of its frequency (R. Kubo, in Fluctuation, Relaxation and
-// Resonance in Magnetic Systems, 1962, "slow modulation"): Gaussian, of standard deviation
-// s = width / (2 sqrt(2 ln 2)), without a Lorentzian's skirts.
+// n a first-order Gauss-Markov process of variance one and correlation time wander_s. Where 2 pi s wander_s
+// is far above one, the line's density is the distribution of its frequency (R. Kubo, in Fluctuation,
+// Relaxation and Resonance in Magnetic Systems, 1962, "slow modulation"): Gaussian, with the standard
+// deviation s = width / (2 sqrt(2 ln 2)). It has no Lorentzian's skirts.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -142,7 +142,7 @@ constexpr EffectParam narrowband_params[] = {
                 "time",
      .range = EffectParam::Range::not_negative,
      .plausible_from = 10.0,
-     .plausible_to = 100.0,
+     .plausible_to = 90.0,
      .otherwise = 0.0},
 };
 
@@ -152,7 +152,8 @@ double share_up_to(double angle, double narrowness) {
     return turns + std::atan(narrowness * std::tan(0.5 * (angle - 2.0 * pi * turns))) / pi;
 }
 
-// Of the distribution of frequencies with its images at every multiple of the rate, from 0 to this one.
+// Of a normal distribution of frequencies and its images at the nearest multiples of the rate, from the
+// middle to this far off it.
 double gaussian_share_up_to(double off_hz, double spread_hz, double rate_hz) {
     double share = 0.0;
     for (int image = -3; image <= 3; ++image) {

@@ -58,6 +58,17 @@ TEST(NarrowBandShape, IsToldByItsSkirts) {
     }
 }
 
+// Behind the filter the skirts of a Lorentzian would be a hundred times the noise: other causes would be
+// found that make up for them.
+TEST(NarrowBands, AreTheOnlyCauseBesideAFilterThatLeavesLittle) {
+    SensorModel sensor = with_band(calibrated_sensor(), 34.0, 2.0, 0.006);
+    sensor.effects.back().params["wander_s"] = 2.0;
+    sensor = with_effect(sensor, "lowpass", {{"fc_hz", 7.3}, {"order", 2.0}}, {"x"});
+    for (std::uint64_t seed = 1; seed <= seeds_asked(2); ++seed) {
+        EXPECT_EQ(causes_of(sensor, 200 + seed), (Names{"lowpass", "narrowband"})) << "seed " << seed;
+    }
+}
+
 struct BandCase {
     double f_hz;
     double width_hz;
