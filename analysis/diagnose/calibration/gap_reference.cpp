@@ -63,14 +63,15 @@ namespace {
 
 using UsedSimulations = std::vector<const std::vector<GapCurve>*>;
 
-// By point: of the variance that z counts with at least, the part that the simulations do not have.
+// Returns, by point, the part of the square of the measure's least_sd by which the simulations' variance
+// falls short of it.
 std::vector<double> add_points(const UsedSimulations& used, std::size_t c, GapReference& reference) {
     const auto count = static_cast<double>(used.size());
     const GapCurve& first = (*used.front())[c];
     const std::size_t points = first.value.size();
     std::vector<double> mean(points, 0.0);
     std::vector<double> sd(points, 0.0);
-    std::vector<double> unseen(points, 0.0);
+    std::vector<double> missing(points, 0.0);
     for (std::size_t i = 0; i < points; ++i) {
         for (const auto* simulation : used) { mean[i] += (*simulation)[c].value[i] / count; }
         for (const auto* simulation : used) {
@@ -78,17 +79,17 @@ std::vector<double> add_points(const UsedSimulations& used, std::size_t c, GapRe
             sd[i] += off * off / (count - 1.0);
         }
         const double least = first.measure->least_sd;
-        unseen[i] = std::max(0.0, 1.0 - sd[i] / (least * least));
+        missing[i] = std::max(0.0, 1.0 - sd[i] / (least * least));
         sd[i] = std::max(std::sqrt(sd[i]), least);
     }
     reference.mean.push_back(std::move(mean));
     reference.sd.push_back(std::move(sd));
-    return unseen;
+    return missing;
 }
 
-// What the simulations do not have of a point's least scatter counts as a normal deviate's: their sums of
-// squares alone would take a point that is off by a hundredth of it for a wonder.
-void add_sums(const UsedSimulations& used, std::size_t c, const std::vector<double>& unseen,
+// To the mean and variance of the sum of squares each point adds what its variance is short of, as a normal
+// variable's: z counts it as there.
+void add_sums(const UsedSimulations& used, std::size_t c, const std::vector<double>& missing,
               GapReference& reference) {
     const auto count = static_cast<double>(used.size());
     double sum = 0.0;
@@ -108,7 +109,7 @@ void add_sums(const UsedSimulations& used, std::size_t c, const std::vector<doub
     for (double& sd : window_sd) { sd = std::max(std::sqrt(sd), 1.0); }
     double average = sum / count;
     double variance = std::max(squares / count - average * average, 0.0);
-    for (const double part : unseen) {
+    for (const double part : missing) {
         average += part;
         variance += 2.0 * part * part;
     }

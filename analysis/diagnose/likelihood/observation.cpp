@@ -299,7 +299,7 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
         if (!present_[slot]) { missing_.push_back(slot); }
     }
     const TransformPool::Lease transform = prediction_->transform();
-    if (completed != nullptr && !can_complete(*completed)) { completed = nullptr; }
+    if (completed != nullptr && !can_be_completed_by(*completed)) { completed = nullptr; }
     for (const std::size_t axis : prediction_->axes()) { observe(axis, completed, *transform); }
     // What moved before the recording began is not known, and a sensor that lags shows it.
     const double unknown_s = prediction_->moves() ? KnownMotionOptions{}.memory_s : 0.0;
@@ -309,7 +309,7 @@ Observation::Observation(std::shared_ptr<const Prediction> prediction,
     }
 }
 
-bool Observation::can_complete(const Observation& other) const {
+bool Observation::can_be_completed_by(const Observation& other) const {
     return !prediction_->moves() && std::ranges::includes(other.missing_, missing_);
 }
 

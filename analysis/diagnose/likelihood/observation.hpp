@@ -44,10 +44,9 @@ public:
     // draws what stands in holes.
     Observation(std::shared_ptr<const Prediction> prediction, std::shared_ptr<const Recording> recording,
                 std::uint64_t seed, ReferenceNoise reference_noise = ReferenceNoise::recorded);
-    // What stands in for a sample is what does so in `completed`, an observation of the same recording under
-    // a model that explains more: noise of a model that lacks a filter is far too loud where the filter
-    // leaves little. Where the sensor moves, or a hole of this observation is none there, it is drawn as
-    // ever.
+    // Of the same recording as `completed`, with the numbers that fill the holes there. Its model explains
+    // more: what a model without a filter would draw is too loud where the filter leaves little noise. Where
+    // the sensor moves, or `completed` has a sample in one of the holes, the holes are filled with draws.
     Observation(std::shared_ptr<const Prediction> prediction, const Observation& completed);
 
     // The same recording, with the same draws, under another model for the same world.
@@ -67,7 +66,7 @@ public:
 private:
     Observation(std::shared_ptr<const Prediction> prediction, std::shared_ptr<const Recording> recording,
                 std::uint64_t seed, ReferenceNoise reference_noise, const Observation* completed);
-    bool can_complete(const Observation& other) const;
+    bool can_be_completed_by(const Observation& other) const;
     void copy_stand_ins(const Observation& from, std::size_t axis, std::vector<float>& residual_rad_s) const;
     // `completed` may be null.
     void observe(std::size_t axis, const Observation* completed, CosineTransform& transform);

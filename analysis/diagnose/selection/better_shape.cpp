@@ -54,13 +54,10 @@ std::optional<BetterShape> better_shape(const CauseSelection& selection,
     std::vector<CauseSpan> places;
     for (std::size_t i = 0; i < all.size(); ++i) { places.push_back(all.subspan(i, 1)); }
     if (all.size() != 1) { places.push_back(all); }
-    const auto observed_without = [&](CauseSpan left_out) {
-        return Observation(given->with(model_without(selection, left_out)), recording, options.seed);
-    };
-    const Observation with = observed_without({});
+    const Observation with(given->with(model_without(selection, {})), recording, options.seed);
     std::vector<std::optional<BetterShape>> better(places.size());
     parallel_for(places.size(), options.threads, [&](std::size_t i) {
-        const Observation left = observed_without(places[i]);
+        const Observation left(given->with(model_without(selection, places[i])), with);
         const std::optional<NonparametricFit> shape = best_nonparametric(left, with);
         if (!shape) { return; }
         const double together_nats = log_likelihood_nats(with) - log_likelihood_nats(left);

@@ -13,6 +13,16 @@
 namespace gyrolog {
 namespace {
 
+// Of every `period` rows of a recording in one piece the first `kept`.
+std::shared_ptr<const Recording> with_holes(Recording recording, std::size_t period, std::size_t kept) {
+    const Segment all = recording.segments.front();
+    recording.segments.clear();
+    for (std::size_t row = 0; row + period <= all.count; row += period) {
+        recording.segments.push_back({row, kept, all.first_index + static_cast<std::int64_t>(row)});
+    }
+    return std::make_shared<const Recording>(std::move(recording));
+}
+
 TEST(Observation, IsWhiteWhereTheModelIsRight) {
     const SensorModel model = calibrated_sensor();
     const auto recording = recorded(draw_within_uncertainty(model, 3), 180000, 11);
@@ -119,14 +129,8 @@ TEST(Observation, CompletedUnderABetterModelHasNoNoiseOfItsOwnInTheHoles) {
     SensorModel model = calibrated_sensor();
     model.lsb_rad_s = 0.0;
     const SensorModel filtered = with_effect(model, "lowpass", {{"fc_hz", 8.0}, {"order", 2.0}});
-    const Recording whole = *recorded(filtered, 40000, 33);
-    Recording holed = whole;
-    holed.segments.clear();
-    const Segment& all = whole.segments.front();
-    for (std::size_t row = 0; row + 200 <= all.count; row += 200) {
-        holed.segments.push_back({row, 190, all.first_index + static_cast<std::int64_t>(row)});
-    }
-    const auto recording = std::make_shared<const Recording>(std::move(holed));
+    const auto whole = recorded(filtered, 40000, 33);
+    const auto recording = with_holes(*whole, 200, 190);
     const auto without_filter = prediction_of(recording, model);
     const Observation with_filter(without_filter->with(filtered), recording, 1);
     const auto power_near_half_the_rate = [](const Observation& seen) {
@@ -140,9 +144,7 @@ TEST(Observation, CompletedUnderABetterModelHasNoNoiseOfItsOwnInTheHoles) {
         }
         return power / count;
     };
-    const double wanted = power_near_half_the_rate(
-        Observation(prediction_of(std::make_shared<const Recording>(whole), filtered),
-                    std::make_shared<const Recording>(whole), 1));
+    const double wanted = power_near_half_the_rate(Observation(prediction_of(whole, filtered), whole, 1));
     EXPECT_NEAR(power_near_half_the_rate(Observation(without_filter, with_filter)) / wanted, 1.0, 0.1);
     EXPECT_GT(power_near_half_the_rate(Observation(without_filter, recording, 1)) / wanted, 3.0);
 }
@@ -158,14 +160,7 @@ TEST(Observation, HasTheLikelihoodOfTheSamplesThatAreThere) {
         axis.noise.B_rad_per_s = 0.0;
         axis.noise.K_rad_per_s_sqrt_s = 0.0;
     }
-    const Recording whole = *recorded(model, 20000, 32);
-    Recording holed = whole;
-    holed.segments.clear();
-    const Segment& all = whole.segments.front();
-    for (std::size_t row = 0; row + 5 <= all.count; row += 5) {
-        holed.segments.push_back({row, 4, all.first_index + static_cast<std::int64_t>(row)});
-    }
-    const auto recording = std::make_shared<const Recording>(std::move(holed));
+    const auto recording = with_holes(*recorded(model, 20000, 32), 5, 4);
     SensorModel louder = model;
     for (AxisModel& axis : louder.axes) { axis.noise.N_rad_per_sqrt_s *= 1.02; }
     const Observation seen(prediction_of(recording, model), recording, 1);
