@@ -108,14 +108,24 @@ TEST(MeasuredGap, HoldsEveryModelAgainstItsOwnSimulations) {
     EXPECT_GT(gap.shrink.value, 0.9);
 }
 
-// What is little at every point of the curves is seen by all of them together.
+// White noise of another size is told by the log likelihood ratio n (r - 1 - ln r) / 2, r the ratio of the
+// variances. The curves' points, of which each says little, find half of what they do together with their sum
+// along the cause's direction: 33 nats on average where no direction is looked along, 60 with it.
 TEST(MeasuredGap, SeesAWeakCauseByItsDirection) {
+    constexpr double factor = 1.04;
+    constexpr double ratio = factor * factor;
+    const double told_nats = 0.5 * static_cast<double>(samples) * (ratio - 1.0 - std::log(ratio));
+    constexpr std::uint64_t recordings = 8;
     SensorModel model = calibrated_sensor();
     model.sd_rel = {{"N", 1e-4}, {"B", 1e-4}, {"K", 1e-4}};
-    const auto recording = recorded(with_effect(model, "arw_scale", {{"factor", 1.04}}, {"x"}), samples, 56);
-    const Finding finding = finding_of("arw_scale", model, recording);
-    const MeasuredGap gap = measured(trial_of(model, recording, {finding}));
-    EXPECT_GT(gap.returning_nats.front(), 145.0) << "127 where no direction is looked along";
+    double mean_nats = 0.0;
+    for (std::uint64_t seed = 56; seed < 56 + recordings; ++seed) {
+        const auto recording =
+            recorded(with_effect(model, "arw_scale", {{"factor", factor}}, {"x"}), samples, seed);
+        const Finding finding = finding_of("arw_scale", model, recording);
+        mean_nats += measured(trial_of(model, recording, {finding})).returning_nats.front() / recordings;
+    }
+    EXPECT_GT(mean_nats, 2.0 * told_nats);
 }
 
 // A change of noise in the coefficients of one half alone, which no law of nature would make: what either
