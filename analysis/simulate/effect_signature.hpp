@@ -103,6 +103,10 @@ struct EffectSignature {
     std::span<const std::string_view> spectral{};
     // Those of them that all axes have in common.
     std::span<const std::string_view> common{};
+    // A further parameter of the spectrum, of which only these values are tried: its forms. 0: an entry does
+    // without it.
+    std::string_view form{};
+    std::span<const double> form_values{};
     // The coefficient of the model's slow noise, B or K, that the effect adds to; 0: none.
     char slow_coefficient = 0;
     // Changes the expected parts, one for each frequency, in place. The frequencies rise; what is narrower

@@ -162,7 +162,7 @@ public:
         for (const std::size_t axis : prediction_->axes()) {
             const std::optional<Band> start = scan(observation.axis(axis));
             if (!start) { continue; }
-            for (const double wander_s : {0.0, plausible_wander_s()}) {
+            for (const double wander_s : effect_.signature->form_values) {
                 Band from = *start;
                 from.wander_s = wander_s;
                 BandFit fit = fitted(observation, {axis}, {from});
@@ -179,12 +179,6 @@ private:
     std::size_t length() const { return prediction_->length(); }
     double per_hz() const { return coefficients_per_hz(*prediction_); }
     double narrowest_hz() const { return narrowest_band_hz(*prediction_); }
-
-    // The density of a line does not tell how fast it wanders: the middle of what is plausible.
-    double plausible_wander_s() const {
-        const EffectParam& wander = param_of(effect_, "wander_s");
-        return std::sqrt(wander.plausible_from * wander.plausible_to);
-    }
 
     // Sums of the coefficients' squares in units of what is expected, and how many they are, up to each.
     struct Sums {

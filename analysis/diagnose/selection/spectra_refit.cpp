@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -42,51 +43,49 @@ struct SpectralParameter {
     double step_most = resolution::log_step_most;  // of the logarithm
 };
 
+// The effects' parameter of which only some values are tried.
+struct SpectralForm {
+    std::vector<std::size_t> model_entries;
+    std::string name;
+    std::span<const double> values;
+};
+
+// A point of the search, and what the recording says there.
+struct SpectraPoint {
+    SensorModel model;
+    std::vector<double> logs;  // of the parameters
+    std::array<NoiseNuisance, 3> noise;
+    double nats = 0.0;
+};
+
 class SpectraFit {
 public:
     SpectraFit(const Observation& seen, std::size_t first_entry, std::vector<Finding> findings,
                const SpectraRefitOptions& options)
-        : seen_(seen), prediction_(seen.prediction()), options_(options), findings_(std::move(findings)) {
+        : seen_(seen),
+          prediction_(seen.prediction()),
+          options_(options),
+          first_entry_(first_entry),
+          findings_(std::move(findings)) {
         std::size_t model_entry = first_entry;
         for (std::size_t f = 0; f < findings_.size(); ++f) {
-            for (std::size_t e = 0; e < findings_[f].entries.size(); ++e, ++model_entry) {
-                add_parameters(f, e, model_entry);
+            const std::size_t before = places_.size();
+            for (std::size_t e = 0; e < findings_[f].entries.size(); ++e) {
+                add_parameters(f, e, model_entry + e);
             }
+            if (places_.size() > before) { add_form(f, model_entry); }
+            model_entry += findings_[f].entries.size();
         }
-        for (const std::size_t axis : prediction_.axes()) { noise_[axis] = seen.axis(axis).noise; }
     }
 
     std::vector<Finding> run() {
         if (places_.size() < 2) { return std::move(findings_); }
-        std::vector<double> logs;
-        for (const SpectralParameter& place : places_) {
-            logs.push_back(
-                std::log(findings_[place.finding].entries[place.entries.front()].params.at(place.name)));
-        }
-        double nats = fitted(model_at(logs));
-        for (int step = 0; step < resolution::spectra_steps_most; ++step) {
-            const auto [by, promised_nats] = step_from(logs);
-            if (!(promised_nats > resolution::spectra_settled_nats)) { break; }
-            bool better = false;
-            for (int i = 0; i < resolution::spectra_shortenings_most && !better; ++i) {
-                const std::vector<double> there = moved(logs, by, std::ldexp(1.0, -i));
-                const std::array<NoiseNuisance, 3> noise = noise_;
-                const SensorModel model = model_at(there);
-                const std::optional<double> nats_there =
-                    has_bands(model) ? std::optional(fitted(model)) : std::nullopt;
-                better = nats_there && *nats_there > nats;
-                if (better) {
-                    logs = there;
-                    nats = *nats_there;
-                } else {
-                    noise_ = noise;
-                }
-            }
-            if (!better) { break; }
-        }
-        for (std::size_t i = 0; i < places_.size(); ++i) {
-            for (const std::size_t entry : places_[i].entries) {
-                findings_[places_[i].finding].entries[entry].params.at(places_[i].name) = std::exp(logs[i]);
+        SpectraPoint best = climbed(start());
+        while (std::optional<SpectraPoint> better = of_another_form(best)) { best = *std::move(better); }
+        std::size_t model_entry = first_entry_;
+        for (Finding& finding : findings_) {
+            for (EffectModel& entry : finding.entries) {
+                entry.params = best.model.effects[model_entry++].params;
             }
         }
         return std::move(findings_);
@@ -97,6 +96,72 @@ private:
         std::vector<double> by;
         double promised_nats = 0.0;
     };
+
+    SpectraPoint start() const {
+        SpectraPoint point{prediction_.model(), {}, {}, 0.0};
+        for (const SpectralParameter& place : places_) {
+            point.logs.push_back(
+                std::log(point.model.effects[place.model_entries.front()].params.at(place.name)));
+        }
+        for (const std::size_t axis : prediction_.axes()) { point.noise[axis] = seen_.axis(axis).noise; }
+        return point;
+    }
+
+    // The top of the hill that the point is on.
+    SpectraPoint climbed(SpectraPoint from) const {
+        SpectraPoint best = fitted(std::move(from));
+        for (int step = 0; step < resolution::spectra_steps_most; ++step) {
+            const auto [by, promised_nats] = step_from(best);
+            if (!(promised_nats > resolution::spectra_settled_nats)) { break; }
+            bool better = false;
+            for (int i = 0; i < resolution::spectra_shortenings_most && !better; ++i) {
+                SpectraPoint there = best;
+                there.logs = moved(best.logs, by, std::ldexp(1.0, -i));
+                there.model = model_at(best.model, there.logs);
+                if (!has_bands(there.model)) { continue; }
+                there = fitted(std::move(there));
+                better = there.nats > best.nats;
+                if (better) { best = std::move(there); }
+            }
+            if (!better) { break; }
+        }
+        return best;
+    }
+
+    // The best that one effect's other form leads to, if it is better.
+    std::optional<SpectraPoint> of_another_form(const SpectraPoint& than) const {
+        std::optional<SpectraPoint> best;
+        for (const SpectralForm& form : forms_) {
+            for (const double value : form.values) {
+                SpectraPoint from = than;
+                for (const std::size_t entry : form.model_entries) {
+                    set_form(from.model.effects[entry], form.name, value);
+                }
+                SpectraPoint there = climbed(std::move(from));
+                const double least_nats = best ? best->nats : than.nats + resolution::spectra_settled_nats;
+                if (there.nats > least_nats) { best = std::move(there); }
+            }
+        }
+        return best;
+    }
+
+    static void set_form(EffectModel& entry, const std::string& name, double value) {
+        if (value == 0.0) {
+            entry.params.erase(name);
+        } else {
+            entry.params[name] = value;
+        }
+    }
+
+    void add_form(std::size_t f, std::size_t first_entry) {
+        const EffectSignature& signature = *find_effect(findings_[f].effect)->signature;
+        if (signature.form_values.empty()) { return; }
+        SpectralForm form{{}, std::string(signature.form), signature.form_values};
+        for (std::size_t e = 0; e < findings_[f].entries.size(); ++e) {
+            form.model_entries.push_back(first_entry + e);
+        }
+        forms_.push_back(std::move(form));
+    }
 
     void add_parameters(std::size_t f, std::size_t e, std::size_t model_entry) {
         const Finding& finding = findings_[f];
@@ -141,8 +206,7 @@ private:
         });
     }
 
-    SensorModel model_at(const std::vector<double>& logs) const {
-        SensorModel model = prediction_.model();
+    SensorModel model_at(SensorModel model, const std::vector<double>& logs) const {
         for (std::size_t i = 0; i < places_.size(); ++i) {
             for (const std::size_t entry : places_[i].model_entries) {
                 model.effects[entry].params.at(places_[i].name) = std::exp(logs[i]);
@@ -160,22 +224,23 @@ private:
         return logs;
     }
 
-    // The nuisance is fitted as well.
-    double fitted(const SensorModel& model) {
-        double nats = 0.0;
+    // The nuisance is.
+    SpectraPoint fitted(SpectraPoint point) const {
+        point.nats = 0.0;
         for (const std::size_t axis : prediction_.axes()) {
-            noise_[axis] = fit_nuisance(prediction_.bins(), prediction_.parts_of(model, axis),
-                                        seen_.axis(axis).power, noise_uncertainty(model, axis), noise_[axis]);
-            nats += noise_[axis].log_likelihood_nats;
+            point.noise[axis] =
+                fit_nuisance(prediction_.bins(), prediction_.parts_of(point.model, axis),
+                             seen_.axis(axis).power, noise_uncertainty(point.model, axis), point.noise[axis]);
+            point.nats += point.noise[axis].log_likelihood_nats;
         }
-        return nats;
+        return point;
     }
 
-    Step step_from(const std::vector<double>& logs) const {
+    Step step_from(const SpectraPoint& point) const {
         const std::size_t count = places_.size();
         Matrix information(count, count);
         std::vector<double> gradient(count, 0.0);
-        for (const std::size_t axis : prediction_.axes()) { add_axis(logs, axis, information, gradient); }
+        for (const std::size_t axis : prediction_.axes()) { add_axis(point, axis, information, gradient); }
         Step step;
         step.by = solve_symmetric(information, gradient);
         for (std::size_t i = 0; i < count; ++i) { step.promised_nats += 0.5 * gradient[i] * step.by[i]; }
@@ -184,11 +249,11 @@ private:
 
     // Of one axis, about the parameters with the nuisance free: Schur's complement of the information about
     // both. At the nuisance's most likely the gradient along it is nothing.
-    void add_axis(const std::vector<double>& logs, std::size_t axis, Matrix& information,
+    void add_axis(const SpectraPoint& point, std::size_t axis, Matrix& information,
                   std::vector<double>& gradient) const {
-        const SensorModel model = model_at(logs);
+        const SensorModel& model = point.model;
         const std::array<double, 3> sd_rel = noise_uncertainty(model, axis);
-        const NoiseNuisance& noise = noise_[axis];
+        const NoiseNuisance& noise = point.noise[axis];
         const std::vector<SpectralParts> parts = prediction_.parts_of(model, axis);
         std::vector<double> density(parts.size());
         expected_density(parts, sd_rel, noise.z, density);
@@ -200,9 +265,9 @@ private:
                 return acts_on(model.effects[entry], axis);
             });
             if (!acts) { continue; }
-            std::vector<double> more = logs;
+            std::vector<double> more = point.logs;
             more[i] += resolution::log_step;
-            expected_density(prediction_.parts_of(model_at(more), axis), sd_rel, noise.z, there);
+            expected_density(prediction_.parts_of(model_at(model, more), axis), sd_rel, noise.z, there);
             own.push_back(i);
             slopes.push_back(log_slope(density, there, resolution::log_step));
         }
@@ -261,9 +326,10 @@ private:
     const Observation& seen_;
     const Prediction& prediction_;
     SpectraRefitOptions options_;
+    std::size_t first_entry_;
     std::vector<Finding> findings_;
     std::vector<SpectralParameter> places_;
-    std::array<NoiseNuisance, 3> noise_;
+    std::vector<SpectralForm> forms_;
 };
 
 }  // namespace

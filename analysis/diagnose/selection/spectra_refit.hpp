@@ -7,7 +7,8 @@
 // Whittle's, with N, B and K of each axis at their most likely (likelihood/noise_nuisance.hpp). The search is
 // Fisher scoring (P. J. Green, J. R. Statist. Soc. B 46 (1984) 149) with the information
 //   1/2 sum_bins n (d ln S / d a) (d ln S / d b)
-// about the parameters and the nuisance, which has its prior.
+// about the parameters and the nuisance, which has its prior. Where it ends, each effect's other forms (a
+// filter's order) are tried, all parameters fitted again, until none is better.
 #pragma once
 
 #include <cstddef>

@@ -250,6 +250,7 @@ void lowpass_spectrum(std::span<const double> f_hz, double rate_hz, const Effect
 }
 
 constexpr std::string_view lowpass_fitted[] = {"fc_hz"};
+constexpr double lowpass_orders[] = {1.0, 2.0};
 constexpr TrialValues first_order_values[] = {{.param = "order", .from = 1.0, .to = 1.0, .count = 1},
                                               {.param = "fc_hz", .from = 4.0, .to = 300.0, .count = 18}};
 constexpr TrialValues second_order_values[] = {{.param = "order", .from = 2.0, .to = 2.0, .count = 1},
@@ -261,6 +262,8 @@ constexpr EffectSignature lowpass_signature = {
     .folds = true,
     .trials = lowpass_trials,
     .spectral = lowpass_fitted,
+    .form = "order",
+    .form_values = lowpass_orders,
     .spectrum = lowpass_spectrum,
     .words = "A low-pass filter of order {order} at {fc_hz} is missing in the model",
     .noun = "a low-pass filter at {fc_hz}",

@@ -198,11 +198,16 @@ void narrowband_spectrum(std::span<const double> f_hz, double rate_hz, const Eff
 constexpr std::string_view narrowband_fitted[] = {"f_hz", "width_hz", "sigma_dps"};
 constexpr std::span<const std::string_view> narrowband_common = std::span(narrowband_fitted).first(2);
 
+// The density of a line does not tell how fast it wanders: the geometric middle of what is plausible.
+constexpr double narrowband_wander_s[] = {0.0, 30.0};
+
 constexpr EffectSignature narrowband_signature = {
     .method = EvidenceMethod::narrow_band,
     .folds = true,
     .spectral = narrowband_fitted,
     .common = narrowband_common,
+    .form = "wander_s",
+    .form_values = narrowband_wander_s,
     .spectrum = narrowband_spectrum,
     .words =
         "Noise of {sigma_dps} stands about {f_hz}, {width_hz} wide (a resonance, or a line that wanders); "

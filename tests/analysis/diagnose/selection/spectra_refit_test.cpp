@@ -186,6 +186,18 @@ TEST_P(SpectraRefitOfABand, ShortensAStepThatLeadsTooFar) {
     }
 }
 
+// Each beside nothing but what the other left: a filter of the wrong order, a line that wanders for noise.
+TEST_P(SpectraRefitOfABand, FindsTheFormOfEach) {
+    std::vector<Finding> begun = begun_at(5.3, 33.5, 8.7, 0.8);
+    begun[0].entries[0].params.at("order") = 1.0;
+    for (EffectModel& entry : begun[1].entries) { entry.params["wander_s"] = 30.0; }
+    const std::vector<Finding> refit = refit_spectra(observed(begun), white_only().effects.size(), begun);
+    EXPECT_EQ(param_at(refit[0], 0, "order"), 2.0);
+    for (const EffectModel& entry : refit[1].entries) { EXPECT_FALSE(entry.params.contains("wander_s")); }
+    EXPECT_NEAR(param_at(refit[0], 0, "fc_hz"), 8.0, 0.15);
+    EXPECT_GT(log_likelihood(refit), log_likelihood(filter_and_band(8.0)));
+}
+
 // Several of such lines would lie in one bin, which does not tell where in it one is.
 TEST_P(SpectraRefitOfABand, LeavesALineThatTheBinsDoNotResolve) {
     std::vector<Finding> begun = begun_at(6.0, 33.0, 0.3, 1.0);
