@@ -21,9 +21,14 @@ struct SpectralParts {
     double white = 0.0;
     double flicker = 0.0;
     double walk = 0.0;
-    double other = 0.0;  // quantisation, the reference's noise, what effects add
+    // What effects add before the sensor's filter: white noise, and slow processes.
+    double added_white = 0.0;
+    double added_slow = 0.0;
+    double other = 0.0;  // after it: quantisation, the reference's noise, bands
 
-    double sum() const { return white + flicker + walk + other; }
+    // What the coefficients N, B and K do not scale.
+    double beside_coefficients() const { return added_white + added_slow + other; }
+    double sum() const { return white + flicker + walk + beside_coefficients(); }
 };
 
 // The parameters of one entry, with the effect's own values for those that it leaves out.

@@ -45,7 +45,16 @@ struct Statistics {
 class SharedNoiseEstimator final : public Estimator {
 public:
     SharedNoiseEstimator(const EffectDefinition& effect, std::shared_ptr<const Prediction> prediction)
-        : effect_(effect), prediction_(std::move(prediction)) {}
+        : effect_(effect), prediction_(std::move(prediction)) {
+        const SensorModel of_one = with_effect_of_one();
+        for (const std::size_t axis : prediction_->axes()) {
+            const std::vector<SpectralParts> parts = prediction_->parts_of(of_one, axis);
+            for (std::size_t i = 0; i < parts.size(); ++i) {
+                const double more = parts[i].added_white - prediction_->parts(axis)[i].added_white;
+                passed_[axis].push_back(std::sqrt(std::max(more, 0.0)) / rad_per_deg);
+            }
+        }
+    }
 
     std::optional<Finding> find(const Observation& observation) const override {
         const std::optional<Statistics> statistics = statistics_of(observation);
@@ -72,6 +81,14 @@ public:
 private:
     // Of the freedom to choose axes, and gains alike or not.
     double choice_cost_nats() const { return std::log(prediction_->axes().size() > 2 ? 8.0 : 2.0); }
+
+    SensorModel with_effect_of_one() const {
+        SensorModel model = prediction_->model();
+        EffectModel entry{std::string(effect_.name), {}, {}, ""};
+        for (const EffectParam& param : effect_.params) { entry.params[std::string(param.name)] = 1.0; }
+        model.effects.push_back(std::move(entry));
+        return model;
+    }
 
     std::optional<Statistics> statistics_of(const Observation& observation) const {
         Statistics sum;
@@ -133,7 +150,7 @@ private:
         for (const std::size_t axis : prediction_->axes()) {
             const auto a = static_cast<Eigen::Index>(axis);
             sum.white[a] += count * white_at(observation, axis, bin);
-            sum.per_rad[a] += count * scale[axis] * std::sqrt(prediction_->rate_hz());
+            sum.per_rad[a] += count * scale[axis] * passed_[axis][bin] * std::sqrt(prediction_->rate_hz());
         }
     }
 
@@ -298,6 +315,8 @@ private:
 
     const EffectDefinition& effect_;
     std::shared_ptr<const Prediction> prediction_;
+    // By axis and bin: what the filters let through of the noise's amplitude.
+    std::array<std::vector<double>, 3> passed_;
 };
 
 }  // namespace

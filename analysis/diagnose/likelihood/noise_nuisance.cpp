@@ -53,7 +53,7 @@ Terms terms(const SpectralBins& bins, std::span<const SpectralParts> parts, std:
     const Eigen::Array3d factor = 1.0 + sd * z.array();
     for (std::size_t i = 0; i < bins.size(); ++i) {
         const Eigen::Array3d part(parts[i].white, parts[i].flicker, parts[i].walk);
-        const double density = (part * factor.square()).sum() + parts[i].other;
+        const double density = (part * factor.square()).sum() + parts[i].beside_coefficients();
         const double half = 0.5 * bins[i].count();
         const double ratio = power[i] / density;
         sum.log_likelihood_nats -= half * (std::log(density) + ratio);
@@ -81,7 +81,7 @@ void expected_density(std::span<const SpectralParts> parts, const std::array<dou
     }
     for (std::size_t i = 0; i < parts.size(); ++i) {
         density[i] = factor[0] * parts[i].white + factor[1] * parts[i].flicker + factor[2] * parts[i].walk +
-                     parts[i].other;
+                     parts[i].beside_coefficients();
     }
 }
 

@@ -54,8 +54,8 @@ SpectralParts own_parts(const SensorModel& model, std::size_t axis, bool moves, 
     // A step in the model's place has its own effect's part.
     const bool own_step = converter_step_rad_s(model, axis) == model.lsb_rad_s;
     const double step_rad_s = own_step ? model.lsb_rad_s : 0.0;
-    parts.other = step_rad_s * step_rad_s / (12.0 * rate_hz) +
-                  sampled_omega * sampled_omega * noise.Q_rad * noise.Q_rad / rate_hz;
+    parts.other = step_rad_s * step_rad_s / (12.0 * rate_hz);
+    parts.added_slow = sampled_omega * sampled_omega * noise.Q_rad * noise.Q_rad / rate_hz;
     // What the reference does not know of the motion is taken for the sensor's.
     if (moves) { parts.other += std::pow(reference_noise(model, axis), 2.0) / rate_hz; }
     return parts;
@@ -334,9 +334,11 @@ void Prediction::expect_spectrum() {
 std::vector<SpectralParts> Prediction::parts_of(const SensorModel& model, std::size_t axis) const {
     std::vector<SpectralParts> parts;
     for (const double f_hz : f_hz_) { parts.push_back(own_parts(model, axis, moves(), f_hz, rate_hz_)); }
-    for (const EffectModel& entry : model.effects) {
-        const EffectSignature* signature = find_effect(entry.effect)->signature;
-        if (signature != nullptr && signature->spectrum != nullptr && acts_on(entry, axis)) {
+    for (const ChainLink& link : signal_chain()) {
+        const EffectSignature* signature = link.effect == nullptr ? nullptr : link.effect->signature;
+        if (signature == nullptr || signature->spectrum == nullptr) { continue; }
+        for (const EffectModel& entry : model.effects) {
+            if (entry.effect != link.effect->name || !acts_on(entry, axis)) { continue; }
             signature->spectrum(f_hz_, rate_hz_, EffectValues(entry, axis), parts);
         }
     }

@@ -116,7 +116,8 @@ void biquad_spectrum(std::span<const double> f_hz, double rate_hz, const EffectV
         parts[i].white *= gain;
         parts[i].flicker *= gain;
         parts[i].walk *= gain;
-        parts[i].other *= gain;
+        parts[i].added_white *= gain;
+        parts[i].added_slow *= gain;
     }
 }
 

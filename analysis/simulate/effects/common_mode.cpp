@@ -58,7 +58,7 @@ void common_mode_spectrum(std::span<const double> /*f_hz*/, double /*rate_hz*/, 
                           std::span<SpectralParts> parts) {
     constexpr std::array<const char*, 3> gains = {"gain_x", "gain_y", "gain_z"};
     const double rad_per_sqrt_s = effect["N_dps_per_sqrt_hz"] * rad_per_deg * effect[gains[effect.axis()]];
-    for (SpectralParts& part : parts) { part.other += rad_per_sqrt_s * rad_per_sqrt_s; }
+    for (SpectralParts& part : parts) { part.added_white += rad_per_sqrt_s * rad_per_sqrt_s; }
 }
 
 constexpr EffectSignature common_mode_signature = {

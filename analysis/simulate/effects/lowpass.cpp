@@ -241,11 +241,13 @@ void lowpass_spectrum(std::span<const double> f_hz, double rate_hz, const Effect
         const double gain = filter.b * filter.b * std::norm(1.0 + filter.m * back) /
                             std::norm(1.0 - filter.phi_1 * back - filter.phi_2 * back * back);
         parts[i].white *= gain;
+        parts[i].added_white *= gain;
         // Slow noise has nothing that could fold.
         const double ratio = f_hz[i] / effect["fc_hz"];
         const double slow_gain = 1.0 / (1.0 + std::pow(ratio, first_order ? 2.0 : 4.0));
         parts[i].flicker *= slow_gain;
         parts[i].walk *= slow_gain;
+        parts[i].added_slow *= slow_gain;
     }
 }
 

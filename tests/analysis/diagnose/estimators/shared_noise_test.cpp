@@ -48,6 +48,34 @@ TEST(SharedNoiseEvidence, TellsTheGainsOfTheAxes) {
     EXPECT_NEAR(params.at("gain_z"), 0.8, 4.0 * sd.at("gain_z"));
 }
 
+// The sensor's filter follows the noise, whatever the model's list has first.
+TEST(SharedNoiseEvidence, IsThatBeforeTheSensorsFilter) {
+    const EffectModel filter = effect_entry("lowpass", {{"fc_hz", 9.0}, {"order", 1.0}});
+    const EffectModel shared =
+        effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.002}, {"gain_y", 0.6}, {"gain_z", 0.8}});
+    SensorModel model = known_sensor();
+    model.effects = {filter};
+    const auto seen = seen_effects(model, {shared}, half_hour, 56);
+    const auto found = seen.find("common_mode", make_shared_noise_estimator);
+    ASSERT_TRUE(found);
+    const auto& params = found->entries[0].params;
+    const auto& sd = found->sd[0];
+    for (const auto& [name, value] : shared.params) {
+        EXPECT_NEAR(params.at(name), value, 4.0 * sd.at(name)) << name;
+    }
+
+    SensorModel whole = model;
+    whole.effects = {filter, shared};
+    const auto with = seen_with(whole, seen.recording);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const AxisObservation& there = with.seen->axis(axis);
+        for (std::size_t i = there.power.size() / 2; i < there.power.size(); ++i) {
+            const double sd_rel = std::sqrt(2.0 / with.prediction->bins()[i].count());
+            EXPECT_NEAR(there.power[i] / there.density[i], 1.0, 5.0 * sd_rel) << axis << " " << i;
+        }
+    }
+}
+
 TEST(SharedNoiseEvidence, LeavesOutAnAxisThatHasNone) {
     const auto seen = seen_effects(known_sensor(),
                                    {effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.003}}, {"x", "z"})},
