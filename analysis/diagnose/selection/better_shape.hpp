@@ -21,8 +21,8 @@ struct ShapeOptions {
     unsigned threads = 0;
 };
 
-// The function tries shapes in place of every cause, and of all of them, and returns the one that wins by
-// most. `given` is the prediction of the model as it was given.
+// The function tries shapes in place of every cause, and of all that the spectra tell, and returns the one
+// that wins by most. `given` is the prediction of the model as it was given.
 std::optional<BetterShape> better_shape(const CauseSelection& selection,
                                         const std::shared_ptr<const Prediction>& given,
                                         const std::shared_ptr<const Recording>& recording,

@@ -10,6 +10,8 @@
 #include "analysis/diagnose/estimators/noise_spectrum.hpp"
 #include "analysis/diagnose/estimators/random_telegraph.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
+#include "analysis/diagnose/selection/better_shape.hpp"
+#include "analysis/diagnose/selection/forward_selection.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
@@ -124,6 +126,22 @@ TEST_P(GenuineNoise, IsNoOtherShape) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, GenuineNoise, testing::Values(11U, 12U, 13U, 14U));
+
+// The likelihood is of fewer samples with repeats in the model, which leaves them out: what the other causes
+// gain by together is not seen in the difference to a model without any.
+TEST(BetterShape, HoldsLikelihoodsOfTheSameSamplesAgainstEachOther) {
+    const SensorModel model = quiet_sensor();
+    SensorModel sensor = with_effect(model, "flicker_missing", {{"B_dps", 0.01}}, {});
+    sensor = with_effect(sensor, "gauss_markov", {{"sigma_dps", 0.03}, {"tau_s", 1.0}}, {});
+    sensor = with_effect(sensor, "stale", {{"eps", 0.002}}, {});
+    const auto recording = recorded(sensor, 30000, 71);
+    const auto given = prediction_of(recording, model);
+    const auto found = select_causes(examine(given, recording, 1, 1), recording, {.threads = 1});
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->causes.size(), 3U);
+    const auto shape = better_shape(*found, given, recording, {.threads = 1});
+    EXPECT_FALSE(shape) << shape->words << " by " << shape->evidence_nats << " nats";
+}
 
 }  // namespace
 }  // namespace gyrolog
