@@ -201,6 +201,31 @@ std::vector<Finding> CauseSet::rivals_of(const Finding& cause, const std::vector
     return rivals;
 }
 
+bool CauseSet::may_give_way(const Finding& cause, const Finding& rival) const {
+    const EstimatorTraits& traits = traits_of(rival.effect, *first_.prediction);
+    return rival.effect != cause.effect && !traits.is_beside_spectra && !traits.recurs &&
+           !axes_to_give(cause, rival).empty();
+}
+
+std::vector<Finding> CauseSet::rivals_on_one_axis(const FoundCause& cause) const {
+    const auto own = std::ranges::find(cause.rivals, cause.finding.effect, &Finding::effect);
+    if (own == cause.rivals.end() || cause.finding.where.axes.size() < 2) { return {}; }
+    const auto parameters_of_an_axis = [](const Finding& finding) {
+        return static_cast<double>(finding.parameters) / static_cast<double>(finding.where.axes.size());
+    };
+    std::vector<Finding> rivals;
+    for (const std::size_t axis : cause.finding.where.axes) {
+        const double least_nats = own->axis_gain_nats.at(axis) - decisions.strong_nats;
+        for (const Finding& rival : cause.rivals) {
+            if (rival.axis_gain_nats.at(axis) < least_nats) { continue; }
+            if (parameters_of_an_axis(rival) >= parameters_of_an_axis(cause.finding)) { continue; }
+            const std::optional<Finding> there = on_axes(rival, {axis});
+            if (there && may_give_way(cause.finding, *there)) { rivals.push_back(*there); }
+        }
+    }
+    return rivals;
+}
+
 std::vector<Finding> CauseSet::rivals_to_try(const FoundCause& cause) const {
     const EstimatorTraits& own = traits_of(cause.finding.effect);
     if (own.is_of_codes || own.recurs) { return {}; }
@@ -211,14 +236,14 @@ std::vector<Finding> CauseSet::rivals_to_try(const FoundCause& cause) const {
     std::map<EvidenceMethod, Finding> best;
     std::map<EvidenceMethod, Finding> simpler;
     for (const Finding& rival : cause.rivals) {
-        const EstimatorTraits& traits = traits_of(rival.effect, *first_.prediction);
-        if (rival.effect == cause.finding.effect || traits.is_beside_spectra || traits.recurs) { continue; }
-        if (axes_to_give(cause.finding, rival).empty()) { continue; }
-        if (best.try_emplace(traits.method, rival).second || !is_simpler(rival)) { continue; }
-        simpler.try_emplace(traits.method, rival);
+        if (!may_give_way(cause.finding, rival)) { continue; }
+        const EvidenceMethod method = traits_of(rival.effect, *first_.prediction).method;
+        if (best.try_emplace(method, rival).second || !is_simpler(rival)) { continue; }
+        simpler.try_emplace(method, rival);
     }
     std::vector<Finding> rivals = best_first(std::move(best));
     for (auto& [method, rival] : simpler) { rivals.push_back(std::move(rival)); }
+    std::ranges::move(rivals_on_one_axis(cause), std::back_inserter(rivals));
     return rivals;
 }
 

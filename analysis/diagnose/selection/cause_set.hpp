@@ -89,7 +89,8 @@ public:
     // Of these findings, those that may stand in the cause's place.
     std::vector<Finding> rivals_of(const Finding& cause, const std::vector<Finding>& findings) const;
     // Of each estimator the best rival that is seen on axes of the cause, the best first; then rivals that
-    // have fewer parameters than the cause and more evidence.
+    // have fewer parameters than the cause and more evidence; then, on each axis of a cause of several, those
+    // that explain that axis as well, to within strong evidence, with fewer parameters.
     std::vector<Finding> rivals_to_try(const FoundCause& cause) const;
     // The number of fitted parameters of these causes.
     static int parameters(const std::vector<FoundCause>& some);
@@ -123,6 +124,8 @@ public:
     std::optional<double> leave_out_if_needless(std::size_t place, double with_it_nats);
 
 private:
+    bool may_give_way(const Finding& cause, const Finding& rival) const;
+    std::vector<Finding> rivals_on_one_axis(const FoundCause& cause) const;
     double evidence_nats_of(const std::vector<std::size_t>& places) const;
     // What a steady line leaves beside itself is no other line: it wanders, or swells.
     bool is_same_line(const Finding& a, const Finding& b) const;

@@ -285,28 +285,39 @@ private:
     }
 
     // Each cause was chosen before those that were found after it, and these were fitted to what it left. So
-    // each cause once gives its axes to the best rival of each estimator that explains them nearly as well.
-    // All causes are refitted, and the best further cause is added. The first exchange stays that raises the
-    // worth of all measures by strong evidence, or that has fewer causes and is not strongly worse, or fewer
-    // parameters and is no worse. The function returns whether any exchange stays; no value when it was ended
-    // early.
+    // each cause gives its axes to the best rival of each estimator that explains them nearly as well, or one
+    // axis to a rival that explains it as simply. All causes are refitted, and the best further cause is
+    // added. An exchange stays that raises the worth of all measures by strong evidence, or that has fewer
+    // causes and is not strongly worse, or fewer parameters and is no worse. The function returns whether any
+    // exchange stays; no value when it was ended early.
     std::optional<bool> exchange() {
         bool any = false;
         const std::vector<FoundCause> each = was_exchanged_ ? std::vector<FoundCause>{} : set_.causes;
         for (const FoundCause& cause : each) {
-            const std::optional<std::size_t> place = set_.place_of(cause.finding);
-            if (!place) { continue; }  // an exchange has removed it
-            for (const Finding& rival : set_.rivals_to_try(set_.causes[*place])) {
-                const std::optional<bool> is_better = exchange_for(*place, rival);
+            // What is left of a cause after an exchange may go elsewhere, axis by axis.
+            for (std::size_t turn = 0; turn < cause.finding.where.axes.size(); ++turn) {
+                const std::optional<std::size_t> place = set_.place_of(cause.finding);
+                if (!place) { break; }  // an exchange has removed it
+                const std::optional<bool> is_better = exchange_at(*place);
                 if (!is_better) { return std::nullopt; }
-                if (!*is_better) { continue; }
+                if (!*is_better) { break; }
                 any = true;
-                if (!are_weighed_ && !weigh()) { return std::nullopt; }
-                break;
             }
         }
         was_exchanged_ = true;
         return any;
+    }
+
+    // The first of the cause's rivals with which the exchange stays; whether there is one.
+    std::optional<bool> exchange_at(std::size_t place) {
+        for (const Finding& rival : set_.rivals_to_try(set_.causes[place])) {
+            const std::optional<bool> is_better = exchange_for(place, rival);
+            if (!is_better) { return std::nullopt; }
+            if (!*is_better) { continue; }
+            if (!are_weighed_ && !weigh()) { return std::nullopt; }
+            return true;
+        }
+        return false;
     }
 
     // A cause has its evidence beside the others as they are. Fitted together without it, the other spectra
@@ -337,15 +348,18 @@ private:
         // What was fitted beside the cause is fitted beside the rival before that is judged.
         if (!refit_in_turns()) { return std::nullopt; }
         set_.settle_spectra();
-        const double more_nats = decisions.strong_nats;
         const bool were_weighed = std::exchange(are_weighed_, false);
-        if (!add_next_if_worth(before_nats + more_nats)) { return std::nullopt; }
-        const double least_nats = before_nats + least_gain_nats(before);
-        const bool is_better =
-            CauseSet::change_likelihood_among(set_.causes) == CauseSet::change_likelihood_among(before) &&
-            set_.worth_nats(set_.observed()) > least_nats;
-        if (!is_better) { set_.causes = before, are_weighed_ = were_weighed; }
-        return is_better;
+        if (is_better_than(before, before_nats)) { return true; }
+        if (!add_next_if_worth(before_nats + decisions.strong_nats)) { return std::nullopt; }
+        if (is_better_than(before, before_nats)) { return true; }
+        set_.causes = before;
+        are_weighed_ = were_weighed;
+        return false;
+    }
+
+    bool is_better_than(const std::vector<FoundCause>& before, double before_nats) const {
+        return CauseSet::change_likelihood_among(set_.causes) == CauseSet::change_likelihood_among(before) &&
+               set_.worth_nats(set_.observed()) > before_nats + least_gain_nats(before);
     }
 
     // What an exchange that led from these causes to the present ones is to gain.
@@ -355,14 +369,16 @@ private:
         return is_simpler ? 0.0 : decisions.strong_nats;
     }
 
-    // With what is called for next, where that may lift the worth above this. False when ended early.
+    // With what is called for next, where that may lift the worth above this. What changes the likelihood
+    // would leave nothing to compare. False when ended early.
     bool add_next_if_worth(double least_nats) {
         Hypotheses latest = set_.with_causes();
-        const Finding* next = set_.further(latest.findings);
-        if (next == nullptr || set_.causes.size() == resolution::causes_most) { return true; }
+        const std::vector<Finding> further = set_.all_further(latest.findings);
+        const auto next = std::ranges::find_if(
+            further, [](const Finding& one) { return !traits_of(one.effect).changes_likelihood; });
+        if (next == further.end() || set_.causes.size() == resolution::causes_most) { return true; }
         if (set_.worth_nats(*latest.observation) + next->evidence_nats <= least_nats) { return true; }
-        const Finding chosen = *next;
-        return add(given_up(std::move(latest)), chosen);
+        return add(given_up(std::move(latest)), *next);
     }
 
     double worth_nats_of(const std::vector<FoundCause>& causes) {
@@ -411,15 +427,23 @@ private:
     }
 
     // Every cause with the others in the model; one that another effect does better by now gives way to it.
+    // What that effect has beside all causes is not the cause's to give.
     bool refit() {
+        const Hypotheses with_all = set_.with_causes();
+        const auto taken_over_nats = [&](const Finding& rival) {
+            return rival.evidence_nats - beside_nats(with_all, rival.effect);
+        };
         for (std::size_t i = 0; i < set_.causes.size();) {
             const Hypotheses without = set_.without(i);
             const std::vector<Finding> findings = set_.findings_of(without.findings);
             const auto same = std::ranges::find(findings, set_.causes[i].finding.effect, &Finding::effect);
             const Finding* again = same == findings.end() ? nullptr : &*same;
-            const auto rival =
-                std::ranges::find_if(findings, [&](const Finding& f) { return set_.is_new(f); });
-            const double rival_nats = rival == findings.end() ? 0.0 : rival->evidence_nats;
+            const Finding* rival = nullptr;
+            for (const Finding& one : findings) {
+                if (!set_.is_new(one)) { continue; }
+                if (rival == nullptr || taken_over_nats(one) > taken_over_nats(*rival)) { rival = &one; }
+            }
+            const double rival_nats = rival == nullptr ? 0.0 : taken_over_nats(*rival);
             if (!CauseSet::is_of_codes(set_.causes[i].finding) && !stays_for_another(i, again) &&
                 rival_nats > own_nats(again) + decisions.strong_nats && rival_nats >= least_nats_of(i)) {
                 set_.causes[i].finding = *rival;
@@ -431,6 +455,14 @@ private:
             if (!told()) { return false; }
         }
         return true;
+    }
+
+    // The evidence of the effect's best finding; 0 where it has none.
+    double beside_nats(const Hypotheses& hypotheses, const std::string& effect) const {
+        for (const std::optional<Finding>& one : hypotheses.findings) {
+            if (one && one->effect == effect) { return std::max(set_.evidence_less_bias_nats(*one), 0.0); }
+        }
+        return 0.0;
     }
 
     // The same with no rivals: they are not asked.

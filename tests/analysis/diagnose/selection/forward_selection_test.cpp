@@ -104,5 +104,17 @@ TEST(ForwardSelection, TakesASecondGaussMarkovNoiseForNoTelegraph) {
     EXPECT_FALSE(effects.contains("rtn"));
 }
 
+// Coloured noise with a shape of its own on each axis is as good as a filter on one and louder noise on
+// another.
+TEST(ForwardSelection, GivesEachAxisOfACauseToTheSimplerRivalThatIsThere) {
+    const SensorModel model = calibrated_sensor(0.003);
+    SensorModel sensor = with_effect(model, "narrowband",
+                                     {{"sigma_dps", 0.039}, {"f_hz", 20.7}, {"width_hz", 2.9}}, {"x", "z"});
+    sensor = with_effect(sensor, "arw_scale", {{"factor", 1.47}}, {"y"});
+    sensor = with_effect(sensor, "lowpass", {{"fc_hz", 5.9}, {"order", 1.0}}, {"x"});
+    const CauseSelection result = searched(sensor, model, 18);
+    EXPECT_EQ(effects_of(result), (std::set<std::string>{"arw_scale", "lowpass", "narrowband"}));
+}
+
 }  // namespace
 }  // namespace gyrolog
