@@ -350,7 +350,11 @@ void CauseSet::settle_spectra() {
     if (causes.size() < 2) { return; }  // its own estimator has fitted it
     std::vector<Finding> findings;
     for (const FoundCause& cause : causes) { findings.push_back(cause.finding); }
-    findings = refit_spectra(observed(), without_causes.effects.size(), std::move(findings));
+    // As the causes say it: noise that is unknown beside them would take up what they are fitted to.
+    SensorModel model = without_causes;
+    for (const Finding& finding : findings) { model = with_cause(std::move(model), finding); }
+    const Observation seen(first_.prediction->with(model), recording_, options_.seed);
+    findings = refit_spectra(seen, without_causes.effects.size(), std::move(findings));
     for (std::size_t i = 0; i < causes.size(); ++i) { causes[i].finding = std::move(findings[i]); }
 }
 

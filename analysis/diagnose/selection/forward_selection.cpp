@@ -320,19 +320,27 @@ private:
         return false;
     }
 
-    // A cause has its evidence beside the others as they are. Fitted together without it, the other spectra
-    // may explain as much: then it is left out. The function returns whether any is; no value when ended
-    // early.
+    // A cause has its evidence beside the others as they are. Fitted again without it, they may explain as
+    // much: then it is left out. A fit together is quick and refuses most; one in turns tells whether the
+    // others then need parameters of their own on axes that shared them. The function returns whether any is
+    // left out; no value when ended early.
     std::optional<bool> leave_out_needless() {
         bool any = false;
         double worth_nats = set_.worth_nats(set_.observed());
         for (std::size_t i = 0; set_.causes.size() > 1 && i < set_.causes.size();) {
             if (!told()) { return std::nullopt; }
-            const std::optional<double> without_nats = set_.leave_out_if_needless(i, worth_nats);
-            if (without_nats) {
-                worth_nats = *without_nats;
+            const std::vector<FoundCause> before = set_.causes;
+            if (!set_.leave_out_if_needless(i, worth_nats)) {
+                ++i;
+                continue;
+            }
+            if (!refit_in_turns()) { return std::nullopt; }
+            const double without_nats = set_.worth_nats(set_.observed());
+            if (without_nats > worth_nats - decisions.strong_nats) {
+                worth_nats = without_nats;
                 any = true;
             } else {
+                set_.causes = before;
                 ++i;
             }
         }

@@ -89,6 +89,35 @@ TEST_F(CauseSetTest, FindsTheCauseThatAFindingWas) {
     EXPECT_EQ(set.place_of(finding("lowpass", {30.0, 0.0, 0.0})), std::nullopt);
 }
 
+// A walk of one size for all axes, which differ: with its size unknown on each axis any size would do.
+TEST(CauseSetOfSpectra, FitsThemAsTheModelSaysThem) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel sensor = with_effect(model, "rrw_missing", {{"K_dps_sqrt_hz", 3e-4}}, {"x", "z"});
+    sensor = with_effect(sensor, "rrw_missing", {{"K_dps_sqrt_hz", 1.2e-3}}, {"y"});
+    sensor = with_effect(sensor, "arw_scale", {{"factor", 1.2}}, {"x"});
+    const auto recording = recorded(sensor, 60'000, 6);
+    const Hypotheses first = examine(prediction_of(recording, model), recording, 1, 1);
+    CauseSet set(first, recording, {});
+    Finding walk = finding("rrw_missing", {100.0, 100.0, 100.0});
+    walk.entries = {{"rrw_missing", {"x", "y", "z"}, {{"K_dps_sqrt_hz", 6e-4}}, ""}};
+    walk.sd = {{{"K_dps_sqrt_hz", 1e-4}}};
+    Finding louder = finding("arw_scale", {100.0, 0.0, 0.0});
+    louder.entries.front().params = {{"factor", 1.1}};
+    louder.sd = {{{"factor", 0.01}}};
+    set.causes = {{walk, {}}, {louder, {}}};
+    set.settle_spectra();
+    const auto log_likelihood = [&](double of_walk) {
+        std::vector<EffectModel> effects = set.causes[0].finding.entries;
+        effects.front().params.at("K_dps_sqrt_hz") *= of_walk;
+        effects.push_back(set.causes[1].finding.entries.front());
+        SensorModel there = model;
+        there.effects = std::move(effects);
+        return log_likelihood_nats({prediction_of(recording, there), recording, 1});
+    };
+    EXPECT_GT(log_likelihood(1.0), log_likelihood(1.1));
+    EXPECT_GT(log_likelihood(1.0), log_likelihood(0.9));
+}
+
 // A filter with a wrong corner, and a level of the white noise that makes up for it: needed as long as the
 // corner stays.
 TEST(CauseSetOfSpectra, LeavesOutWhatTheOthersExplainFittedAgain) {
