@@ -354,8 +354,8 @@ private:
         answer_.better_shape = better_shape(found_, prediction_, recording_,
                                             {.seed = options_.seed, .threads = options_.threads});
         for (std::size_t i = 0; i < found_.causes.size(); ++i) {
-            Cause cause =
-                with_probability(found_.causes[i], measured_->returning_nats[i], answer_.better_shape);
+            Cause cause = with_probability(found_.causes[i], found_, measured_->returning_nats[i],
+                                           answer_.better_shape);
             cause.share = measured_->shares[i];
             cause.sense = sense_of(cause.finding);
             answer_.causes.push_back(std::move(cause));

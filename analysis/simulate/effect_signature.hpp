@@ -21,13 +21,14 @@ struct SpectralParts {
     double white = 0.0;
     double flicker = 0.0;
     double walk = 0.0;
-    // What effects add before the sensor's filter: white noise, and slow processes.
+    // Before the sensor's filter, and not scaled by N, B and K: white noise, and what is filtered as a
+    // signal.
     double added_white = 0.0;
-    double added_slow = 0.0;
+    double added_signal = 0.0;
     double other = 0.0;  // after it: quantisation, the reference's noise, bands
 
     // What the coefficients N, B and K do not scale.
-    double beside_coefficients() const { return added_white + added_slow + other; }
+    double beside_coefficients() const { return added_white + added_signal + other; }
     double sum() const { return white + flicker + walk + beside_coefficients(); }
 };
 

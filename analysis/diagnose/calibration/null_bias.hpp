@@ -22,6 +22,10 @@ struct NullBias {
     std::vector<std::size_t> axes;       // the main cause's; other axes have no bias
 
     double of(const Finding& finding) const;
+    // The evidence, less bias, that the like of `finding` has among these findings: of the same effect, and
+    // at the same place where it recurs. 0 where there is none.
+    double evidence_less_bias_nats(const std::vector<std::optional<Finding>>& findings,
+                                   const Finding& finding) const;
 };
 
 // The function returns, in nats and by effect, the mean of 16 simulations of the hypotheses' model and four

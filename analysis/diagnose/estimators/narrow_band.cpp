@@ -5,7 +5,6 @@
 #include <functional>
 #include <iterator>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -339,7 +338,7 @@ private:
             fits.push_back(std::move(one));
         }
         const double common_nats =
-            std::numbers::ln2 +  // one of two shapes
+            std::log(static_cast<double>(effect_.signature->form_values.size())) +
             parameter_cost_nats(0.5 * prediction_->rate_hz(), fit.f_sd_hz) +
             occam_cost_nats(param_of(effect_, "width_hz"), width_hz, width_hz * fit.log_width_sd);
         std::optional<Finding> finding = best_of(effect_, fits, common_nats, std::nullopt);

@@ -55,7 +55,7 @@ SpectralParts own_parts(const SensorModel& model, std::size_t axis, bool moves, 
     const bool own_step = converter_step_rad_s(model, axis) == model.lsb_rad_s;
     const double step_rad_s = own_step ? model.lsb_rad_s : 0.0;
     parts.other = step_rad_s * step_rad_s / (12.0 * rate_hz);
-    parts.added_slow = sampled_omega * sampled_omega * noise.Q_rad * noise.Q_rad / rate_hz;
+    parts.added_signal = sampled_omega * sampled_omega * noise.Q_rad * noise.Q_rad / rate_hz;
     // What the reference does not know of the motion is taken for the sensor's.
     if (moves) { parts.other += std::pow(reference_noise(model, axis), 2.0) / rate_hz; }
     return parts;

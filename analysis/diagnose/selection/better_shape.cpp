@@ -24,7 +24,8 @@ std::vector<CauseGroup> groups_of(const std::vector<FoundCause>& causes) {
         groups.push_back({&cause});
         if (!traits_of(cause.finding.effect).is_beside_spectra) { in_spectra.push_back(&cause); }
     }
-    if (in_spectra.size() > 1) { groups.push_back(std::move(in_spectra)); }
+    // Without any, a shape stands beside the model alone.
+    if (in_spectra.size() != 1) { groups.push_back(std::move(in_spectra)); }
     return groups;
 }
 

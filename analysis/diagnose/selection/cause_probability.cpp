@@ -16,7 +16,7 @@ constexpr std::size_t ties_most = 4;
 
 namespace gyrolog {
 
-Cause with_probability(const FoundCause& found, double returning_nats,
+Cause with_probability(const FoundCause& found, const CauseSelection& selection, double returning_nats,
                        const std::optional<BetterShape>& better_shape) {
     const std::string& effect = found.finding.effect;
     Cause cause;
@@ -27,7 +27,9 @@ Cause with_probability(const FoundCause& found, double returning_nats,
     double sum = 1.0 + std::exp(-against_nothing_nats);
     for (const Finding& rival : found.rivals) {
         if (rival.effect == effect) { continue; }
-        const double behind = found.finding.evidence_nats - rival.evidence_nats;
+        const double beside_all_nats =
+            selection.null_bias.evidence_less_bias_nats(selection.last.findings, rival);
+        const double behind = found.finding.evidence_nats - (rival.evidence_nats - beside_all_nats);
         sum += std::exp(-behind);
         if (behind < decisions.strong_nats && cause.tie_group.size() < resolution::ties_most) {
             cause.tie_group.push_back({rival.effect, behind});

@@ -10,9 +10,11 @@
 
 namespace gyrolog {
 
-// `returning_nats`: the surprisal that returns without the cause, on data that the fit did not use: its
-// evidence against nothing. What is counted has evidence of its own.
-Cause with_probability(const FoundCause& found, double returning_nats,
+// `found` is one of the selection's causes. A rival counts for what it gains by the cause's absence: what it
+// has beside all causes is no reason against one. `returning_nats`: the surprisal that returns without the
+// cause, on data that the fit did not use: its evidence against nothing. What is counted has evidence of its
+// own.
+Cause with_probability(const FoundCause& found, const CauseSelection& selection, double returning_nats,
                        const std::optional<BetterShape>& better_shape);
 
 // The probability that the cause or one of its ties is right.

@@ -11,6 +11,7 @@
 #include "analysis/diagnose/selection/finding_axes.hpp"
 #include "analysis/diagnose/selection/spectra_refit.hpp"
 #include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 
 namespace gyrolog::resolution {
 
@@ -201,6 +202,14 @@ std::vector<Finding> CauseSet::rivals_of(const Finding& cause, const std::vector
     return rivals;
 }
 
+std::size_t CauseSet::parameters_on(const Finding& finding, std::size_t axis) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < std::min(finding.entries.size(), finding.sd.size()); ++i) {
+        if (acts_on(finding.entries[i], axis)) { count += finding.sd[i].size(); }
+    }
+    return count;
+}
+
 bool CauseSet::may_give_way(const Finding& cause, const Finding& rival) const {
     const EstimatorTraits& traits = traits_of(rival.effect, *first_.prediction);
     return rival.effect != cause.effect && !traits.is_beside_spectra && !traits.recurs &&
@@ -210,15 +219,12 @@ bool CauseSet::may_give_way(const Finding& cause, const Finding& rival) const {
 std::vector<Finding> CauseSet::rivals_on_one_axis(const FoundCause& cause) const {
     const auto own = std::ranges::find(cause.rivals, cause.finding.effect, &Finding::effect);
     if (own == cause.rivals.end() || cause.finding.where.axes.size() < 2) { return {}; }
-    const auto parameters_of_an_axis = [](const Finding& finding) {
-        return static_cast<double>(finding.parameters) / static_cast<double>(finding.where.axes.size());
-    };
     std::vector<Finding> rivals;
     for (const std::size_t axis : cause.finding.where.axes) {
         const double least_nats = own->axis_gain_nats.at(axis) - decisions.strong_nats;
         for (const Finding& rival : cause.rivals) {
             if (rival.axis_gain_nats.at(axis) < least_nats) { continue; }
-            if (parameters_of_an_axis(rival) >= parameters_of_an_axis(cause.finding)) { continue; }
+            if (parameters_on(rival, axis) >= parameters_on(cause.finding, axis)) { continue; }
             const std::optional<Finding> there = on_axes(rival, {axis});
             if (there && may_give_way(cause.finding, *there)) { rivals.push_back(*there); }
         }

@@ -124,6 +124,7 @@ public:
     std::optional<double> leave_out_if_needless(std::size_t place, double with_it_nats);
 
 private:
+    static std::size_t parameters_on(const Finding& finding, std::size_t axis);
     bool may_give_way(const Finding& cause, const Finding& rival) const;
     std::vector<Finding> rivals_on_one_axis(const FoundCause& cause) const;
     double evidence_nats_of(const std::vector<std::size_t>& places) const;

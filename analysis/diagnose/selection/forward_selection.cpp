@@ -269,10 +269,7 @@ private:
         for (const Finding& next : candidates) {
             set_.causes = before;
             if (!add(beside, next)) { return std::nullopt; }
-            if (CauseSet::is_of_codes(next) ||
-                CauseSet::change_likelihood_among(set_.causes) != CauseSet::change_likelihood_among(before)) {
-                return true;
-            }
+            if (CauseSet::is_of_codes(next) || !compares_with(before)) { return true; }
             if (set_.worth_nats(set_.observed()) > before_nats) { return true; }
             if (set_.causes.size() == resolution::causes_most) { continue; }
             const std::optional<bool> mended = add_next();
@@ -286,10 +283,10 @@ private:
 
     // Each cause was chosen before those that were found after it, and these were fitted to what it left. So
     // each cause gives its axes to the best rival of each estimator that explains them nearly as well, or one
-    // axis to a rival that explains it as simply. All causes are refitted, and the best further cause is
-    // added. An exchange stays that raises the worth of all measures by strong evidence, or that has fewer
-    // causes and is not strongly worse, or fewer parameters and is no worse. The function returns whether any
-    // exchange stays; no value when it was ended early.
+    // axis to a rival that explains it as well with fewer parameters. All causes are refitted. An exchange
+    // stays that raises the worth of all measures by strong evidence, or that has fewer causes and is not
+    // strongly worse, or fewer parameters and is no worse. If it does not, it is judged once more with the
+    // best further cause. The function returns whether any exchange stays; no value when it was ended early.
     std::optional<bool> exchange() {
         bool any = false;
         const std::vector<FoundCause> each = was_exchanged_ ? std::vector<FoundCause>{} : set_.causes;
@@ -335,8 +332,9 @@ private:
                 continue;
             }
             if (!refit_in_turns()) { return std::nullopt; }
+            set_.settle_spectra();
             const double without_nats = set_.worth_nats(set_.observed());
-            if (without_nats > worth_nats - decisions.strong_nats) {
+            if (compares_with(before) && without_nats > worth_nats - decisions.strong_nats) {
                 worth_nats = without_nats;
                 any = true;
             } else {
@@ -358,16 +356,22 @@ private:
         set_.settle_spectra();
         const bool were_weighed = std::exchange(are_weighed_, false);
         if (is_better_than(before, before_nats)) { return true; }
-        if (!add_next_if_worth(before_nats + decisions.strong_nats)) { return std::nullopt; }
-        if (is_better_than(before, before_nats)) { return true; }
+        const std::optional<bool> added = add_next_if_worth(before_nats + least_gain_nats(before));
+        if (!added) { return std::nullopt; }
+        if (*added && is_better_than(before, before_nats)) { return true; }
         set_.causes = before;
         are_weighed_ = were_weighed;
         return false;
     }
 
     bool is_better_than(const std::vector<FoundCause>& before, double before_nats) const {
-        return CauseSet::change_likelihood_among(set_.causes) == CauseSet::change_likelihood_among(before) &&
+        return compares_with(before) &&
                set_.worth_nats(set_.observed()) > before_nats + least_gain_nats(before);
+    }
+
+    // Whether the spectra's likelihood is the same one.
+    bool compares_with(const std::vector<FoundCause>& before) const {
+        return CauseSet::change_likelihood_among(set_.causes) == CauseSet::change_likelihood_among(before);
     }
 
     // What an exchange that led from these causes to the present ones is to gain.
@@ -377,16 +381,20 @@ private:
         return is_simpler ? 0.0 : decisions.strong_nats;
     }
 
-    // With what is called for next, where that may lift the worth above this. What changes the likelihood
-    // would leave nothing to compare. False when ended early.
-    bool add_next_if_worth(double least_nats) {
+    // Adds the best further cause where it may lift the worth above this. What changes the likelihood would
+    // leave nothing to compare. Whether one is added; no value when ended early.
+    std::optional<bool> add_next_if_worth(double least_nats) {
+        if (set_.causes.size() == resolution::causes_most) { return false; }
         Hypotheses latest = set_.with_causes();
-        const std::vector<Finding> further = set_.all_further(latest.findings);
-        const auto next = std::ranges::find_if(
-            further, [](const Finding& one) { return !traits_of(one.effect).changes_likelihood; });
-        if (next == further.end() || set_.causes.size() == resolution::causes_most) { return true; }
-        if (set_.worth_nats(*latest.observation) + next->evidence_nats <= least_nats) { return true; }
-        return add(given_up(std::move(latest)), *next);
+        const std::vector<Finding> findings = set_.findings_of(latest.findings);
+        const auto next = std::ranges::find_if(findings, [&](const Finding& one) {
+            return one.evidence_nats >= set_.evidence_least_nats() && set_.is_new(one) &&
+                   !traits_of(one.effect).changes_likelihood;
+        });
+        if (next == findings.end()) { return false; }
+        if (set_.worth_nats(*latest.observation) + next->evidence_nats <= least_nats) { return false; }
+        if (!add(given_up(std::move(latest)), *next)) { return std::nullopt; }
+        return true;
     }
 
     double worth_nats_of(const std::vector<FoundCause>& causes) {
@@ -437,13 +445,12 @@ private:
     // Every cause with the others in the model; one that another effect does better by now gives way to it.
     // What that effect has beside all causes is not the cause's to give.
     bool refit() {
-        const Hypotheses with_all = set_.with_causes();
+        std::vector<std::optional<Finding>> beside_all = set_.with_causes().findings;
         const auto taken_over_nats = [&](const Finding& rival) {
-            return rival.evidence_nats - beside_nats(with_all, rival.effect);
+            return rival.evidence_nats - set_.null_bias.evidence_less_bias_nats(beside_all, rival);
         };
         for (std::size_t i = 0; i < set_.causes.size();) {
-            const Hypotheses without = set_.without(i);
-            const std::vector<Finding> findings = set_.findings_of(without.findings);
+            const std::vector<Finding> findings = set_.findings_of(set_.without(i).findings);
             const auto same = std::ranges::find(findings, set_.causes[i].finding.effect, &Finding::effect);
             const Finding* again = same == findings.end() ? nullptr : &*same;
             const Finding* rival = nullptr;
@@ -452,25 +459,19 @@ private:
                 if (rival == nullptr || taken_over_nats(one) > taken_over_nats(*rival)) { rival = &one; }
             }
             const double rival_nats = rival == nullptr ? 0.0 : taken_over_nats(*rival);
-            if (!CauseSet::is_of_codes(set_.causes[i].finding) && !stays_for_another(i, again) &&
-                rival_nats > own_nats(again) + decisions.strong_nats && rival_nats >= least_nats_of(i)) {
-                set_.causes[i].finding = *rival;
-            } else if (!take_again(i, again)) {
-                continue;
+            const bool gives_way =
+                !CauseSet::is_of_codes(set_.causes[i].finding) && !stays_for_another(i, again) &&
+                rival_nats > own_nats(again) + decisions.strong_nats && rival_nats >= least_nats_of(i);
+            if (gives_way) { set_.causes[i].finding = *rival; }
+            const bool stays = gives_way || take_again(i, again);
+            if (stays) {
+                set_.causes[i].rivals = set_.rivals_of(set_.causes[i].finding, findings);
+                ++i;
             }
-            set_.causes[i].rivals = set_.rivals_of(set_.causes[i].finding, findings);
-            ++i;
+            if (gives_way || !stays) { beside_all = set_.with_causes().findings; }
             if (!told()) { return false; }
         }
         return true;
-    }
-
-    // The evidence of the effect's best finding; 0 where it has none.
-    double beside_nats(const Hypotheses& hypotheses, const std::string& effect) const {
-        for (const std::optional<Finding>& one : hypotheses.findings) {
-            if (one && one->effect == effect) { return std::max(set_.evidence_less_bias_nats(*one), 0.0); }
-        }
-        return 0.0;
     }
 
     // The same with no rivals: they are not asked.
@@ -560,9 +561,8 @@ private:
                                    std::max(set_.worth_beside_spectra_nats() - beside_before_nats, 0.0);
         const double dropped =
             static_cast<double>(before.size() - std::min(before.size(), set_.causes.size()));
-        are_weighed_ =
-            gained_nats >= -dropped * set_.evidence_least_nats() - decisions.strong_nats ||
-            CauseSet::change_likelihood_among(before) != CauseSet::change_likelihood_among(set_.causes);
+        are_weighed_ = gained_nats >= -dropped * set_.evidence_least_nats() - decisions.strong_nats ||
+                       !compares_with(before);
         if (!are_weighed_) { set_.causes = before; }
         return true;
     }

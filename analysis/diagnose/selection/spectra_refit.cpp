@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,8 +37,7 @@ namespace {
 
 struct SpectralParameter {
     std::size_t finding = 0;
-    std::vector<std::size_t> entries;        // of the finding; several have it in common
-    std::vector<std::size_t> model_entries;  // the same of the model's effects
+    std::vector<std::size_t> model_entries;  // several have it in common
     std::string name;
     SpectralRange range;
     double step_most = resolution::log_step_most;  // of the logarithm
@@ -73,7 +73,7 @@ public:
             for (std::size_t e = 0; e < findings_[f].entries.size(); ++e) {
                 add_parameters(f, e, model_entry + e);
             }
-            if (places_.size() > before) { add_form(f, model_entry); }
+            if (places_.size() > before) { add_forms(findings_[f], model_entry); }
             model_entry += findings_[f].entries.size();
         }
     }
@@ -107,7 +107,7 @@ private:
         return point;
     }
 
-    // The top of the hill that the point is on.
+    // Where scoring from this point ends.
     SpectraPoint climbed(SpectraPoint from) const {
         SpectraPoint best = fitted(std::move(from));
         for (int step = 0; step < resolution::spectra_steps_most; ++step) {
@@ -133,6 +133,7 @@ private:
         std::optional<SpectraPoint> best;
         for (const SpectralForm& form : forms_) {
             for (const double value : form.values) {
+                if (form_of(than.model, form) == value) { continue; }
                 SpectraPoint from = than;
                 for (const std::size_t entry : form.model_entries) {
                     set_form(from.model.effects[entry], form.name, value);
@@ -153,14 +154,16 @@ private:
         }
     }
 
-    void add_form(std::size_t f, std::size_t first_entry) {
-        const EffectSignature& signature = *find_effect(findings_[f].effect)->signature;
+    // One for all entries where the effect has parameters in common, else one for each.
+    void add_forms(const Finding& finding, std::size_t first_entry) {
+        const EffectSignature& signature = *find_effect(finding.effect)->signature;
         if (signature.form_values.empty()) { return; }
-        SpectralForm form{{}, std::string(signature.form), signature.form_values};
-        for (std::size_t e = 0; e < findings_[f].entries.size(); ++e) {
-            form.model_entries.push_back(first_entry + e);
+        for (std::size_t e = 0; e < finding.entries.size(); ++e) {
+            if (e == 0 || signature.common.empty()) {
+                forms_.push_back({{}, std::string(signature.form), signature.form_values});
+            }
+            forms_.back().model_entries.push_back(first_entry + e);
         }
-        forms_.push_back(std::move(form));
     }
 
     void add_parameters(std::size_t f, std::size_t e, std::size_t model_entry) {
@@ -177,13 +180,12 @@ private:
                     return place.finding == f && place.name == name;
                 });
             if (std::ranges::count(signature.common, name) != 0 && of_others != places_.end()) {
-                of_others->entries.push_back(e);
                 of_others->model_entries.push_back(model_entry);
                 continue;
             }
             const SpectralRange range = spectral_range(
                 signature, param_of(*find_effect(finding.effect), name), prediction_.rate_hz());
-            places_.push_back({f, {e}, {model_entry}, name, range});
+            places_.push_back({f, {model_entry}, name, range});
             // Farther than its width from the middle a Lorentzian is another shape.
             if (is_of_band && name == "f_hz") {
                 places_.back().step_most =
@@ -192,17 +194,24 @@ private:
         }
     }
 
+    static double form_of(const SensorModel& model, const SpectralForm& form) {
+        const std::map<std::string, double>& params = model.effects[form.model_entries.front()].params;
+        const auto found = params.find(form.name);
+        return found == params.end() ? 0.0 : found->second;
+    }
+
     bool is_resolved(const EffectModel& band) const {
         return bins_within(band.params.at("f_hz"), band.params.at("width_hz"), prediction_) >=
                options_.band_bins_least;
     }
 
-    // Whether what is a band is one in this model.
+    // Whether what is a band is one in this model, and the bins resolve it.
     bool has_bands(const SensorModel& model) const {
         return std::ranges::all_of(places_, [&](const SpectralParameter& place) {
             const EffectModel& entry = model.effects[place.model_entries.front()];
             return traits_of(entry.effect, prediction_).method != EvidenceMethod::narrow_band ||
-                   is_band(entry.params.at("f_hz"), entry.params.at("width_hz"), prediction_);
+                   (is_band(entry.params.at("f_hz"), entry.params.at("width_hz"), prediction_) &&
+                    is_resolved(entry));
         });
     }
 
@@ -224,7 +233,7 @@ private:
         return logs;
     }
 
-    // The nuisance is.
+    // The point with N, B and K at their most likely.
     SpectraPoint fitted(SpectraPoint point) const {
         point.nats = 0.0;
         for (const std::size_t axis : prediction_.axes()) {

@@ -117,7 +117,7 @@ void biquad_spectrum(std::span<const double> f_hz, double rate_hz, const EffectV
         parts[i].flicker *= gain;
         parts[i].walk *= gain;
         parts[i].added_white *= gain;
-        parts[i].added_slow *= gain;
+        parts[i].added_signal *= gain;
     }
 }
 

@@ -55,7 +55,7 @@ void gauss_markov_spectrum(std::span<const double> f_hz, double rate_hz, const E
     const double innovation = sigma_rad_s * sigma_rad_s * (1.0 - correlation * correlation) / rate_hz;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const double cosine = std::cos(2.0 * pi * f_hz[i] / rate_hz);
-        parts[i].added_slow += innovation / (1.0 - 2.0 * correlation * cosine + correlation * correlation);
+        parts[i].added_signal += innovation / (1.0 - 2.0 * correlation * cosine + correlation * correlation);
     }
 }
 

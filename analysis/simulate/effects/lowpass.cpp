@@ -247,7 +247,7 @@ void lowpass_spectrum(std::span<const double> f_hz, double rate_hz, const Effect
         const double slow_gain = 1.0 / (1.0 + std::pow(ratio, first_order ? 2.0 : 4.0));
         parts[i].flicker *= slow_gain;
         parts[i].walk *= slow_gain;
-        parts[i].added_slow *= slow_gain;
+        parts[i].added_signal *= slow_gain;
     }
 }
 

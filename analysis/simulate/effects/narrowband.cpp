@@ -200,6 +200,8 @@ constexpr std::span<const std::string_view> narrowband_common = std::span(narrow
 
 // The density of a line does not tell how fast it wanders: the geometric middle of what is plausible.
 constexpr double narrowband_wander_s[] = {0.0, 30.0};
+static_assert(narrowband_wander_s[1] * narrowband_wander_s[1] ==
+              narrowband_params[3].plausible_from * narrowband_params[3].plausible_to);
 
 constexpr EffectSignature narrowband_signature = {
     .method = EvidenceMethod::narrow_band,

@@ -97,7 +97,7 @@ void rtn_spectrum(std::span<const double> f_hz, double rate_hz, const EffectValu
         // 1 - 2 kept cos(2 pi f / rate) + kept^2, without the difference of near equals.
         const double lost = -std::expm1(-changes);
         const double denominator = lost * lost + 4.0 * kept * sine * sine;
-        parts[i].added_slow += variance * -std::expm1(-2.0 * changes) / (rate_hz * denominator);
+        parts[i].added_signal += variance * -std::expm1(-2.0 * changes) / (rate_hz * denominator);
     }
 }
 

@@ -109,8 +109,8 @@ TEST(MeasuredGap, HoldsEveryModelAgainstItsOwnSimulations) {
 }
 
 // White noise of another size is told by the log likelihood ratio n (r - 1 - ln r) / 2, r the ratio of the
-// variances. The curves' points, of which each says little, find half of what they do together with their sum
-// along the cause's direction: 33 nats on average where no direction is looked along, 60 with it.
+// variances. The surprisal sums measures that see the same, so more of it returns. Each point says little: 33
+// nats return on average where no direction is looked along, which adds the ratio itself, 60 in all.
 TEST(MeasuredGap, SeesAWeakCauseByItsDirection) {
     constexpr double factor = 1.04;
     constexpr double ratio = factor * factor;

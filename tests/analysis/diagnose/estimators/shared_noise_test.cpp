@@ -64,14 +64,16 @@ TEST(SharedNoiseEvidence, IsThatBeforeTheSensorsFilter) {
         EXPECT_NEAR(params.at(name), value, 4.0 * sd.at(name)) << name;
     }
 
-    SensorModel whole = model;
-    whole.effects = {filter, shared};
-    const auto with = seen_with(whole, seen.recording);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const AxisObservation& there = with.seen->axis(axis);
-        for (std::size_t i = there.power.size() / 2; i < there.power.size(); ++i) {
-            const double sd_rel = std::sqrt(2.0 / with.prediction->bins()[i].count());
-            EXPECT_NEAR(there.power[i] / there.density[i], 1.0, 5.0 * sd_rel) << axis << " " << i;
+    for (const std::vector<EffectModel>& list : {std::vector{filter, shared}, std::vector{shared, filter}}) {
+        SensorModel whole = model;
+        whole.effects = list;
+        const auto with = seen_with(whole, seen.recording);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const AxisObservation& there = with.seen->axis(axis);
+            for (std::size_t i = there.power.size() / 2; i < there.power.size(); ++i) {
+                const double sd_rel = std::sqrt(2.0 / with.prediction->bins()[i].count());
+                EXPECT_NEAR(there.power[i] / there.density[i], 1.0, 5.0 * sd_rel) << axis << " " << i;
+            }
         }
     }
 }

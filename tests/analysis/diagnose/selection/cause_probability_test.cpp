@@ -25,30 +25,41 @@ FoundCause found(double evidence_nats, const std::vector<Finding>& rivals) {
 }
 
 TEST(CauseProbability, ComparesWithRivalsAndWithNothing) {
-    const Cause alone = with_probability(found(50.0, {}), 3.0, {});
+    const Cause alone = with_probability(found(50.0, {}), {}, 3.0, {});
     EXPECT_NEAR(alone.score, 1.0 / (1.0 + std::exp(-3.0)), 1e-12);
     EXPECT_THAT(alone.tie_group, SizeIs(0));
-    const Cause one_of_two = with_probability(found(50.0, {finding("temp_linear", 49.0)}), 40.0, {});
+    const Cause one_of_two = with_probability(found(50.0, {finding("temp_linear", 49.0)}), {}, 40.0, {});
     EXPECT_NEAR(one_of_two.score, 1.0 / (1.0 + std::exp(-1.0)), 1e-12);
     ASSERT_THAT(one_of_two.tie_group, SizeIs(2));
     EXPECT_NEAR(probability_of_tie(one_of_two), 1.0, 1e-12);
     EXPECT_THAT(deciding_recording(one_of_two), HasSubstr("to tell temp_lag from temp_linear: "));
 }
 
+// What is as strong beside all causes is a further cause, not a rival.
+TEST(CauseProbability, ComparesWithWhatARivalGainsByTheAbsence) {
+    CauseSelection selection;
+    selection.last.findings = {std::nullopt, finding("temp_linear", 60.0)};
+    const FoundCause cause = found(50.0, {finding("temp_linear", 70.0)});
+    EXPECT_GT(with_probability(cause, selection, 40.0, {}).score, 0.99);
+    EXPECT_LT(with_probability(cause, {}, 40.0, {}).score, 0.01);
+    selection.null_bias = {{{"temp_linear", 55.0}}, "tone", {}};
+    EXPECT_LT(with_probability(cause, selection, 40.0, {}).score, 0.01);
+}
+
 TEST(CauseProbability, IsSmallWhereAShapeWithoutANameIsBetter) {
     const BetterShape shape{"A course", {"temp_lag"}, 12.0};
-    EXPECT_LT(with_probability(found(50.0, {}), 40.0, shape).score, 1e-5);
+    EXPECT_LT(with_probability(found(50.0, {}), {}, 40.0, shape).score, 1e-5);
     const BetterShape in_place_of_another{"A course", {"tone"}, 12.0};
-    EXPECT_GT(with_probability(found(50.0, {}), 40.0, in_place_of_another).score, 0.99);
+    EXPECT_GT(with_probability(found(50.0, {}), {}, 40.0, in_place_of_another).score, 0.99);
 }
 
 // Without the cause the gap is smaller on data that the fit did not use.
 TEST(CauseProbability, IsSmallWhereNothingDoesBetter) {
-    EXPECT_LT(with_probability(found(50.0, {}), -5.0, {}).score, 0.01);
+    EXPECT_LT(with_probability(found(50.0, {}), {}, -5.0, {}).score, 0.01);
 }
 
 TEST(CauseProbability, OfWhatIsCountedIsThatOfItsOwnEvidence) {
-    EXPECT_GT(with_probability({finding("stale", 50.0), {}}, -5.0, {}).score, 0.99);
+    EXPECT_GT(with_probability({finding("stale", 50.0), {}}, {}, -5.0, {}).score, 0.99);
 }
 
 }  // namespace

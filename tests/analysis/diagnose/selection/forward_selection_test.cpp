@@ -1,7 +1,9 @@
 #include "analysis/diagnose/selection/forward_selection.hpp"
 
+#include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -113,7 +115,12 @@ TEST(ForwardSelection, GivesEachAxisOfACauseToTheSimplerRivalThatIsThere) {
     sensor = with_effect(sensor, "arw_scale", {{"factor", 1.47}}, {"y"});
     sensor = with_effect(sensor, "lowpass", {{"fc_hz", 5.9}, {"order", 1.0}}, {"x"});
     const CauseSelection result = searched(sensor, model, 18);
-    EXPECT_EQ(effects_of(result), (std::set<std::string>{"arw_scale", "lowpass", "narrowband"}));
+    ASSERT_EQ(effects_of(result), (std::set<std::string>{"arw_scale", "lowpass", "narrowband"}));
+    const std::map<std::string, std::vector<std::size_t>> axes = {
+        {"lowpass", {0}}, {"arw_scale", {1}}, {"narrowband", {0, 2}}};
+    for (const FoundCause& cause : result.causes) {
+        EXPECT_EQ(cause.finding.where.axes, axes.at(cause.finding.effect)) << cause.finding.effect;
+    }
 }
 
 }  // namespace

@@ -127,6 +127,19 @@ TEST_P(GenuineNoise, IsNoOtherShape) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, GenuineNoise, testing::Values(11U, 12U, 13U, 14U));
 
+// A course that repeats, which no effect has.
+TEST(BetterShape, StandsBesideTheModelWithoutACause) {
+    const SensorModel model = quiet_sensor();
+    const auto recording = with_course(
+        recorded(model, samples, 3), [](double t_s) { return 0.02 * (t_s / 40.0 - std::floor(t_s / 40.0)); });
+    const auto given = prediction_of(recording, model);
+    CauseSelection none;
+    none.without_causes = model;
+    const auto shape = better_shape(none, given, recording, {.threads = 1});
+    ASSERT_TRUE(shape);
+    EXPECT_TRUE(shape->than.empty());
+}
+
 // The likelihood is of fewer samples with repeats in the model, which leaves them out: what the other causes
 // gain by together is not seen in the difference to a model without any.
 TEST(BetterShape, HoldsLikelihoodsOfTheSameSamplesAgainstEachOther) {

@@ -198,6 +198,23 @@ TEST_P(SpectraRefitOfABand, FindsTheFormOfEach) {
     EXPECT_GT(log_likelihood(refit), log_likelihood(filter_and_band(8.0)));
 }
 
+// Filters of their own on each axis have orders of their own.
+TEST(SpectraRefit, FindsTheFormOnEachAxis) {
+    const auto filters = [](double order_of_x, double order_of_y, double fc_hz) {
+        Finding lowpass = noise_finding("lowpass", {{"fc_hz", fc_hz}, {"order", order_of_x}}, {"x"});
+        const Finding other = noise_finding("lowpass", {{"fc_hz", fc_hz}, {"order", order_of_y}}, {"y"});
+        lowpass.sd.push_back(other.sd.front());
+        lowpass.entries.push_back(other.entries.front());
+        return std::vector<Finding>{lowpass};
+    };
+    const auto recording = recorded(with_findings(white_only(), filters(1.0, 2.0, 15.0)), 30'000, 27);
+    const std::vector<Finding> begun = filters(2.0, 1.0, 12.0);
+    const Observation seen(prediction_of(recording, with_findings(white_only(), begun)), recording, 1);
+    const std::vector<Finding> refit = refit_spectra(seen, white_only().effects.size(), begun);
+    EXPECT_EQ(param_at(refit[0], 0, "order"), 1.0);
+    EXPECT_EQ(param_at(refit[0], 1, "order"), 2.0);
+}
+
 // Several of such lines would lie in one bin, which does not tell where in it one is.
 TEST_P(SpectraRefitOfABand, LeavesALineThatTheBinsDoNotResolve) {
     std::vector<Finding> begun = begun_at(6.0, 33.0, 0.3, 1.0);
