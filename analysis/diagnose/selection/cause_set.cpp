@@ -364,16 +364,15 @@ void CauseSet::settle_spectra() {
     for (std::size_t i = 0; i < causes.size(); ++i) { causes[i].finding = std::move(findings[i]); }
 }
 
-std::optional<double> CauseSet::leave_out_if_needless(std::size_t place, double with_it_nats) {
+bool CauseSet::leave_out_if_needless(std::size_t place, double with_it_nats) {
     const Finding& cause = causes[place].finding;
-    if (is_of_codes(cause) || traits_of(cause.effect).changes_likelihood) { return std::nullopt; }
+    if (is_of_codes(cause) || traits_of(cause.effect).changes_likelihood) { return false; }
     const std::vector<FoundCause> before = causes;
     causes.erase(causes.begin() + static_cast<std::ptrdiff_t>(place));
     settle_spectra();
-    const double without_nats = worth_nats(observed());
-    if (without_nats > with_it_nats - decisions.strong_nats) { return without_nats; }
+    if (worth_nats(observed()) > with_it_nats - decisions.strong_nats) { return true; }
     causes = before;
-    return std::nullopt;
+    return false;
 }
 
 bool CauseSet::is_same_line(const Finding& a, const Finding& b) const {

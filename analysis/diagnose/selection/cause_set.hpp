@@ -119,9 +119,9 @@ public:
     // Fits the noise spectra among the causes together.
     void settle_spectra();
     // Leaves the cause out where all measures, the other spectra fitted together without it, lose less than
-    // strong evidence. `with_it_nats` is the worth with it. The function returns the worth without it; no
-    // value where the cause stays. Codes stay, and so does what changes the spectra's likelihood.
-    std::optional<double> leave_out_if_needless(std::size_t place, double with_it_nats);
+    // strong evidence. `with_it_nats` is the worth with it. The function returns whether the cause is out.
+    // Codes stay, and so does what changes the spectra's likelihood.
+    bool leave_out_if_needless(std::size_t place, double with_it_nats);
 
 private:
     static std::size_t parameters_on(const Finding& finding, std::size_t axis);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -133,7 +132,9 @@ private:
         std::optional<SpectraPoint> best;
         for (const SpectralForm& form : forms_) {
             for (const double value : form.values) {
-                if (form_of(than.model, form) == value) { continue; }
+                if (EffectValues(than.model.effects[form.model_entries.front()])[form.name] == value) {
+                    continue;
+                }
                 SpectraPoint from = than;
                 for (const std::size_t entry : form.model_entries) {
                     set_form(from.model.effects[entry], form.name, value);
@@ -192,12 +193,6 @@ private:
                     finding.entries[e].params.at("width_hz") / finding.entries[e].params.at("f_hz");
             }
         }
-    }
-
-    static double form_of(const SensorModel& model, const SpectralForm& form) {
-        const std::map<std::string, double>& params = model.effects[form.model_entries.front()].params;
-        const auto found = params.find(form.name);
-        return found == params.end() ? 0.0 : found->second;
     }
 
     bool is_resolved(const EffectModel& band) const {

@@ -143,9 +143,8 @@ TEST(CauseSetOfSpectra, LeavesOutWhatTheOthersExplainFittedAgain) {
     set.causes = {before[0], before[1]};
     EXPECT_LT(set.worth_nats(set.observed()), before_nats - 100.0);  // needed beside the others as they are
     set.causes = before;
-    const std::optional<double> without_nats = set.leave_out_if_needless(2, before_nats);
-    ASSERT_TRUE(without_nats);
-    EXPECT_DOUBLE_EQ(*without_nats, set.worth_nats(set.observed()));
+    ASSERT_TRUE(set.leave_out_if_needless(2, before_nats));
+    EXPECT_GT(set.worth_nats(set.observed()), before_nats - decisions.strong_nats);
     ASSERT_EQ(set.causes.size(), 2U);
     EXPECT_NEAR(set.causes.front().finding.entries.front().params.at("fc_hz"), 8.0, 0.15);
 

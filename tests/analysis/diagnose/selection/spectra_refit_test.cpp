@@ -224,6 +224,24 @@ TEST_P(SpectraRefitOfABand, LeavesALineThatTheBinsDoNotResolve) {
     EXPECT_EQ(refit[1].entries[0].params, begun[1].entries[0].params);
 }
 
+// Gauss-Markov noise comes before the sensor's filter, in whatever order the model lists them.
+TEST(SpectraBeforeAFilter, AreThoseOfTheRecording) {
+    const Finding filter = noise_finding("lowpass", {{"fc_hz", 5.0}, {"order", 1.0}}, {"x", "y", "z"});
+    const Finding noise =
+        noise_finding("gauss_markov", {{"sigma_dps", 0.2}, {"tau_s", 0.05}}, {"x", "y", "z"});
+    const auto recording = recorded(with_findings(white_only(), {filter, noise}), 60'000, 28);
+    for (const auto& list : {std::vector{filter, noise}, std::vector{noise, filter}}) {
+        const Observation seen(prediction_of(recording, with_findings(white_only(), list)), recording, 1);
+        const AxisObservation& there = seen.axis(0);
+        for (std::size_t i = there.power.size() / 2; i < there.power.size(); ++i) {
+            const SpectralBin& bin = seen.prediction().bins()[i];
+            if (bin.f_hz > 10.0) { break; }  // cubics through four samples miss more of faster ones
+            EXPECT_NEAR(there.power[i] / there.density[i], 1.0, 5.0 * std::sqrt(2.0 / bin.count()))
+                << bin.f_hz << " Hz";
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, SpectraRefitOfABand, testing::Values(24U, 25U, 26U));
 INSTANTIATE_TEST_SUITE_P(Seeds, SpectraRefitOfARecording, testing::Values(21U, 22U, 23U));
 
