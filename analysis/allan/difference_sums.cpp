@@ -116,6 +116,8 @@ template <>
     __m256i even = _mm256_setzero_si256();
     __m256i odd = _mm256_setzero_si256();
     std::size_t k = 0;
+    // Once a turn, it is a fifth slower where the linker happens to put it at the beginning of a cache line.
+    #pragma GCC unroll 4
     for (; k + lanes <= count; k += lanes) {
         const __m256i first = _mm256_loadu_si256(at(theta + k));
         const __m256i middle = _mm256_loadu_si256(at(theta + k + m));
