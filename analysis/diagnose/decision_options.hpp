@@ -55,6 +55,8 @@ struct DecisionOptions {
     double slowest_line_hz = 0.05;
     // A band's middle frequency over its width at half the height: of less, it is a hump of the noise.
     double band_quality_least = 2.0;
+    // Of the frequency's resolution: what a line leaves nearer to itself than that is no other line.
+    double same_line_resolutions = 10.0;
     // Ratio of the axes' gains to a noise that they share; below, it is one axis' own.
     double gain_ratio_least = 0.3;
     // Of a step of the converter: printed decimals lie this near to its grid.

@@ -6,6 +6,7 @@
 
 #include "analysis/diagnose/calibration/null_simulations.hpp"
 #include "analysis/diagnose/decision_options.hpp"
+#include "analysis/diagnose/estimators/same_cause.hpp"
 
 namespace gyrolog::resolution {
 
@@ -22,23 +23,13 @@ double NullBias::of(const Finding& finding) const {
     return found == nats.end() ? 0.0 : found->second;
 }
 
-namespace {
-
-bool tells_the_same(const Finding& a, const Finding& b) {
-    if (a.effect != b.effect) { return false; }
-    const std::optional<Span>& at = a.where.freq_hz;
-    const std::optional<Span>& other = b.where.freq_hz;
-    return !traits_of(a.effect).recurs || !at || !other || (at->from <= other->to && other->from <= at->to);
-}
-
-}  // namespace
-
-double NullBias::evidence_less_bias_nats(const std::vector<std::optional<Finding>>& findings,
-                                         const Finding& finding) const {
-    for (const std::optional<Finding>& one : findings) {
-        if (one && tells_the_same(*one, finding)) { return std::max(one->evidence_nats - of(*one), 0.0); }
+double NullBias::taken_over_nats(const Finding& rival, const Hypotheses& beside_all) const {
+    for (const std::optional<Finding>& one : beside_all.findings) {
+        if (one && is_same_cause(*one, rival, beside_all.prediction->duration_s())) {
+            return rival.evidence_nats - std::max(one->evidence_nats - of(*one), 0.0);
+        }
     }
-    return 0.0;
+    return rival.evidence_nats;
 }
 
 std::optional<std::map<std::string, double>> null_bias_nats(const Hypotheses& hypotheses, std::uint64_t seed,

@@ -22,10 +22,9 @@ struct NullBias {
     std::vector<std::size_t> axes;       // the main cause's; other axes have no bias
 
     double of(const Finding& finding) const;
-    // The evidence, less bias, that the like of `finding` has among these findings: of the same effect, and
-    // at the same place where it recurs. 0 where there is none.
-    double evidence_less_bias_nats(const std::vector<std::optional<Finding>>& findings,
-                                   const Finding& finding) const;
+    // What a rival, found without a cause and less bias, gains by the cause's absence: its evidence less what
+    // the same has beside all causes, which speaks for a further cause.
+    double taken_over_nats(const Finding& rival, const Hypotheses& beside_all) const;
 };
 
 // The function returns, in nats and by effect, the mean of 16 simulations of the hypotheses' model and four

@@ -27,9 +27,8 @@ Cause with_probability(const FoundCause& found, const CauseSelection& selection,
     double sum = 1.0 + std::exp(-against_nothing_nats);
     for (const Finding& rival : found.rivals) {
         if (rival.effect == effect) { continue; }
-        const double beside_all_nats =
-            selection.null_bias.evidence_less_bias_nats(selection.last.findings, rival);
-        const double behind = found.finding.evidence_nats - (rival.evidence_nats - beside_all_nats);
+        const double behind =
+            found.finding.evidence_nats - selection.null_bias.taken_over_nats(rival, selection.last);
         sum += std::exp(-behind);
         if (behind < decisions.strong_nats && cause.tie_group.size() < resolution::ties_most) {
             cause.tie_group.push_back({rival.effect, behind});

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analysis/diagnose/estimators/same_cause.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/selection/finding_axes.hpp"
 #include "analysis/diagnose/selection/spectra_refit.hpp"
@@ -165,8 +166,7 @@ std::vector<Finding> CauseSet::best_first(std::map<EvidenceMethod, Finding> best
 
 bool CauseSet::is_new(const Finding& finding) const {
     return !is_told_by_twin(finding) && std::ranges::none_of(causes, [&](const FoundCause& cause) {
-        if (cause.finding.effect != finding.effect) { return false; }
-        return !traits_of(finding.effect).recurs || is_same_line(cause.finding, finding);
+        return is_same(cause.finding, finding);
     });
 }
 
@@ -177,21 +177,40 @@ bool CauseSet::is_told_by_twin(const Finding& finding) const {
 }
 
 bool CauseSet::is_of_another(const Finding& finding, std::size_t own) const {
-    if (!traits_of(finding.effect).recurs || is_same_line(causes[own].finding, finding)) { return false; }
+    if (is_same(causes[own].finding, finding)) { return false; }
     for (std::size_t i = 0; i < causes.size(); ++i) {
-        const Finding& other = causes[i].finding;
-        if (i != own && other.effect == finding.effect && is_same_line(other, finding)) { return true; }
+        if (i != own && is_same(causes[i].finding, finding)) { return true; }
     }
     return false;
 }
 
 std::optional<std::size_t> CauseSet::place_of(const Finding& finding) const {
-    const bool recurs = traits_of(finding.effect).recurs;
-    const auto same = std::ranges::find_if(causes, [&](const FoundCause& cause) {
-        return cause.finding.effect == finding.effect && (!recurs || is_same_line(cause.finding, finding));
-    });
+    const auto same = std::ranges::find_if(
+        causes, [&](const FoundCause& cause) { return is_same(cause.finding, finding); });
     if (same == causes.end()) { return std::nullopt; }
     return static_cast<std::size_t>(same - causes.begin());
+}
+
+double CauseSet::needed_nats(std::size_t cause) const {
+    return &causes[cause].finding == main_cause() ? options_.evidence_min_nats : evidence_least_nats();
+}
+
+double CauseSet::own_nats(const Finding* again) const {
+    return again == nullptr || is_told_by_twin(*again) ? 0.0 : again->evidence_nats;
+}
+
+const Finding* CauseSet::gives_way_to(std::size_t cause, const Finding* again,
+                                      const std::vector<Finding>& found, const Hypotheses& beside_all) const {
+    if (is_of_codes(causes[cause].finding) || (again != nullptr && is_of_another(*again, cause))) {
+        return nullptr;
+    }
+    const Finding* rival = nullptr;
+    double most_nats = std::max(own_nats(again) + decisions.strong_nats, needed_nats(cause));
+    for (const Finding& one : found) {
+        const double nats = null_bias.taken_over_nats(one, beside_all);
+        if (is_new(one) && nats > most_nats) { rival = &one, most_nats = nats; }
+    }
+    return rival;
 }
 
 std::vector<Finding> CauseSet::rivals_of(const Finding& cause, const std::vector<Finding>& findings) const {
@@ -375,11 +394,8 @@ bool CauseSet::leave_out_if_needless(std::size_t place, double with_it_nats) {
     return false;
 }
 
-bool CauseSet::is_same_line(const Finding& a, const Finding& b) const {
-    if (!a.where.freq_hz || !b.where.freq_hz) { return false; }
-    const double near_hz = options_.same_line_resolutions / first_.prediction->duration_s();
-    return a.where.freq_hz->from < b.where.freq_hz->to + near_hz &&
-           b.where.freq_hz->from < a.where.freq_hz->to + near_hz;
+bool CauseSet::is_same(const Finding& a, const Finding& b) const {
+    return is_same_cause(a, b, first_.prediction->duration_s());
 }
 
 bool CauseSet::is_rival(const Finding& finding, const Finding& cause) const {

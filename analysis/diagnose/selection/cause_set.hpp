@@ -29,8 +29,6 @@ struct SelectionOptions {
     double evidence_min_nats = decisions.strong_nats;  // for a further cause
     // A share of the main cause's evidence: two right formulas of one filter differ by so much.
     double formulas_share = 5e-5;
-    // Of the frequency's resolution: what a line leaves nearer to itself than that is no other line.
-    double same_line_resolutions = 10.0;
     std::uint64_t seed = 1;
     unsigned threads = 0;
     std::function<bool(double)> on_progress{};  // false ends the work
@@ -86,6 +84,14 @@ public:
     // The place of the cause with the finding's effect and line; no value where there is none.
     std::optional<std::size_t> place_of(const Finding& finding) const;
 
+    // The evidence that a cause needs to stay, and that of the same found again without it (may be null).
+    double needed_nats(std::size_t cause) const;
+    double own_nats(const Finding* again) const;
+    // Of `found` without the cause, what does better in its place than `again`, the cause's own: it takes
+    // over strongly more, and enough. What it has beside all causes is not the cause's to give. Null where
+    // nothing does.
+    const Finding* gives_way_to(std::size_t cause, const Finding* again, const std::vector<Finding>& found,
+                                const Hypotheses& beside_all) const;
     // Of these findings, those that may stand in the cause's place.
     std::vector<Finding> rivals_of(const Finding& cause, const std::vector<Finding>& findings) const;
     // Of each estimator the best rival that is seen on axes of the cause, the best first; then rivals that
@@ -128,8 +134,7 @@ private:
     bool may_give_way(const Finding& cause, const Finding& rival) const;
     std::vector<Finding> rivals_on_one_axis(const FoundCause& cause) const;
     double evidence_nats_of(const std::vector<std::size_t>& places) const;
-    // What a steady line leaves beside itself is no other line: it wanders, or swells.
-    bool is_same_line(const Finding& a, const Finding& b) const;
+    bool is_same(const Finding& a, const Finding& b) const;
     // The axes of the cause on which something of the rival is seen, less those that it has as a cause
     // already.
     std::vector<std::size_t> axes_to_give(const Finding& cause, const Finding& rival) const;

@@ -443,32 +443,20 @@ private:
     }
 
     // Every cause with the others in the model; one that another effect does better by now gives way to it.
-    // What that effect has beside all causes is not the cause's to give.
     bool refit() {
-        std::vector<std::optional<Finding>> beside_all = set_.with_causes().findings;
-        const auto taken_over_nats = [&](const Finding& rival) {
-            return rival.evidence_nats - set_.null_bias.evidence_less_bias_nats(beside_all, rival);
-        };
+        Hypotheses beside_all = set_.with_causes();
         for (std::size_t i = 0; i < set_.causes.size();) {
             const std::vector<Finding> findings = set_.findings_of(set_.without(i).findings);
             const auto same = std::ranges::find(findings, set_.causes[i].finding.effect, &Finding::effect);
             const Finding* again = same == findings.end() ? nullptr : &*same;
-            const Finding* rival = nullptr;
-            for (const Finding& one : findings) {
-                if (!set_.is_new(one)) { continue; }
-                if (rival == nullptr || taken_over_nats(one) > taken_over_nats(*rival)) { rival = &one; }
-            }
-            const double rival_nats = rival == nullptr ? 0.0 : taken_over_nats(*rival);
-            const bool gives_way =
-                !CauseSet::is_of_codes(set_.causes[i].finding) && !stays_for_another(i, again) &&
-                rival_nats > own_nats(again) + decisions.strong_nats && rival_nats >= least_nats_of(i);
-            if (gives_way) { set_.causes[i].finding = *rival; }
-            const bool stays = gives_way || take_again(i, again);
+            const Finding* rival = set_.gives_way_to(i, again, findings, beside_all);
+            if (rival != nullptr) { set_.causes[i].finding = *rival; }
+            const bool stays = rival != nullptr || take_again(i, again);
             if (stays) {
                 set_.causes[i].rivals = set_.rivals_of(set_.causes[i].finding, findings);
                 ++i;
             }
-            if (gives_way || !stays) { beside_all = set_.with_causes().findings; }
+            if (rival != nullptr || !stays) { beside_all = set_.with_causes(); }
             if (!told()) { return false; }
         }
         return true;
@@ -494,29 +482,16 @@ private:
         return true;
     }
 
-    double least_nats_of(std::size_t cause) const {
-        return &set_.causes[cause].finding == set_.main_cause() ? options_.evidence_min_nats
-                                                                : set_.evidence_least_nats();
-    }
-
-    double own_nats(const Finding* again) const {
-        return again == nullptr || set_.is_told_by_twin(*again) ? 0.0 : again->evidence_nats;
-    }
-
-    bool stays_for_another(std::size_t cause, const Finding* again) const {
-        return again != nullptr && set_.is_of_another(*again, cause);
-    }
-
     // The cause as its effect is found again, null where it is not. A cause that has too little evidence by
     // now is no more; whether it stays.
     bool take_again(std::size_t cause, const Finding* again) {
-        if (stays_for_another(cause, again)) { return true; }
+        if (again != nullptr && set_.is_of_another(*again, cause)) { return true; }
         Finding& finding = set_.causes[cause].finding;
         if (CauseSet::is_of_codes(finding)) {
             if (again != nullptr) { finding = *again; }
             return true;
         }
-        if (own_nats(again) >= least_nats_of(cause)) {
+        if (set_.own_nats(again) >= set_.needed_nats(cause)) {
             finding = *again;
             return true;
         }

@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/analysis/diagnose/observed.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -37,7 +39,9 @@ TEST(CauseProbability, ComparesWithRivalsAndWithNothing) {
 
 // What is as strong beside all causes is a further cause, not a rival.
 TEST(CauseProbability, ComparesWithWhatARivalGainsByTheAbsence) {
+    const SensorModel model = calibrated_sensor();
     CauseSelection selection;
+    selection.last.prediction = prediction_of(recorded(model, 2000, 1), model);
     selection.last.findings = {std::nullopt, finding("temp_linear", 60.0)};
     const FoundCause cause = found(50.0, {finding("temp_linear", 70.0)});
     EXPECT_GT(with_probability(cause, selection, 40.0, {}).score, 0.99);

@@ -75,6 +75,38 @@ TEST_F(CauseSetTest, GivesNothingWhereNothingIsSeen) {
     EXPECT_TRUE(set.rivals_to_try(set.causes.front()).empty());
 }
 
+// What a rival has beside all causes speaks for a further cause, and not for it in the place of this one.
+TEST_F(CauseSetTest, GivesWayToWhatARivalTakesOverOnly) {
+    set.causes = {{finding("gauss_markov", {60.0, 0.0, 0.0}), {}}, {finding("tone", {0.0, 90.0, 0.0}), {}}};
+    const Finding again = finding("gauss_markov", {58.0, 0.0, 0.0});
+    const std::vector<Finding> found = {finding("heavy_tail", {200.0, 0.0, 0.0}),
+                                        finding("rrw_missing", {70.0, 0.0, 0.0}), again};
+    Hypotheses beside_all{
+        first.prediction, first.observation, {}, {finding("heavy_tail", {199.0, 0.0, 0.0})}};
+    const Finding* rival = set.gives_way_to(0, &again, found, beside_all);
+    ASSERT_NE(rival, nullptr);
+    EXPECT_EQ(rival->effect, "rrw_missing");
+    beside_all.findings.emplace_back(finding("rrw_missing", {30.0, 0.0, 0.0}));
+    EXPECT_EQ(set.gives_way_to(0, &again, found, beside_all), nullptr);
+    beside_all.findings = {};
+    rival = set.gives_way_to(0, &again, found, beside_all);
+    ASSERT_NE(rival, nullptr);
+    EXPECT_EQ(rival->effect, "heavy_tail");
+}
+
+// A tie is no reason to change, and what is a cause already takes no other's place.
+TEST_F(CauseSetTest, StaysBesideATieAndBesideOtherCauses) {
+    set.causes = {{finding("gauss_markov", {60.0, 0.0, 0.0}), {}},
+                  {finding("temp_cubic", {0.0, 90.0, 0.0}), {}}};
+    const Finding again = finding("gauss_markov", {58.0, 0.0, 0.0});
+    const std::vector<Finding> found = {finding("temp_cubic", {90.0, 0.0, 0.0}),
+                                        finding("rrw_missing", {60.0, 0.0, 0.0}), again};
+    EXPECT_EQ(set.gives_way_to(0, &again, found, first), nullptr);
+    const Finding* rival = set.gives_way_to(0, nullptr, found, first);
+    ASSERT_NE(rival, nullptr);
+    EXPECT_EQ(rival->effect, "rrw_missing");
+}
+
 // An exchange may remove a cause and move others; of causes that recur the line tells which one it is.
 TEST_F(CauseSetTest, FindsTheCauseThatAFindingWas) {
     const auto tone_at = [](double f_hz) {
