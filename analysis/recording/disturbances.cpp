@@ -5,14 +5,21 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <utility>
 
 #include "analysis/numerics/distributions.hpp"
 #include "analysis/numerics/exponential_tail.hpp"
+#include "analysis/numerics/normal_scores.hpp"
 #include "analysis/recording/grid_step.hpp"
 #include "analysis/recording/ringing.hpp"
+
+namespace gyrolog::resolution {
+
+// Of all numbers, that tell the scores.
+constexpr std::size_t magnitudes_most = 4096;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 namespace {
@@ -169,16 +176,36 @@ std::vector<double> without_pulse(std::vector<double> values) {
     return values;
 }
 
-struct Signal {
-    std::vector<Power> powers;   // by block
-    std::vector<double> excess;  // of the logarithm of the power over its level, in standard deviations
+// Twice the log-likelihood ratio of normal numbers with so many degrees of freedom whose power is `ratio`
+// times what it is elsewhere.
+double twice_gain_nats(double ratio, double degrees) {
+    return std::max(degrees * (ratio - 1.0 - std::log(ratio)), 0.0);
+}
+
+// The powers of blocks, and what they are around each.
+struct Course {
+    std::vector<Power> powers;
     std::vector<double> levels;
     double least_power = 0.0;
-    double sd_log = 0.0;
-    double loud_from = 0.0;
 
+    // Of a power in the place of the block's.
+    double over_level(const Power& power, std::size_t block) const { return power.log - levels[block]; }
+    double over_level(std::size_t block) const { return over_level(powers[block], block); }
+};
+
+struct Signal {
+    Course raw;
+    std::vector<double> scores;  // of the numbers, normal
+    Course loudness;             // of these
+    double degrees = 0.0;        // of freedom of a block of them
+    double loud_from = 0.0;
+    // Of the loudness over its level, by block: the signed root of twice the gain, nearly a normal variable.
+    std::vector<double> excess;
+
+    double root(double over_level) const {
+        return std::copysign(std::sqrt(twice_gain_nats(std::exp(over_level), degrees)), over_level);
+    }
     bool is_loud(std::size_t block) const { return excess[block] > loud_from; }
-    double ratio(std::size_t block) const { return std::exp(powers[block].log - levels[block]); }
 };
 
 // The grid's step. grid_step() wants four codes: of two or three it is the widest gap between them. 0: no
@@ -200,49 +227,77 @@ double code_step(std::span<const double> values) {
 
 // Numbers on two neighbouring codes have no more power (Popoviciu 1935): how often they change from one to
 // the other is no loudness.
-double power_of_codes(std::span<const double> values) {
-    const double step = code_step(values);
-    return std::max(step * step / 4.0, std::numeric_limits<double>::min());
-}
+double power_of_codes(double step) { return std::max(step * step / 4.0, std::numeric_limits<double>::min()); }
 
-double sd_of_logs(const Signal& signal, std::size_t samples_per_block) {
+// A logarithm of a chi-squared variable has the variance 2 / degrees. Numbers that depend on their neighbours
+// have fewer degrees than there are numbers; coarse codes may have no spread.
+double degrees_of(const Course& loudness, std::size_t samples_per_block) {
     std::vector<double> off;
-    for (std::size_t block = 0; block < signal.powers.size(); ++block) {
-        off.push_back(std::abs(signal.powers[block].log - signal.levels[block]));
+    for (std::size_t block = 0; block < loudness.powers.size(); ++block) {
+        off.push_back(std::abs(loudness.over_level(block)));
     }
-    // A logarithm of a chi-squared variable has this spread at least; coarse codes may have none.
-    const double degrees = static_cast<double>(samples_per_block) - fitted_per_block;
-    return std::max(sd_per_mad * median_of(std::move(off)), std::sqrt(2.0 / degrees));
+    const double sd = sd_per_mad * median_of(std::move(off));
+    const double most = static_cast<double>(samples_per_block) - fitted_per_block;
+    return 2.0 / std::max(sd * sd, 2.0 / most);
 }
 
-// Of a normal variable, over the threshold that a share of them exceeds.
-double normal_mean_excess(double share) {
-    const double quantile = normal_upper_quantile(share);
-    return std::exp(-0.5 * quantile * quantile) / (share * std::sqrt(2.0 * std::numbers::pi)) - quantile;
+// In the place of each number in a block its signed normal score about the block's median: what is seldom far
+// off weighs as it does in normal noise, however far it is. `step`: that of the numbers' grid, whose score
+// comes back.
+double take_scores(std::span<const double> values, const std::vector<Block>& blocks, double step,
+                   std::vector<double>& scores) {
+    scores.assign(values.size(), 0.0);
+    std::vector<double> magnitudes;
+    const std::size_t every = 1 + blocks.size() * blocks.front().count / resolution::magnitudes_most;
+    for (const Block& block : blocks) {
+        const auto here = values.subspan(block.first, block.count);
+        const double median = median_of({here.begin(), here.end()});
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            scores[block.first + i] = here[i] - median;
+            if ((block.first + i) % every == 0) { magnitudes.push_back(std::abs(here[i] - median)); }
+        }
+    }
+    const NormalScores of_magnitudes(std::move(magnitudes));
+    for (double& score : scores) {
+        if (score != 0.0) { score = std::copysign(of_magnitudes.of(std::abs(score)), score); }
+    }
+    return step > 0.0 ? of_magnitudes.of(step) : 0.0;
+}
+
+Course course_of(std::span<const double> values, const std::vector<Block>& blocks, double least_power,
+                 double longest_share, const DisturbanceOptions& options) {
+    Course course;
+    course.least_power = least_power;
+    for (const Block& block : blocks) {
+        course.powers.push_back(power_of(values.subspan(block.first, block.count), least_power));
+    }
+    course.levels = levels_of(course.powers, longest_share, options);
+    return course;
 }
 
 Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double longest_share,
                  const DisturbanceOptions& options) {
     Signal signal;
     signal.loud_from = normal_upper_quantile(1.0 / static_cast<double>(blocks.size()));
-    signal.least_power = power_of_codes(values);
-    for (const Block& block : blocks) {
-        signal.powers.push_back(power_of(values.subspan(block.first, block.count), signal.least_power));
-    }
-    signal.levels = levels_of(signal.powers, longest_share, options);
-    signal.sd_log = sd_of_logs(signal, blocks.front().count);
+    const double step = code_step(values);
+    const double step_score = take_scores(values, blocks, step, signal.scores);
+    signal.raw = course_of(values, blocks, power_of_codes(step), longest_share, options);
+    signal.loudness = course_of(signal.scores, blocks, power_of_codes(step_score), longest_share, options);
+    signal.degrees = degrees_of(signal.loudness, blocks.front().count);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-        signal.excess.push_back((signal.powers[i].log - signal.levels[i]) / signal.sd_log);
+        signal.excess.push_back(signal.root(signal.loudness.over_level(i)));
     }
     return signal;
 }
 
 // Two jumps of one bias in a block are no bump. Two half periods of a bump are hardly more than a pulse and a
 // step, which have as many parameters as an oscillation that dies out: what leaves less of the block is it.
-bool is_pulse(const Signal& signal, std::span<const double> values, std::size_t block) {
-    const Power rest = power_of(without_pulse({values.begin(), values.end()}), signal.least_power);
-    if ((rest.log - signal.levels[block]) / signal.sd_log > signal.loud_from) { return false; }
-    return rest.log <= power_of_rest(without_ringing(values), signal.least_power).log;
+bool is_pulse(const Signal& signal, const Block& at, std::size_t block) {
+    const auto scores = std::span(signal.scores).subspan(at.first, at.count);
+    const double least = signal.loudness.least_power;
+    const Power rest = power_of(without_pulse({scores.begin(), scores.end()}), least);
+    if (signal.root(signal.loudness.over_level(rest, block)) > signal.loud_from) { return false; }
+    return rest.log <= power_of_rest(without_ringing(scores), least).log;
 }
 
 // -ln (P(X >= least) / p^least) of a binomial variable X. The power of p, which may be too small for a
@@ -282,16 +337,16 @@ bool is_loud_in_sum(const std::vector<Signal>& signals, std::size_t block) {
 
 // Of a variance of its own: the likelihood ratio of a block of normal samples.
 double gain_nats(const Signal& signal, std::size_t block, std::size_t count) {
-    const double ratio = signal.ratio(block);
+    const double ratio = std::exp(signal.raw.over_level(block));
     const double degrees = static_cast<double>(count) - fitted_per_block;
-    return ratio > 1.0 ? 0.5 * degrees * (ratio - 1.0 - std::log(ratio)) : 0.0;
+    return ratio > 1.0 ? 0.5 * twice_gain_nats(ratio, degrees) : 0.0;
 }
 
 void add_block(Disturbance& disturbance, const std::vector<Signal>& signals, std::size_t block,
                std::size_t count) {
     for (std::size_t s = 0; s < signals.size(); ++s) {
         disturbance.gain_nats[s] += gain_nats(signals[s], block, count);
-        disturbance.largest = std::max(disturbance.largest, signals[s].powers[block].largest);
+        disturbance.largest = std::max(disturbance.largest, signals[s].raw.powers[block].largest);
         if (signals[s].is_loud(block) && std::ranges::count(disturbance.loud, s) == 0) {
             disturbance.loud.push_back(s);
         }
@@ -301,20 +356,19 @@ void add_block(Disturbance& disturbance, const std::vector<Signal>& signals, std
 // Of some signals in the blocks that are not disturbed, what is: in a row of passes, each with what is left.
 class DisturbedBlocks {
 public:
-    DisturbedBlocks(const std::vector<Signal>& signals, std::span<const std::vector<double>> values,
-                    const std::vector<Block>& blocks)
-        : signals_(signals), values_(values), blocks_(blocks), is_disturbed_(blocks.size(), false) {}
+    DisturbedBlocks(const std::vector<Signal>& signals, const std::vector<Block>& blocks)
+        : signals_(signals), blocks_(blocks), is_disturbed_(blocks.size(), false) {}
 
     // Blocks in which several signals are loud at once, as by chance they are not.
     void take_loud_at_once(ExponentialTailOptions options, double chance) {
         const std::vector<std::size_t> left = undisturbed();
         std::vector<std::vector<double>> nats;
-        options.mean_least = normal_mean_excess(options.share);
+        options.mean_least = 1.0;
         for (const Signal& signal : signals_) {
-            const std::vector<double> excess = excess_of(signal, left);
-            const auto tail = ExponentialTail::of(excess, options);
+            const std::vector<double> gains = gains_of(signal, left);
+            const auto tail = ExponentialTail::of(gains, options);
             if (!tail) { return; }
-            nats.push_back(tail->surprisals_nats(excess));
+            nats.push_back(tail->surprisals_nats(gains));
         }
         std::vector<double> at_once(left.size());
         std::vector<double> each(nats.size());
@@ -323,7 +377,6 @@ public:
                                    [&](const std::vector<double>& of_signal) { return of_signal[i]; });
             at_once[i] = surprisal_of_several(each);
         }
-        options.mean_least = 1.0;
         const auto tail = ExponentialTail::of(at_once, options);
         const double end = tail->end(at_once, chance, beyond_);
         for (std::size_t i = 0; i < left.size(); ++i) {
@@ -334,16 +387,14 @@ public:
     // Blocks in which one signal is louder than it is otherwise.
     void take_loud_alone(ExponentialTailOptions options, double chance) {
         const std::vector<std::size_t> left = undisturbed();
-        options.mean_least = normal_mean_excess(options.share);
+        options.mean_least = 1.0;
         for (std::size_t s = 0; s < signals_.size(); ++s) {
-            const std::vector<double> excess = excess_of(signals_[s], left);
-            const auto tail = ExponentialTail::of(excess, options);
+            const std::vector<double> gains = gains_of(signals_[s], left);
+            const auto tail = ExponentialTail::of(gains, options);
             if (!tail) { return; }
-            const double end = tail->end(excess, chance, beyond_);
+            const double end = tail->end(gains, chance, beyond_);
             for (std::size_t i = 0; i < left.size(); ++i) {
-                const Block& block = blocks_[left[i]];
-                const auto of_block = std::span(values_[s]).subspan(block.first, block.count);
-                if (excess[i] > end && !is_pulse(signals_[s], of_block, left[i])) { take(left[i]); }
+                if (gains[i] > end && !is_pulse(signals_[s], blocks_[left[i]], left[i])) { take(left[i]); }
             }
         }
     }
@@ -359,11 +410,14 @@ private:
         return left;
     }
 
-    static std::vector<double> excess_of(const Signal& signal, const std::vector<std::size_t>& blocks) {
-        std::vector<double> excess(blocks.size());
-        std::ranges::transform(blocks, excess.begin(),
-                               [&](std::size_t block) { return signal.excess[block]; });
-        return excess;
+    // In nats, signed as the excess. Beyond a high threshold half a normal variable's square has a mean of 1
+    // nat at most.
+    static std::vector<double> gains_of(const Signal& signal, const std::vector<std::size_t>& blocks) {
+        std::vector<double> gains(blocks.size());
+        std::ranges::transform(blocks, gains.begin(), [&](std::size_t block) {
+            return 0.5 * signal.excess[block] * std::abs(signal.excess[block]);
+        });
+        return gains;
     }
 
     // With those beside it as long as a signal that is loud there stays so, or all together are.
@@ -383,17 +437,15 @@ private:
     }
 
     const std::vector<Signal>& signals_;
-    std::span<const std::vector<double>> values_;
     const std::vector<Block>& blocks_;
     std::vector<bool> is_disturbed_;
     std::size_t beyond_ = 0;  // of these, that are so without those beside
 };
 
 // First as many blocks are censored as may be disturbed; a sharper tail is that of what is left then.
-std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals,
-                                   std::span<const std::vector<double>> values,
-                                   const std::vector<Block>& blocks, const DisturbanceOptions& options) {
-    DisturbedBlocks disturbed(signals, values, blocks);
+std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals, const std::vector<Block>& blocks,
+                                   const DisturbanceOptions& options) {
+    DisturbedBlocks disturbed(signals, blocks);
     const auto tails = static_cast<double>((signals.size() + 2) * options.block_lengths.size());
     const double chance = options.false_alarms_most / tails;
     if (signals.size() > 1) {
@@ -418,7 +470,7 @@ Seen seen_in_blocks(const Recording& recording, std::span<const std::vector<doub
     for (const std::vector<double>& signal : signals) {
         seen.signals.push_back(signal_of(signal, seen.blocks, longest_share, options));
     }
-    seen.disturbed = disturbed_blocks(seen.signals, signals, seen.blocks, options);
+    seen.disturbed = disturbed_blocks(seen.signals, seen.blocks, options);
     return seen;
 }
 

@@ -1,11 +1,14 @@
 // Disturbances are short stretches in which something outside moved the sensor: a bump on the bench, a shock,
 // a hand on the cable.
 //
-// A sensor's own noise is loud on one axis at a time, and about as loud as its other loud stretches are. The
-// power of a block of the recording is what is left about two means with one step between them, less its two
-// largest squares, so that neither a step of the bias nor single samples that are off count.
-// A block is loud on an axis where the logarithm of its power lies above the axis' median around it by more
-// than chance has it. Blocks have two lengths: two half periods of a slow bump are a step in a short one.
+// A sensor's own noise is loud on one axis at a time, and about as loud as its other loud stretches are. In
+// the place of the samples stand their normal scores about the median of their block, so that a heavy tail
+// weighs no more than that of normal noise. The power of a block of the recording is what is left of these
+// about two means with one step between them, less its two largest squares, so that neither a step of the
+// bias nor single samples that are off count.
+// A block is loud on an axis where a power of its own, other than the axis' median around it, gains more in
+// likelihood than chance has it. Blocks have two lengths: two half periods of a slow bump are a step in a
+// short one.
 //
 // A block is disturbed that lies beyond the tail of one axis' own blocks, for a bump may move one axis alone,
 // unless it is a pulse of the sensor's own rather than a swing that dies out, or in which several axes are as
