@@ -63,9 +63,7 @@ namespace {
 
 using UsedSimulations = std::vector<const std::vector<GapCurve>*>;
 
-// Returns, by point, the part of the square of the measure's least_sd by which the simulations' variance
-// falls short of it.
-std::vector<double> add_points(const UsedSimulations& used, std::size_t c, GapReference& reference) {
+void add_points(const UsedSimulations& used, std::size_t c, GapReference& reference) {
     const auto count = static_cast<double>(used.size());
     const GapCurve& first = (*used.front())[c];
     const std::size_t points = first.value.size();
@@ -84,13 +82,12 @@ std::vector<double> add_points(const UsedSimulations& used, std::size_t c, GapRe
     }
     reference.mean.push_back(std::move(mean));
     reference.sd.push_back(std::move(sd));
-    return missing;
+    reference.missing.push_back(std::move(missing));
 }
 
 // To the mean and variance of the sum of squares each point adds what its variance is short of, as a normal
 // variable's: z counts it as there.
-void add_sums(const UsedSimulations& used, std::size_t c, const std::vector<double>& missing,
-              GapReference& reference) {
+void add_sums(const UsedSimulations& used, std::size_t c, GapReference& reference) {
     const auto count = static_cast<double>(used.size());
     double sum = 0.0;
     double squares = 0.0;
@@ -109,7 +106,7 @@ void add_sums(const UsedSimulations& used, std::size_t c, const std::vector<doub
     for (double& sd : window_sd) { sd = std::max(std::sqrt(sd), 1.0); }
     double average = sum / count;
     double variance = std::max(squares / count - average * average, 0.0);
-    for (const double part : missing) {
+    for (const double part : reference.missing[c]) {
         average += part;
         variance += 2.0 * part * part;
     }
@@ -160,7 +157,8 @@ GapReference gap_reference(const SimulatedCurves& simulations, std::optional<std
     GapReference reference;
     reference.degrees_of_freedom = static_cast<double>(used.size()) - 1.0;
     for (std::size_t c = 0; c < used.front()->size(); ++c) {
-        add_sums(used, c, add_points(used, c, reference), reference);
+        add_points(used, c, reference);
+        add_sums(used, c, reference);
     }
     return reference;
 }

@@ -12,12 +12,14 @@ namespace gyrolog {
 
 struct GapReference {
     std::vector<std::vector<double>> mean;  // by curve, by point
-    std::vector<std::vector<double>> sd;
+    std::vector<std::vector<double>> sd;    // the measure's least_sd at least
+    // The part of sd^2 by which the simulations' own variance falls short of it. A sum over points has this
+    // part as well, as if the simulations scattered by sd.
+    std::vector<std::vector<double>> missing;
     // By curve, by window over neighbouring points: the standard deviation of the sum of their z.
     std::vector<std::vector<double>> window_sd;
     std::vector<double> rms_scale;  // by curve: root mean square, over simulations, of their own rms z
-    // By curve: mean and variance, over the simulations, of the sum of z^2. A point at which they scatter by
-    // less than the measure's least_sd has its share as if they scattered by that.
+    // By curve: mean and variance, over the simulations, of the sum of z^2.
     std::vector<double> square_mean, square_variance;
     double degrees_of_freedom = 0.0;  // of every sd
 };

@@ -242,15 +242,27 @@ private:
             directions.push_back(std::move(along));
         }
         directions_.push_back(std::move(directions));
-        direction_sd_.emplace_back(directions_[fold].size(), 0.0);
+        std::vector<double> direction_sd;
+        for (std::size_t d = 0; d < directions_[fold].size(); ++d) {
+            direction_sd.push_back(sd_along(fold, d));
+        }
+        direction_sd_.push_back(std::move(direction_sd));
+        add_floor(fold);
+    }
+
+    double sd_along(std::size_t fold, std::size_t direction) const {
+        double variance = 0.0;
         for (const Curves& curves : simulated_[fold]) {
-            for (std::size_t d = 0; d < directions_[fold].size(); ++d) {
-                direction_sd_[fold][d] += square(along(curves, references_[fold], fold, d)) /
-                                          (static_cast<double>(options_.simulations) - 1.0);
+            variance += square(along(curves, references_[fold], fold, direction)) /
+                        (static_cast<double>(options_.simulations) - 1.0);
+        }
+        const Difference& weights = directions_[fold][direction];
+        for (std::size_t c = 0; c < weights.size(); ++c) {
+            for (std::size_t p = 0; p < weights[c].size(); ++p) {
+                variance += square(weights[c][p]) * references_[fold].missing[c][p];
             }
         }
-        for (double& sd : direction_sd_[fold]) { sd = std::sqrt(sd); }
-        add_floor(fold);
+        return std::sqrt(variance);
     }
 
     void add_floor(std::size_t fold) {

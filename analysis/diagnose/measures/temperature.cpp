@@ -18,7 +18,8 @@ const Measure measures::temperature{.name = "temperature",
                                     .y_name = "mean (its sd)",
                                     .shown_x = as_it_is,
                                     .shown_y = as_it_is,
-                                    .locate = locate_temperature};
+                                    .locate = locate_temperature,
+                                    .least_sd = 1.0};
 
 void add_temperature_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     const std::vector<float>& temperature_C = observation.prediction().temperature_C();

@@ -1,5 +1,6 @@
 #include "analysis/diagnose/calibration/measured_gap.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -126,6 +127,27 @@ TEST(MeasuredGap, SeesAWeakCauseByItsDirection) {
         mean_nats += measured(trial_of(model, recording, {finding})).returning_nats.front() / recordings;
     }
     EXPECT_GT(mean_nats, 2.0 * told_nats);
+}
+
+// The rate changes within a dead zone, and simulations that have it all say the same there: what they scatter
+// by is no scale for a recording without it.
+TEST(MeasuredGap, TakesNoScaleFromWhereSimulationsDoNotDiffer) {
+    SensorModel model = calibrated_sensor();
+    model.ref_noise_rad_s = 0.02 * rad_per_deg;
+    model.sd_abs = {{"M", 2e-4}, {"latency_s", 1e-4}, {"rate_rel", 5e-5}};
+    const auto world = world_turning([](double t_s) {
+        const double peak_rad_s = 0.5 * std::max(0.0, std::sin(2.0 * M_PI * t_s / 40.0));
+        return Vector3{peak_rad_s * std::sin(2.0 * M_PI * t_s / 3.7),
+                       peak_rad_s * std::sin(2.0 * M_PI * t_s / 2.3),
+                       peak_rad_s * std::sin(2.0 * M_PI * t_s / 1.7)};
+    });
+    const auto recording = recorded(model, samples, 58, world);
+    const SensorModel dead =
+        with_effect(model, "dead_zone", {{"width_dps", 0.07}, {"jump", 1.0}}, {"x", "y", "z"});
+    const Finding dead_zone = finding_of("dead_zone", model, recorded(dead, samples, 57, world));
+    GapTrial trial = trial_of(model, recording, {dead_zone});
+    for (Fold& fold : trial.folds) { fold.causes = {dead_zone}; }
+    EXPECT_LT(measured(trial).before.value, 2.0);
 }
 
 // A change of noise in the coefficients of one half alone, which no law of nature would make: what either
