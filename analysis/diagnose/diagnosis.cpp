@@ -373,8 +373,8 @@ private:
     // That is the first model's where every cause was left out.
     void describe_measured_gap() {
         if (!measured_) { return; }
-        answer_.gap_before = measured_->before;
-        answer_.gap_named = found_.causes.empty() ? measured_->before : measured_->named;
+        answer_.gap_before = measured_->judged;
+        answer_.gap_named = found_.causes.empty() ? measured_->judged : measured_->named;
         answer_.gap_after = unnamed_.empty() ? answer_.gap_named : measured_->after;
         answer_.floor_nats = measured_->floor_nats;
         answer_.excess_nats = measured_->excess_nats;

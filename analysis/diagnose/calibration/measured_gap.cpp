@@ -114,12 +114,14 @@ public:
         const Surprisal named =
             trial_.unnamed == 0 ? after : with_models([&](std::size_t f) { return named_model(f); });
         const double before_nats = before.nats + trial_.stamps_before_nats;
+        const double judged_nats = std::max(before_nats, floor_nats_ + floor_sd_nats_);
         const double named_nats = named.nats + trial_.stamps_named_nats;
         const double after_nats = after.nats + trial_.stamps_named_nats;
         gap.before = gap_of_nats(before_nats, before);
+        gap.judged = gap_of_nats(judged_nats, before);
         gap.named = gap_of_nats(named_nats, named);
         gap.after = gap_of_nats(after_nats, after);
-        gap.excess_nats = std::max(before_nats - floor_nats_, floor_sd_nats_);
+        gap.excess_nats = judged_nats - floor_nats_;
         gap.shrink = shrink(named_nats, named, gap.excess_nats);
         gap.shrink_modelled = shrink(after_nats, after, gap.excess_nats);
         for (std::size_t i = 0; i < trial_.causes.size(); ++i) {

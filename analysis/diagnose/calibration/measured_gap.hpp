@@ -55,13 +55,16 @@ struct MeasuredGapOptions {
 
 struct MeasuredGap {
     Gap before, named;
+    // That before, as one that is known to be there: no less than the floor and its standard deviation. The
+    // judgement rests on more than this measure, in which a gap may drown. All shares are of it.
+    Gap judged;
     Gap after;  // with the forms without a name; `named` where there are none
     Share shrink;
     Share shrink_modelled;               // with those forms
     std::vector<Share> shares;           // by cause or form
     std::vector<double> returning_nats;  // by cause or form: the surprisal that returns without it
     double floor_nats = 0.0;             // a simulation's surprisal
-    double excess_nats = 0.0;            // the recording's under the first model, beyond that
+    double excess_nats = 0.0;            // of the judged gap, beyond that
 };
 
 // The function returns no value when ended early.
