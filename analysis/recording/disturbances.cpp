@@ -388,13 +388,13 @@ public:
     void take_loud_alone(ExponentialTailOptions options, double chance) {
         const std::vector<std::size_t> left = undisturbed();
         options.mean_least = 1.0;
-        for (std::size_t s = 0; s < signals_.size(); ++s) {
-            const std::vector<double> gains = gains_of(signals_[s], left);
+        for (const Signal& signal : signals_) {
+            const std::vector<double> gains = gains_of(signal, left);
             const auto tail = ExponentialTail::of(gains, options);
             if (!tail) { return; }
             const double end = tail->end(gains, chance, beyond_);
             for (std::size_t i = 0; i < left.size(); ++i) {
-                if (gains[i] > end && !is_pulse(signals_[s], blocks_[left[i]], left[i])) { take(left[i]); }
+                if (gains[i] > end && !is_pulse(signal, blocks_[left[i]], left[i])) { take(left[i]); }
             }
         }
     }
