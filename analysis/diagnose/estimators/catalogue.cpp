@@ -43,7 +43,6 @@ constexpr EstimatorTraits rows[] = {
     {.method = EvidenceMethod::narrow_band,
      .make = make_narrow_band_estimator,
      .is_noise = true,
-     .is_finer_than_bins = true,
      .recurs = true},
     {.method = EvidenceMethod::step, .make = make_bias_step_estimator, .recurs = true},
     {.method = EvidenceMethod::random_telegraph,

@@ -40,9 +40,6 @@ struct EstimatorTraits {
     // What tells the effect is beside the spectra: in the samples' distribution, their codes, their stamps,
     // the course of their variance, what axes share.
     bool is_beside_spectra = false;
-    // The effect may be narrower than the bins of the spectra's likelihood, which then has a part of what
-    // tells it.
-    bool is_finer_than_bins = false;
     // The effect is a steady line. Its phase is the recording's, not the model's.
     bool is_line = false;
     // The effect may be there more than once, each time with parameters of its own.

@@ -60,12 +60,29 @@ double narrowest_band_hz(const Prediction& prediction) {
 class LocalSpectrum {
 public:
     LocalSpectrum(const Observation& observation, std::size_t axis, const Band& about)
-        : LocalSpectrum(observation, axis, about, resolution::finely_within_widths) {}
-
-    // The spectra's likelihood has its bins whole.
-    static double gain_in_whole_bins_nats(const Observation& observation, std::size_t axis,
-                                          const EffectDefinition& effect, const Band& band) {
-        return LocalSpectrum(observation, axis, band, 0.0).gain_nats(effect, band);
+        : axis_(axis), rate_hz_(observation.prediction().rate_hz()) {
+        const Prediction& prediction = observation.prediction();
+        const AxisObservation& seen = observation.axis(axis);
+        const double per_hz = 2.0 * static_cast<double>(prediction.length()) / rate_hz_;
+        const double reach = resolution::finely_within_widths * about.width_hz * per_hz;
+        const double middle = about.f_hz * per_hz;
+        const auto small = static_cast<std::size_t>(
+            std::max(1.0, std::floor(about.width_hz * per_hz / resolution::bins_per_width)));
+        for (std::size_t i = 0; i < prediction.bins().size(); ++i) {
+            const SpectralBin& bin = prediction.bins()[i];
+            const bool is_near = static_cast<double>(bin.end) > middle - reach &&
+                                 static_cast<double>(bin.first) < middle + reach;
+            if (!is_near || bin.end - bin.first <= small) {
+                add(bin, seen.power[i], prediction.parts(axis)[i]);
+                continue;
+            }
+            for (std::size_t first = bin.first; first < bin.end; first += small) {
+                cut(bin, first, std::min(bin.end, first + small), seen.cosines, prediction.parts(axis)[i]);
+            }
+        }
+        sd_rel_ = noise_uncertainty(prediction.model(), axis);
+        start_ = seen.noise;
+        without_nats_ = fit_nuisance(bins_, parts_, power_, sd_rel_, start_).log_likelihood_nats;
     }
 
     std::size_t axis() const { return axis_; }
@@ -79,33 +96,6 @@ public:
     }
 
 private:
-    // With small bins within so many widths.
-    LocalSpectrum(const Observation& observation, std::size_t axis, const Band& about, double widths)
-        : axis_(axis), rate_hz_(observation.prediction().rate_hz()) {
-        const Prediction& prediction = observation.prediction();
-        const AxisObservation& seen = observation.axis(axis);
-        const double per_hz = coefficients_per_hz(prediction);
-        const double reach = widths * about.width_hz * per_hz;
-        const double middle = about.f_hz * per_hz;
-        const auto small = static_cast<std::size_t>(
-            std::max(1.0, std::floor(about.width_hz * per_hz / resolution::bins_per_width)));
-        for (std::size_t i = 0; i < prediction.bins().size(); ++i) {
-            const SpectralBin& bin = prediction.bins()[i];
-            const bool is_near = static_cast<double>(bin.end) > middle - reach &&
-                                 static_cast<double>(bin.first) < middle + reach;
-            if (widths == 0.0 || !is_near || bin.end - bin.first <= small) {
-                add(bin, seen.power[i], prediction.parts(axis)[i]);
-                continue;
-            }
-            for (std::size_t first = bin.first; first < bin.end; first += small) {
-                cut(bin, first, std::min(bin.end, first + small), seen.cosines, prediction.parts(axis)[i]);
-            }
-        }
-        sd_rel_ = noise_uncertainty(prediction.model(), axis);
-        start_ = seen.noise;
-        without_nats_ = fit_nuisance(bins_, parts_, power_, sd_rel_, start_).log_likelihood_nats;
-    }
-
     void add(const SpectralBin& bin, double power, const SpectralParts& parts) {
         bins_.push_back(bin);
         f_hz_.push_back(bin.f_hz);
@@ -142,9 +132,8 @@ private:
 // One band on some axes: middle and width in common.
 struct BandFit {
     std::vector<std::size_t> axes;
-    std::vector<Band> bands;            // by axis
-    std::vector<double> gain_nats;      // by axis
-    std::vector<double> spectral_nats;  // of these, what whole bins have
+    std::vector<Band> bands;        // by axis
+    std::vector<double> gain_nats;  // by axis
     double f_sd_hz = 0.0;
     double log_width_sd = 0.0;
     std::vector<double> log_sigma_sd;  // by axis
@@ -299,8 +288,6 @@ private:
         for (std::size_t i = 0; i < spectra.size(); ++i) {
             fit.bands.push_back(band(maximum.at, i));
             fit.gain_nats.push_back(spectra[i].gain_nats(effect_, fit.bands.back()));
-            fit.spectral_nats.push_back(
-                LocalSpectrum::gain_in_whole_bins_nats(observation, axes[i], effect_, fit.bands.back()));
             fit.log_sigma_sd.push_back(sd[2 + i]);
         }
         return fit;
@@ -345,7 +332,6 @@ private:
             AxesFit one;
             one.axes = {fit.axes[i]};
             one.gain_nats = {fit.gain_nats[i]};
-            one.spectral_nats = {fit.spectral_nats[i]};
             one.params = {{"sigma_dps", sigma_dps}};
             one.sd = {{"sigma_dps", sigma_dps * fit.log_sigma_sd[i]}};
             one.cost_nats = height_cost_nats(fit.bands[i].sigma_rad_s, fit.log_sigma_sd[i]);

@@ -329,7 +329,7 @@ double CauseSet::worth_beside_spectra_nats() const {
 
 double CauseSet::worth_beside_spectra_nats(const Finding& finding) {
     const EstimatorTraits& traits = traits_of(finding.effect);
-    const bool is_told_beside = traits.is_beside_spectra || traits.is_finer_than_bins || !traits.twin.empty();
+    const bool is_told_beside = traits.is_beside_spectra || !traits.twin.empty();
     return finding.evidence_nats - (is_told_beside ? finding.spectral_nats() : finding.gain_nats);
 }
 

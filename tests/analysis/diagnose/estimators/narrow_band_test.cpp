@@ -40,20 +40,6 @@ std::optional<Finding> band_in(const SensorModel& sensor, std::uint64_t seed) {
                  calibrated_sensor());
 }
 
-// The bins of the spectra's likelihood grow with the frequency. It has all of a wide band's gain, and a part
-// of a narrow one's, which is beside the louder noise all the same.
-TEST(NarrowBand, CountsWhatWholeBinsOfTheSpectrumLack) {
-    const auto wide = band_in(with_band(calibrated_sensor(), 34.0, 2.0, 0.01), 81);
-    ASSERT_TRUE(wide);
-    EXPECT_NEAR(wide->spectral_nats(), wide->gain_nats, 0.1 * wide->gain_nats);
-    const auto narrow = band_in(with_band(calibrated_sensor(), 34.0, 0.03, 0.006), 82);
-    ASSERT_TRUE(narrow);
-    EXPECT_LT(narrow->spectral_nats(), 0.5 * narrow->gain_nats);
-    const SensorModel sensor = with_effect(with_band(calibrated_sensor(), 38.0, 0.03, 0.006), "arw_scale",
-                                           {{"factor", 1.05}}, {"x", "y", "z"});
-    EXPECT_EQ(causes_of(sensor, 83, 22'000), (Names{"arw_scale", "narrowband"}));
-}
-
 // A resonance has a Lorentzian's skirts, a line that wanders has none.
 TEST(NarrowBandShape, IsToldByItsSkirts) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
