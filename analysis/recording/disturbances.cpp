@@ -14,13 +14,6 @@
 #include "analysis/recording/grid_step.hpp"
 #include "analysis/recording/ringing.hpp"
 
-namespace gyrolog::resolution {
-
-// Of all numbers, that tell the scores.
-constexpr std::size_t magnitudes_most = 4096;
-
-}  // namespace gyrolog::resolution
-
 namespace gyrolog {
 namespace {
 
@@ -241,14 +234,14 @@ double degrees_of(const Course& loudness, std::size_t samples_per_block) {
     return 2.0 / std::max(sd * sd, 2.0 / most);
 }
 
-// In the place of each number in a block its signed normal score about the block's median: what is seldom far
-// off weighs as it does in normal noise, however far it is. `step`: that of the numbers' grid, whose score
-// comes back.
+// Puts the signed normal score about its block's median in the place of each number: a number that is far off
+// weighs as much as the one of the same rank in normal noise. Returns the score of `step`, the step of the
+// numbers' grid.
 double take_scores(std::span<const double> values, const std::vector<Block>& blocks, double step,
-                   std::vector<double>& scores) {
+                   const DisturbanceOptions& options, std::vector<double>& scores) {
     scores.assign(values.size(), 0.0);
     std::vector<double> magnitudes;
-    const std::size_t every = 1 + blocks.size() * blocks.front().count / resolution::magnitudes_most;
+    const std::size_t every = 1 + blocks.size() * blocks.front().count / options.magnitudes_most;
     for (const Block& block : blocks) {
         const auto here = values.subspan(block.first, block.count);
         const double median = median_of({here.begin(), here.end()});
@@ -280,7 +273,7 @@ Signal signal_of(std::span<const double> values, const std::vector<Block>& block
     Signal signal;
     signal.loud_from = normal_upper_quantile(1.0 / static_cast<double>(blocks.size()));
     const double step = code_step(values);
-    const double step_score = take_scores(values, blocks, step, signal.scores);
+    const double step_score = take_scores(values, blocks, step, options, signal.scores);
     signal.raw = course_of(values, blocks, power_of_codes(step), longest_share, options);
     signal.loudness = course_of(signal.scores, blocks, power_of_codes(step_score), longest_share, options);
     signal.degrees = degrees_of(signal.loudness, blocks.front().count);
@@ -360,10 +353,9 @@ public:
         : signals_(signals), blocks_(blocks), is_disturbed_(blocks.size(), false) {}
 
     // Blocks in which several signals are loud at once, as by chance they are not.
-    void take_loud_at_once(ExponentialTailOptions options, double chance) {
+    void take_loud_at_once(const ExponentialTailOptions& options, double chance) {
         const std::vector<std::size_t> left = undisturbed();
         std::vector<std::vector<double>> nats;
-        options.mean_least = 1.0;
         for (const Signal& signal : signals_) {
             const std::vector<double> gains = gains_of(signal, left);
             const auto tail = ExponentialTail::of(gains, options);
@@ -385,9 +377,8 @@ public:
     }
 
     // Blocks in which one signal is louder than it is otherwise.
-    void take_loud_alone(ExponentialTailOptions options, double chance) {
+    void take_loud_alone(const ExponentialTailOptions& options, double chance) {
         const std::vector<std::size_t> left = undisturbed();
-        options.mean_least = 1.0;
         for (const Signal& signal : signals_) {
             const std::vector<double> gains = gains_of(signal, left);
             const auto tail = ExponentialTail::of(gains, options);
@@ -410,8 +401,7 @@ private:
         return left;
     }
 
-    // In nats, signed as the excess. Beyond a high threshold half a normal variable's square has a mean of 1
-    // nat at most.
+    // In nats, signed as the excess: half the square of a nearly normal variable.
     static std::vector<double> gains_of(const Signal& signal, const std::vector<std::size_t>& blocks) {
         std::vector<double> gains(blocks.size());
         std::ranges::transform(blocks, gains.begin(), [&](std::size_t block) {
@@ -448,11 +438,16 @@ std::vector<bool> disturbed_blocks(const std::vector<Signal>& signals, const std
     DisturbedBlocks disturbed(signals, blocks);
     const auto tails = static_cast<double>((signals.size() + 2) * options.block_lengths.size());
     const double chance = options.false_alarms_most / tails;
+    // What half a normal variable's square has beyond a threshold has a mean of 1 nat in the limit.
+    const ExponentialTailOptions of_the_rest{.mean_least = 1.0};
     if (signals.size() > 1) {
-        disturbed.take_loud_at_once({.share = 2.0 * options.together_share, .censored_share = 0.5}, chance);
-        disturbed.take_loud_at_once({}, chance);
+        ExponentialTailOptions of_all = of_the_rest;
+        of_all.share = 2.0 * options.together_share;
+        of_all.censored_share = 0.5;
+        disturbed.take_loud_at_once(of_all, chance);
+        disturbed.take_loud_at_once(of_the_rest, chance);
     }
-    disturbed.take_loud_alone({}, chance);
+    disturbed.take_loud_alone(of_the_rest, chance);
     return disturbed.are();
 }
 

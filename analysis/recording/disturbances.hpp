@@ -36,6 +36,9 @@ struct DisturbanceOptions {
     // Of the recordings without disturbances the share in which one is found, and of the blocks that are
     // found to be disturbed the share that is not.
     double false_alarms_most = 0.01;
+    // Numbers, spread over the recording, that the scores are ranked among: the largest score is 3.8. Among
+    // sixteen times as many, 86 instead of 85 of the test's 100 small bumps are found.
+    std::size_t magnitudes_most = 4096;
     // Shares of the recording. What lasts longer is not from outside, or cannot be told from a sensor whose
     // noise changes.
     double longest_share = 0.05;

@@ -121,6 +121,20 @@ TEST_F(CauseSetTest, FindsTheCauseThatAFindingWas) {
     EXPECT_EQ(set.place_of(finding("lowpass", {30.0, 0.0, 0.0})), std::nullopt);
 }
 
+TEST_F(CauseSetTest, TellsStepsByTheirInstants) {
+    const auto step_at = [](double t_s) {
+        Finding step = finding("bias_step", {20.0, 0.0, 0.0});
+        step.where.time_s = Span{t_s, t_s};
+        return step;
+    };
+    set.causes = {{step_at(7.0), {}}, {step_at(11.0), {}}};
+    EXPECT_EQ(set.place_of(step_at(11.0)), 1U);
+    EXPECT_FALSE(set.is_new(step_at(7.0)));
+    EXPECT_TRUE(set.is_new(step_at(9.0)));
+    EXPECT_TRUE(set.is_of_another(step_at(11.0), 0));
+    EXPECT_FALSE(set.is_of_another(step_at(9.0), 0));
+}
+
 // A walk of one size for all axes, which differ: with its size unknown on each axis any size would do.
 TEST(CauseSetOfSpectra, FitsThemAsTheModelSaysThem) {
     const SensorModel model = calibrated_sensor();
