@@ -114,14 +114,15 @@ public:
         const Surprisal named =
             trial_.unnamed == 0 ? after : with_models([&](std::size_t f) { return named_model(f); });
         const double before_nats = before.nats + trial_.stamps_before_nats;
-        const double judged_nats = std::max(before_nats, floor_nats_ + floor_sd_nats_);
+        const double judged_nats =
+            no_cause_holds() ? before_nats : std::max(before_nats, floor_nats_ + floor_sd_nats_);
         const double named_nats = named.nats + trial_.stamps_named_nats;
         const double after_nats = after.nats + trial_.stamps_named_nats;
         gap.before = gap_of_nats(before_nats, before);
         gap.judged = gap_of_nats(judged_nats, before);
         gap.named = gap_of_nats(named_nats, named);
         gap.after = gap_of_nats(after_nats, after);
-        gap.excess_nats = judged_nats - floor_nats_;
+        gap.excess_nats = std::max(judged_nats - floor_nats_, floor_sd_nats_);
         gap.shrink = shrink(named_nats, named, gap.excess_nats);
         gap.shrink_modelled = shrink(after_nats, after, gap.excess_nats);
         for (std::size_t i = 0; i < trial_.causes.size(); ++i) {
@@ -140,6 +141,13 @@ private:
     static std::size_t model_without(std::size_t cause) { return 1 + cause; }
     std::size_t fold_model(std::size_t fold) const { return 1 + trial_.causes.size() + fold; }
     std::size_t named_model(std::size_t fold) const { return fold_model(folds() + fold); }
+
+    // For the data that judge: every cause is an event of other data.
+    bool no_cause_holds() const {
+        return !trial_.causes.empty() && std::ranges::none_of(trial_.folds, [](const Fold& fold) {
+            return std::ranges::any_of(fold.causes, [](const auto& cause) { return cause.has_value(); });
+        });
+    }
 
     std::vector<std::optional<Finding>> named_of(const Fold& fold) const {
         return {fold.causes.begin(), fold.causes.end() - static_cast<std::ptrdiff_t>(trial_.unnamed)};

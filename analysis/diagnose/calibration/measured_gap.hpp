@@ -56,7 +56,8 @@ struct MeasuredGapOptions {
 struct MeasuredGap {
     Gap before, named;
     // That before, as one that is known to be there: no less than the floor and its standard deviation. The
-    // judgement rests on more than this measure, in which a gap may drown. All shares are of it.
+    // judgement rests on more than this measure, in which a gap may drown. Where every cause is an event of
+    // other data than those that judge, no gap is known to be there. All shares are of it.
     Gap judged;
     Gap after;  // with the forms without a name; `named` where there are none
     Share shrink;
@@ -64,7 +65,7 @@ struct MeasuredGap {
     std::vector<Share> shares;           // by cause or form
     std::vector<double> returning_nats;  // by cause or form: the surprisal that returns without it
     double floor_nats = 0.0;             // a simulation's surprisal
-    double excess_nats = 0.0;            // of the judged gap, beyond that
+    double excess_nats = 0.0;            // of the judged gap, beyond that; its standard deviation at least
 };
 
 // The function returns no value when ended early.
