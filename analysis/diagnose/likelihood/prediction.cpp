@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "analysis/diagnose/likelihood/denoised_reference.hpp"
+#include "analysis/diagnose/likelihood/level_changes.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"
@@ -110,6 +111,20 @@ SensorModel noiseless_and_certain(const SensorModel& model) {
     return noiseless;
 }
 
+// Calls take(slot, rate) for every sample of an axis within `length` slots from the index `origin` on.
+template <typename Take>
+void for_each_sample(const Recording& recording, std::size_t axis, std::int64_t origin, std::size_t length,
+                     Take take) {
+    const Column& column = *recording.find(gyro_columns[axis]);
+    for (const Segment& segment : recording.segments) {
+        for (std::size_t i = 0; i < segment.count; ++i) {
+            const auto slot = static_cast<std::size_t>(segment.first_index - origin) + i;
+            if (slot >= length) { return; }
+            take(slot, column.value(segment.first + i));
+        }
+    }
+}
+
 std::array<std::vector<float>, 3> simulated_answer(const Prediction& prediction,
                                                    std::shared_ptr<const RecordedWorld> world,
                                                    const SensorModel& noiseless) {
@@ -122,14 +137,10 @@ std::array<std::vector<float>, 3> simulated_answer(const Prediction& prediction,
     Recording piece;
     while (simulator.next(piece)) {
         for (const std::size_t axis : prediction.axes()) {
-            const Column& column = *piece.find(gyro_columns[axis]);
-            for (const Segment& segment : piece.segments) {
-                for (std::size_t i = 0; i < segment.count; ++i) {
-                    const auto slot = static_cast<std::size_t>(segment.first_index - origin) + i;
-                    if (slot >= prediction.length()) { break; }
-                    response[axis][slot] = static_cast<float>(column.value(segment.first + i));
-                }
-            }
+            for_each_sample(piece, axis, origin, prediction.length(),
+                            [&](std::size_t slot, double rate_rad_s) {
+                                response[axis][slot] = static_cast<float>(rate_rad_s);
+                            });
         }
     }
     return response;
@@ -187,9 +198,11 @@ Prediction::Prediction(std::shared_ptr<const RecordedWorld> world, const SensorM
     length_ = fast_length(slots_of(recording));
     if (!shared_) { shared_ = std::make_shared<Shared>(length_); }
     axes_ = axes_of(recording);
-    bins_ = spectral_bins(length_, rate_hz_, half_);
     read_temperature();
-    read_motion();
+    read_responses();
+    if (!shared_->level_changes) { shared_->level_changes = level_changes_of_recording(); }
+    bins_ = spectral_bins(length_, rate_hz_, half_, *shared_->level_changes);
+    if (moves()) { read_motion(); }
     expect_spectrum();
 }
 
@@ -202,13 +215,42 @@ void Prediction::read_temperature() {
     temperature_C_.assign(temperature_C.begin(), temperature_C.end());
 }
 
-void Prediction::read_motion() {
+void Prediction::read_responses() {
     std::shared_ptr<const RecordedWorld>& denoised = shared_->denoised_world;
     if (!denoised) { denoised = moves() ? without_reference_noise(*world_, model_.ref_noise_rad_s) : world_; }
     denoised_response_rad_s_ = noise_free_response(*this, denoised, model_);
     response_rad_s_ = denoised_response_rad_s_;
-    if (!moves()) { return; }
-    add_reference_noise();
+    if (moves()) { add_reference_noise(); }
+}
+
+// Of what the model does not expect, on any axis.
+std::vector<std::size_t> Prediction::level_changes_of_recording() const {
+    const Recording& recording = world_->recording();
+    const SpectralBins whole = spectral_bins(length_, rate_hz_);
+    const TransformPool::Lease transform = this->transform();
+    std::vector<std::size_t> changes;
+    for (const std::size_t axis : axes_) {
+        const std::int64_t origin = recording.segments.front().first_index;
+        std::vector<float> residual_rad_s(length_, 0.0F);
+        std::vector<std::size_t> present;
+        double sum_rad_s = 0.0;
+        for_each_sample(recording, axis, origin, length_, [&](std::size_t slot, double rate_rad_s) {
+            residual_rad_s[slot] = static_cast<float>(rate_rad_s) - response_rad_s_[axis][slot];
+            sum_rad_s += static_cast<double>(residual_rad_s[slot]);
+            present.push_back(slot);
+        });
+        const auto mean_rad_s = static_cast<float>(sum_rad_s / static_cast<double>(present.size()));
+        for (const std::size_t slot : present) { residual_rad_s[slot] -= mean_rad_s; }
+        const std::vector<std::size_t> of_axis = level_changes(cosines_of(residual_rad_s, *transform), whole);
+        changes.insert(changes.end(), of_axis.begin(), of_axis.end());
+    }
+    std::ranges::sort(changes);
+    changes.erase(std::ranges::unique(changes).begin(), changes.end());
+    return changes;
+}
+
+void Prediction::read_motion() {
+    const std::shared_ptr<const RecordedWorld> denoised = denoised_world();
     true_rate_rad_s_ = noise_free_response(*this, denoised, faultless(model_));
     SensorModel sooner = model_;
     SensorModel later = model_;

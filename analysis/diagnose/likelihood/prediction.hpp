@@ -96,19 +96,22 @@ public:
     TransformPool::Lease transform() const { return shared_->transforms.lease(); }
 
 private:
-    // What does not depend on the model.
+    // What predictions of other models have in common with the first.
     struct Shared {
         explicit Shared(std::size_t length) : transforms(length) {}
         ResponseMemory responses;
         RecentResponses recent;
         TransformPool transforms;
         std::shared_ptr<const RecordedWorld> denoised_world;
+        std::optional<std::vector<std::size_t>> level_changes;
     };
 
     Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
                std::shared_ptr<Shared> shared, Half half);
 
     void read_temperature();
+    void read_responses();
+    std::vector<std::size_t> level_changes_of_recording() const;
     void read_motion();
     std::array<std::vector<float>, 3> response_per_gain(std::size_t from) const;
     void add_reference_noise();

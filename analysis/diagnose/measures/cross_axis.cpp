@@ -58,7 +58,7 @@ GapCurve correlation_curve(const Observation& observation, std::size_t axis, std
     for (std::size_t band = 0; band + 1 < edges.size(); ++band) {
         const Products sum = products_of(a, b, bins, edges[band], edges[band + 1]);
         if (sum.count < 8.0) { continue; }
-        curve.x.push_back(std::sqrt(bins[edges[band]].f_hz * bins[edges[band + 1] - 1].f_hz));
+        curve.x.push_back(middle_hz(bins, edges[band], edges[band + 1]));
         curve.value.push_back(sum.product / std::sqrt(std::max(sum.squares_a * sum.squares_b, 1e-300)) *
                               std::sqrt(sum.count));
     }

@@ -12,4 +12,7 @@ namespace gyrolog {
 // each.
 std::vector<std::size_t> band_edges(const SpectralBins& bins);
 
+// The geometric middle of the bins from `first` to the one before `end`.
+double middle_hz(const SpectralBins& bins, std::size_t first, std::size_t end);
+
 }  // namespace gyrolog

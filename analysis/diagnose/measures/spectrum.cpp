@@ -24,7 +24,7 @@ GapCurve spectrum_curve(const Observation& observation, std::size_t axis) {
             count += bins[i].count();
             ratio += bins[i].count() * seen.power[i] / seen.density[i];
         }
-        curve.x.push_back(std::sqrt(bins[edges[band]].f_hz * bins[edges[band + 1] - 1].f_hz));
+        curve.x.push_back(middle_hz(bins, edges[band], edges[band + 1]));
         curve.value.push_back(3.0 * (std::cbrt(ratio / count) - 1.0));
     }
     return curve;

@@ -26,7 +26,7 @@ struct SpectraRefitOptions {
 };
 
 // `findings`: their entries are those of `seen`'s model from `first_entry` on, in this order. Those of other
-// estimators stay as they are, and so do bands that are too narrow for the spectral bins.
+// estimators stay as they are, and so do bands that are too narrow for the spectral bins where none was cut.
 std::vector<Finding> refit_spectra(const Observation& seen, std::size_t first_entry,
                                    std::vector<Finding> findings, const SpectraRefitOptions& options = {});
 

@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::uint64_t half_hour = 180'000;  // samples
 
-CauseSelection searched(const SensorModel& sensor, const SensorModel& model, std::uint64_t seed) {
-    const auto recording = recorded(sensor, half_hour, seed);
+CauseSelection searched(const SensorModel& sensor, const SensorModel& model, std::uint64_t seed,
+                        std::uint64_t samples = half_hour) {
+    const auto recording = recorded(sensor, samples, seed);
     SelectionOptions options;
     options.threads = 2;
     return *select_causes(examine(prediction_of(recording, model), recording, 1, 2), recording, options);
@@ -64,6 +65,19 @@ TEST(ForwardSelection, OfALineBeyondALowPassFindsBoth) {
     ASSERT_EQ(effects_of(result), (std::set<std::string>{"lowpass", "tone"}));
     EXPECT_NEAR(entry_of(result, "lowpass")->params.at("fc_hz"), 28.5, 0.3);
     EXPECT_NEAR(entry_of(result, "tone")->params.at("amplitude_dps"), 0.0143, 5e-4);
+}
+
+// A bin of the spectrum's likelihood is forty times as wide as the band.
+TEST(ForwardSelection, KeepsABandThatIsFarNarrowerThanItsNeighboursBins) {
+    const SensorModel model = calibrated_sensor();
+    SensorModel sensor =
+        with_effect(model, "narrowband", {{"sigma_dps", 0.005}, {"f_hz", 38.0}, {"width_hz", 0.03}}, {"x"});
+    for (AxisModel& axis : sensor.axes) { axis.noise.N_rad_per_sqrt_s *= 1.05; }
+    for (const std::uint64_t seed : {17U, 18U, 19U}) {
+        const CauseSelection result = searched(sensor, model, seed, 22'000);
+        ASSERT_EQ(effects_of(result), (std::set<std::string>{"arw_scale", "narrowband"})) << seed;
+        EXPECT_NEAR(entry_of(result, "narrowband")->params.at("f_hz"), 38.0, 0.05) << seed;
+    }
 }
 
 // One by one the filter is found with too low a corner and order, the band too narrow; three further causes
