@@ -313,7 +313,16 @@ bool SimSource::finish_stream() {
     while (!empty) {
         empty = board_->finish();
         if (!(realtime_ ? deliver_packets() : deliver_bytes(1))) { return false; }
+        if (!empty && board_->link_stalled() && !let_time_pass()) { return false; }
     }
+    return true;
+}
+
+// False: stop.
+bool SimSource::let_time_pass() {
+    if (!wait_for_call(realtime_ ? tick_ns : 0) || !answer_calls()) { return false; }
+    board_->advance_to(realtime_ ? host_now().monotonic_ns - origin_.monotonic_ns + origin_board_ns_
+                                 : board_->now_ns() + step_ns);
     return true;
 }
 

@@ -42,7 +42,8 @@ public:
     SimSource& operator=(const SimSource&) = delete;
 
     const SourceIdentity& identity() const override { return identity_; }
-    bool can_wait() const override { return true; }
+    // In real time it goes on, as a board does.
+    bool can_wait() const override { return !realtime_; }
     double tolerated_stall_s(double bytes_per_s, double bytes_per_frame) const override;
     void expect(double bytes_per_s, double bytes_per_frame) override;
     Status start(TransferSink& sink) override;
@@ -69,6 +70,7 @@ private:
     bool wait_for_call(std::int64_t time_ns);
     void make(const Call& call);
     bool finish_stream();
+    bool let_time_pass();
     bool deliver_bytes(std::size_t at_least);
     bool deliver_packets();
     bool deliver_in(ByteView data, int status);

@@ -85,6 +85,7 @@ public:
         return firmware.next_index + (firmware.instants - firmware.instants_done);
     }
     bool streaming() const { return board_.streaming; }
+    bool link_stalled() const { return now_ns_ < link_stalled_until_ns_; }
     // When the stream first started; nothing before.
     std::optional<std::int64_t> first_start_ns() const { return first_start_ns_; }
     // Lowers DTR and lets the firmware send what it still has. True once the ring is empty; until then call

@@ -1,9 +1,11 @@
 #include "host/virtual_board/sim_source.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -169,6 +171,34 @@ TEST(SimSource, AnUnpluggedBoardEndsAsALostDevice) {
     source->stop();
     EXPECT_EQ(sink.statuses.back(), -108);  // ESHUTDOWN
     EXPECT_GE(sink.stream.indices.size(), 192U);
+}
+
+// The board sends what it has once the link takes it again.
+TEST(SimSource, EndsWhenItsLastSamplesCameDuringAStall) {
+    SimOptions options = at_rate(1000.0);
+    options.faults = {{.kind = BoardFault::Kind::link_stall, .at_s = 1.8, .duration_s = 5.0}};
+    Collector sink;
+    const auto source = source_of(options, {.samples = 2000, .duration_s = {}});
+    ASSERT_TRUE(source->start(sink).ok());
+    ASSERT_TRUE(source->set_line_state(true).ok());
+    EXPECT_EQ(sink.wait_for_end(), SourceEnd::exhausted);
+    source->stop();
+    EXPECT_EQ(sink.stream.indices.size(), 2000U);
+}
+
+TEST(SimSource, StopsWhenToldWhileTheLinkIsStalled) {
+    SimOptions options = at_rate(1000.0);
+    options.realtime = true;
+    options.faults = {{.kind = BoardFault::Kind::link_stall, .at_s = 0.2, .duration_s = 60.0}};
+    Collector sink;
+    const auto source = source_of(options, {.samples = 300, .duration_s = {}});
+    ASSERT_TRUE(source->start(sink).ok());
+    ASSERT_TRUE(source->set_line_state(true).ok());
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    ASSERT_TRUE(source->set_line_state(false).ok());
+    source->stop();
+    EXPECT_EQ(sink.wait_for_end(), SourceEnd::stopped);
+    EXPECT_LT(sink.stream.indices.size(), 300U);
 }
 
 TEST(SimSource, KeepsToTheClockInRealTime) {
