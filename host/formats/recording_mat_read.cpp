@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -14,7 +15,9 @@
 
 #include <fmt/format.h>
 #include <matio.h>
+#include <unistd.h>
 
+#include "host/base/confined_process.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/column_dialect.hpp"
 #include "host/formats/input_limits.hpp"
@@ -102,6 +105,11 @@ std::size_t numbers_most(const std::string& path) {
 
 Status take(Variables& variables, mat_t* file, matvar_t& variable, std::size_t most) {
     const std::string name = variable.name == nullptr ? "" : variable.name;
+    constexpr std::size_t name_length_most = 63;  // MATLAB's namelengthmax
+    if (name.size() > name_length_most) {
+        return malformed(fmt::format("a variable has a name of {} characters; MATLAB has {} at most",
+                                     name.size(), name_length_most));
+    }
     const bool is_axes = name == "gyro_axes" && variable.class_type == MAT_C_CHAR;
     if (!is_axes && !is_numeric(variable)) {
         variables.others.push_back(name);
@@ -269,8 +277,7 @@ Status check_whole(const std::string& path) {
     return {};
 }
 
-Result<Variables> read_variables(const std::string& path) {
-    GYROLOG_CHECK(check_whole(path));
+Result<Variables> read_by_libmatio(const std::string& path) {
     const std::unique_ptr<mat_t, CloseReadFile> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
     if (!file) { return malformed("no MAT-file that libmatio can read"); }
     Variables variables;
@@ -279,6 +286,123 @@ Result<Variables> read_variables(const std::string& path) {
         GYROLOG_CHECK(take(variables, file.get(), *variable, most));
     }
     return variables;
+}
+
+// The way from the process that reads: each string and each list after its length. An error is a message
+// alone.
+class VariablesWriter {
+public:
+    explicit VariablesWriter(int descriptor) : descriptor_(descriptor) {}
+
+    void write(const Result<Variables>& variables) {
+        number(variables.ok() ? 1 : 0);
+        if (!variables.ok()) { return text(variables.error().message); }
+        number(variables->matrices.size());
+        for (const MatMatrix& matrix : variables->matrices) {
+            text(matrix.name);
+            number(matrix.rows);
+            number(matrix.columns);
+            bytes(matrix.values.data(), matrix.values.size() * sizeof(double));
+        }
+        number(variables->scalars.size());
+        for (const auto& [name, value] : variables->scalars) {
+            text(name);
+            bytes(&value, sizeof value);
+        }
+        text(variables->gyro_axes);
+        number(variables->others.size());
+        for (const std::string& name : variables->others) { text(name); }
+    }
+
+private:
+    void number(std::uint64_t value) { bytes(&value, sizeof value); }
+    void text(const std::string& value) {
+        number(value.size());
+        bytes(value.data(), value.size());
+    }
+    void bytes(const void* data, std::size_t size) {
+        const auto* at = static_cast<const char*>(data);
+        while (size > 0) {
+            const ssize_t written = ::write(descriptor_, at, size);
+            if (written <= 0) { return; }
+            at += written;
+            size -= static_cast<std::size_t>(written);
+        }
+    }
+
+    int descriptor_;
+};
+
+// That process may have been taken over by the file: nothing is believed.
+class VariablesReader {
+public:
+    explicit VariablesReader(ByteView bytes) : left_(bytes) {}
+
+    Result<Variables> read() {
+        const bool is_read = number() == 1;
+        if (!is_read) { return malformed(fine_ ? text() : "it is damaged"); }
+        Variables variables;
+        for (std::uint64_t n = number(); fine_ && n > 0; --n) {
+            MatMatrix matrix{text(), number(), number(), {}};
+            fine_ = fine_ && matrix.columns > 0 && matrix.rows <= left_.size() / matrix.columns;
+            if (!fine_) { break; }
+            matrix.values.resize(matrix.rows * matrix.columns);
+            take(matrix.values.data(), matrix.values.size() * sizeof(double));
+            variables.matrices.push_back(std::move(matrix));
+        }
+        for (std::uint64_t n = number(); fine_ && n > 0; --n) {
+            std::string name = text();
+            double value = 0.0;
+            take(&value, sizeof value);
+            variables.scalars.emplace_back(std::move(name), value);
+        }
+        variables.gyro_axes = text();
+        for (std::uint64_t n = number(); fine_ && n > 0; --n) { variables.others.push_back(text()); }
+        if (!fine_ || !left_.empty()) { return malformed("it is damaged"); }
+        return variables;
+    }
+
+private:
+    void take(void* data, std::size_t size) {
+        fine_ = fine_ && size <= left_.size();
+        if (!fine_) { return; }
+        if (size > 0) { std::memcpy(data, left_.data(), size); }
+        left_ = left_.subspan(size);
+    }
+    std::uint64_t number() {
+        std::uint64_t value = 0;
+        take(&value, sizeof value);
+        return value;
+    }
+    std::string text() {
+        const std::uint64_t size = number();
+        fine_ = fine_ && size <= left_.size();
+        std::string value(fine_ ? size : 0, ' ');
+        take(value.data(), value.size());
+        return value;
+    }
+
+    ByteView left_;
+    bool fine_ = true;
+};
+
+// libmatio and the HDF5 behind it crash on some damaged files, and believe what lengths, dimensions and
+// depths a file states.
+Result<Variables> read_variables(const std::string& path) {
+    GYROLOG_CHECK(check_whole(path));
+    constexpr std::size_t bytes_for_libraries = std::size_t{256} << 20U;
+    constexpr double s_least = 10.0;
+    constexpr double s_per_byte = 2e-7;  // five times what a compressed file of noise takes
+    std::error_code unknown;
+    const std::uintmax_t file_bytes = std::filesystem::file_size(path, unknown);
+    const std::size_t number_bytes = numbers_most(path) * sizeof(double);
+    const ProcessConfines confines{bytes_for_libraries + 4 * number_bytes,
+                                   s_least + (unknown ? 0.0 : s_per_byte * static_cast<double>(file_bytes)),
+                                   bytes_for_libraries + number_bytes};
+    GYROLOG_TRY(const Bytes told, run_confined(confines, [&](int descriptor) {
+                    VariablesWriter(descriptor).write(read_by_libmatio(path));
+                }));
+    return VariablesReader(told).read();
 }
 
 Result<Recording> read_mat_file(const std::string& path, RecordingReadOptions options) {

@@ -2,6 +2,7 @@
 
 #include "host/formats/recording_mat_read.hpp"
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -141,6 +142,46 @@ TEST_F(RecordingMat, UnpacksInProportionToTheFile) {
     const std::string less =
         written("less.mat", {{"Fs", {100.0}}, {"omega", std::vector<double>(100'000)}}, MAT_COMPRESSION_ZLIB);
     EXPECT_EQ(read(less).rows(), 100'000U);
+}
+
+// Lengths, dimensions and depths that the library believes: it takes all memory, or crashes.
+TEST_F(RecordingMat, BelievesNoNumberInTheFile) {
+    const auto number = [](std::uint32_t value) {
+        std::string bytes(4, '\0');
+        std::memcpy(bytes.data(), &value, 4);
+        return bytes;
+    };
+    const auto element = [&](std::uint32_t type, std::string content) {
+        const auto size = static_cast<std::uint32_t>(content.size());
+        content.resize((content.size() + 7) / 8 * 8);
+        return number(type) + number(size) + content;
+    };
+    const auto cells = [&](std::uint32_t rows, const std::string& name, const std::string& inside) {
+        constexpr std::uint32_t flags = 6, sizes = 5, text = 1, matrix = 14, of_cells = 1;
+        return element(matrix, element(flags, number(of_cells) + number(0)) +
+                                   element(sizes, number(rows) + number(1)) + element(text, name) + inside);
+    };
+    const auto nested_cells = [&](std::uint32_t depth) {
+        const std::string empty = cells(1, "", "");
+        std::string all;
+        for (std::uint32_t level = 0; level < depth; ++level) {
+            const auto inside = static_cast<std::uint32_t>(empty.size()) * (depth - level) - 8;
+            all += empty.substr(0, 4) + number(inside) + empty.substr(8);
+        }
+        return all;
+    };
+    const std::string header = "MATLAB 5.0 MAT-file" + std::string(105, ' ') + std::string("\0\1IM", 4);
+    const std::pair<std::string, const char*> hostile[] = {
+        {cells(1U << 30U, "many", ""), ""},
+        {nested_cells(300'000), ""},
+        {cells(1, std::string(100'000, 'n'), ""), "has a name of"},
+    };
+    for (const auto& [bytes, expected] : hostile) {
+        const std::string path = folder_.path("hostile.mat");
+        std::ofstream(path, std::ios::binary) << header << bytes;
+        EXPECT_THAT(refusal(path), HasSubstr(expected));
+        EXPECT_NE(refusal(path), "accepted");
+    }
 }
 
 TEST_F(RecordingMat, OfTextIsText) {
