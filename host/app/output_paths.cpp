@@ -17,6 +17,7 @@ namespace {
 
 // A terminal, a pipe or /dev/null takes what it gets, and keeps nothing.
 bool takes_anything(const std::string& path) {
+    if (own_descriptor(path)) { return true; }
     std::error_code none;
     const auto there = std::filesystem::status(path, none);
     return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&

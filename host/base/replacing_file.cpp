@@ -1,6 +1,7 @@
 #include "host/base/replacing_file.hpp"
 
 #include <cerrno>
+#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <random>
@@ -52,7 +53,31 @@ void sync_folder_of(const std::string& path) {
     static_cast<void>(::close(descriptor));
 }
 
+std::optional<int> number_in(const std::string& digits) {
+    int number = 0;
+    const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (problem != std::errc{} || end != digits.data() + digits.size()) { return std::nullopt; }
+    return number;
+}
+
 }  // namespace
+
+std::optional<int> own_descriptor(const std::string& path) {
+    namespace fs = std::filesystem;
+    constexpr int links_most = 40;  // as the system follows
+    const fs::path descriptors = fs::path("/proc") / std::to_string(::getpid()) / "fd";
+    fs::path at = path;
+    for (int link = 0; link < links_most; ++link) {
+        std::error_code problem;
+        const fs::path folder = fs::canonical(at.has_parent_path() ? at.parent_path() : ".", problem);
+        if (problem) { return std::nullopt; }
+        if (folder == descriptors) { return number_in(at.filename().string()); }
+        const fs::path target = fs::read_symlink(folder / at.filename(), problem);
+        if (problem) { return std::nullopt; }
+        at = folder / target;
+    }
+    return std::nullopt;
+}
 
 struct ReplacingFile::State {
     std::string path;
@@ -73,6 +98,12 @@ ReplacingFile::~ReplacingFile() = default;
 Result<ReplacingFile> ReplacingFile::create(const std::string& path) {
     auto state = std::make_unique<State>();
     state->path = path;
+    if (const std::optional<int> own = own_descriptor(path)) {
+        state->written_path = path;
+        state->descriptor = ::fcntl(*own, F_DUPFD_CLOEXEC, 0);
+        if (state->descriptor < 0) { return storage_error(errno); }
+        return ReplacingFile(std::move(state));
+    }
     struct stat existing {};
     const bool exists = ::stat(path.c_str(), &existing) == 0;
     if (exists && !S_ISREG(existing.st_mode)) {

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "host/base/bytes.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
+
+// The descriptor of this process that a path stands for, as /dev/stdout and /dev/fd/3 do, whatever file lies
+// behind it.
+std::optional<int> own_descriptor(const std::string& path);
 
 // Until commit() the new file stands beside the old one, under a name that nobody can foresee; a failure and
 // a signal take it away and leave what was there. It has the mode and, where the system lets us, the owner of

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include <fcntl.h>
 #include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -44,6 +45,25 @@ TEST_F(FileOutput, ReplacesWhatWasThere) {
     EXPECT_EQ(contents(path("a")), "second");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
         << "a part file stayed";
+}
+
+// Its link in /dev is the system's, and what was written before stays.
+TEST_F(FileOutput, GoesOnInADescriptorThatAPathStandsFor) {
+    EXPECT_EQ(own_descriptor("/dev/stdout"), STDOUT_FILENO);
+    EXPECT_EQ(own_descriptor("/dev/fd/2"), STDERR_FILENO);
+    EXPECT_EQ(own_descriptor(path("a")), std::nullopt);
+    const int open_file = ::open(path("a").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+    ASSERT_GE(open_file, 0);
+    ASSERT_EQ(::write(open_file, "one ", 4), 4);
+    const std::string name = "/dev/fd/" + std::to_string(open_file);
+    fs::create_symlink(name, path("link"));
+    ASSERT_TRUE(write_file(name, as_bytes("two ")).ok());
+    ASSERT_TRUE(write_file(path("link"), as_bytes("three")).ok());
+    ::close(open_file);
+    EXPECT_EQ(contents(path("a")), "one two three");
+    EXPECT_TRUE(fs::is_symlink(path("link")));
+    EXPECT_EQ(own_descriptor(path("link")), open_file) << "a descriptor that is closed is still no file";
+    EXPECT_FALSE(write_file(path("link"), as_bytes("x")).ok());
 }
 
 TEST_F(FileOutput, NamesAMissingFolder) {
