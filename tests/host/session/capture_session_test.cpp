@@ -379,6 +379,20 @@ TEST_F(CaptureSession, SilenceCountsAsALostDevice) {
     EXPECT_EQ(stored_stream(request_.path), source->delivered());
 }
 
+TEST_F(CaptureSession, ADurationEndsByTheClockWhereTheLinkIsSilent) {
+    const auto source = BoardSource::create({.frozen_from_s = 0.5});
+    request_.silence_s = 0.3;
+    request_.duration_s = 1.0;
+    const std::int64_t start_ns = host_now().monotonic_ns;
+    const auto outcome = capture(*source);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::device_lost);
+    EXPECT_LT(host_now().monotonic_ns - start_ns, 5'000'000'000)
+        << "not by the silence of a lost board, 10 s";
+    EXPECT_EQ(outcome->paths.size(), 1U);
+    EXPECT_EQ(stored_stream(request_.path), source->delivered());
+}
+
 TEST_F(CaptureSession, FullDiskEndsTheCaptureAndLeavesAReadableFile) {
     const auto source = BoardSource::create({});
     request_.duration_s = 600.0;
