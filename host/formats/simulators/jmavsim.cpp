@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "host/formats/simulators/simulators.hpp"
@@ -12,8 +16,15 @@ constexpr std::string_view jmavsim_facts[] = {
     "addZeroMeanNoise).",
 };
 
+// Java takes \\u000a for the end of a line in a comment, too.
+std::vector<std::string> without_escapes(std::span<const std::string> lines) {
+    std::vector<std::string> plain(lines.begin(), lines.end());
+    for (std::string& line : plain) { std::ranges::replace(line, '\\', '/'); }
+    return plain;
+}
+
 std::string jmavsim_text(const SimulatorSource& source, std::span<const std::string> head) {
-    return commented(head, "//") +
+    return commented(without_escapes(head), "//") +
            fmt::format("sensors.setNoise_Gyo({:.9g}f);  // rad/s\n", source.sample_sd_rad_s(0));
 }
 

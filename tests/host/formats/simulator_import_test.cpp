@@ -539,5 +539,13 @@ TEST(SimulatorImport, WritesWhatWasNotThereWhereItBelongs) {
     EXPECT_EQ(source_of(added->text).file.model.axes[0].noise.K_rad_per_s_sqrt_s, 1e-6);
 }
 
+// Java reads \\u000a as the end of a line wherever it stands: the rest of the name would be a program.
+TEST(SimulatorExport, OfAHostileNameIsNoCode) {
+    const std::string text = simulator_text(*find_simulator_format("jmavsim"), typical_mpu9250(),
+                                            "m\\u000aSystem.exit(1);.json", 600.0);
+    EXPECT_THAT(text, HasSubstr("System.exit"));
+    EXPECT_THAT(text, Not(HasSubstr("\\")));
+}
+
 }  // namespace
 }  // namespace gyrolog
