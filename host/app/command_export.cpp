@@ -164,7 +164,11 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     }
     ExportSource samples;
     samples.recording = &recording;
-    if (format.needs == ExportFormat::Needs::samples) { return format.write(samples, options.output); }
+    if (format.needs == ExportFormat::Needs::samples) {
+        progress.emplace(console);
+        progress->show("writing");
+        return format.write(samples, options.output);
+    }
     if (input.needs_gyro ? !has_rates(recording) : !has_rates_or_force(recording)) {
         return Error{ErrorCode::invalid_argument,
                      options.source + ": there is no angular rate; give the scale of counts with --lsb-dps"};
@@ -173,7 +177,10 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     analysis.threads = 0;
     analysis.sensors = format.sensors;
     analysis.keep_temperature = true;  // a filter that reads this does not know the temperature
+    progress.emplace(console);
+    analysis.on_stage = StageObserver([&](const char* stage) { progress->show_analysis(stage); });
     const AnalysisReport report = analyze(recording, analysis);
+    progress.reset();
     const ExportSource source = export_source(recording, report);
     if (format.needs == ExportFormat::Needs::noise && source.gyro.empty()) {
         return Error{ErrorCode::failed, options.source + ": there is no gyro named gx, gy or gz"};

@@ -17,10 +17,27 @@ std::string progress_text(std::string_view what, double share, double elapsed_s)
     return text + fmt::format("  {} left", format_elapsed(std::ceil(elapsed_s * (1.0 - share) / share)));
 }
 
+ProgressLine::ProgressLine(const Console& console) : ProgressLine(console, &Clock::now) {
+    if (!console.progress) { return; }
+    looking_ = std::jthread([this](const std::stop_token& stop) {
+        std::unique_lock lock(mutex_);
+        while (!ending_.wait_for(lock, stop, progress_options.between_looks,
+                                 [&] { return stop.stop_requested(); })) {
+            lock.unlock();
+            look();
+            lock.lock();
+        }
+    });
+}
+
 ProgressLine::ProgressLine(const Console& console, Clock::time_point (*now)())
     : console_(console), now_(now), began_(now()), stage_began_(began_), told_at_(began_) {}
 
 ProgressLine::~ProgressLine() {
+    if (looking_.joinable()) {
+        looking_.request_stop();
+        looking_.join();
+    }
     if (is_drawn_) { console_.drawing() << "\r\x1b[K" << std::flush; }
 }
 
@@ -29,27 +46,44 @@ bool ProgressLine::enters(std::string_view what, Clock::time_point now) {
     if (is_new) {
         stage_ = what;
         stage_began_ = told_at_;
+        is_stage_drawn_ = false;
     }
     told_at_ = now;
     return now - began_ >= progress_options.quiet_for &&
            (is_new || now - drawn_at_ >= progress_options.between_drawings);
 }
 
-void ProgressLine::draw(const std::string& text) {
-    drawn_at_ = told_at_;
-    console_.drawing() << "\r\x1b[K  " << text << std::flush;
+void ProgressLine::draw(Clock::time_point now) {
+    const auto since_stage_began = [&](Clock::time_point at) {
+        return std::chrono::duration<double>(at - stage_began_).count();
+    };
+    const std::string text = share_ ? progress_text(stage_, *share_, since_stage_began(told_at_))
+                                    : fmt::format("{}  {}", stage_, format_elapsed(since_stage_began(now)));
+    drawn_at_ = now;
     is_drawn_ = true;
+    is_stage_drawn_ = true;
+    console_.drawing() << "\r\x1b[K  " << text << std::flush;
 }
 
-void ProgressLine::show(std::string_view what, double share) {
-    if (!console_.progress || !enters(what, now_())) { return; }
-    draw(progress_text(what, share, std::chrono::duration<double>(told_at_ - stage_began_).count()));
+void ProgressLine::tell(std::string_view what, std::optional<double> share) {
+    if (!console_.progress) { return; }
+    const std::scoped_lock lock(mutex_);
+    const Clock::time_point now = now_();
+    const bool draws = enters(what, now);
+    share_ = share;
+    if (draws) { draw(now); }
 }
 
-void ProgressLine::show(std::string_view what) {
-    if (!console_.progress || !enters(what, now_())) { return; }
-    draw(std::string(what));
+void ProgressLine::look() {
+    const std::scoped_lock lock(mutex_);
+    const Clock::time_point now = now_();
+    if (stage_.empty() || now - began_ < progress_options.quiet_for) { return; }
+    if (!is_stage_drawn_ || !share_) { draw(now); }
 }
+
+void ProgressLine::show(std::string_view what, double share) { tell(what, share); }
+
+void ProgressLine::show(std::string_view what) { tell(what, std::nullopt); }
 
 void ProgressLine::show_analysis(std::string_view stage) {
     show(stage == "fit" ? "fitting the noise" : stage == "spectrum" ? "spectrum" : "Allan deviation");

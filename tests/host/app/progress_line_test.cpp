@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <sstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -67,7 +68,37 @@ TEST(ProgressLine, SaysWhatIsDoneWhereNobodyKnowsHowLongItTakes) {
     ProgressLine line(terminal.console, now);
     pass(2.0);
     line.show("fitting the noise");
-    EXPECT_THAT(terminal.drawn(), EndsWith("\r\x1b[K  fitting the noise"));
+    EXPECT_THAT(terminal.drawn(), EndsWith("\r\x1b[K  fitting the noise  0:00:02"));
+}
+
+// What was told within the first second, and says nothing further.
+TEST(ProgressLine, GoesOnWhereNothingMoreIsTold) {
+    Terminal terminal;
+    ProgressLine line(terminal.console, now);
+    pass(0.1);
+    line.show("Allan deviation");
+    line.look();
+    EXPECT_EQ(terminal.drawn(), "");
+    pass(1.9);
+    line.look();
+    EXPECT_THAT(terminal.drawn(), EndsWith("Allan deviation  0:00:02"));
+    pass(1.0);
+    line.look();
+    EXPECT_THAT(terminal.drawn(), EndsWith("Allan deviation  0:00:03"));
+    line.show("reading", 0.25);
+    EXPECT_THAT(terminal.drawn(), HasSubstr("reading  25 %"));
+    pass(5.0);
+    line.look();
+    EXPECT_EQ(terminal.drawn(), "") << "a share is not known better by waiting";
+}
+
+TEST(ProgressLine, LooksByItself) {
+    Terminal terminal;
+    ProgressLine line(terminal.console);
+    line.show("writing");
+    std::this_thread::sleep_for(2.5 * progress_options.quiet_for);
+    line.show("another thing");
+    EXPECT_THAT(terminal.drawn(), HasSubstr("writing  0:00:0"));
 }
 
 TEST(ProgressLine, IsForTerminalsOnly) {
