@@ -24,7 +24,7 @@ public:
         if (told_ || stall_s <= 0.0) { return; }
         told_ = true;
         if (!std::isfinite(stall_s)) { return; }
-        console_.err << fmt::format(
+        console_.notices() << fmt::format(
             "  nothing is lost while this computer is busy elsewhere for up to {:.2g} s{}\n", stall_s,
             stall_s < 2.0 ? "; keep it from sleeping and from heavy work" : "");
     }

@@ -195,7 +195,7 @@ void tell(Console& console, const SimulateOptions& options, const Story& story,
                                          counted(outcome.instants - outcome.samples, "sample"),
                                          counted(outcome.dropouts, "dropout"));
     }
-    for (const std::string& note : story.file.notes) { console.err << "  " << note << '\n'; }
+    for (const std::string& note : story.file.notes) { console.notices() << "  " << note << '\n'; }
 }
 
 Json answer(const SimulateOptions& options, const Story& story, const SimulationOutcome& outcome) {
@@ -289,7 +289,7 @@ ExitCode make_capture(Console& console, const SimulateOptions& options, const St
     const CaptureResult result =
         capture_source_to_file(console, "simulate", {std::move(source).value(), true}, request, false);
     if (!result.file_written) { return result.code; }
-    for (const std::string& note : story.file.notes) { console.err << "  " << note << '\n'; }
+    for (const std::string& note : story.file.notes) { console.notices() << "  " << note << '\n'; }
     SimulationOutcome outcome;
     outcome.samples = result.link.samples.good;
     outcome.instants = outcome.samples + result.link.samples.missing;

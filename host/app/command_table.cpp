@@ -66,7 +66,7 @@ void tell(Console& console, const FleetRecordings& read, const UnitPopulation& p
         console.err << "gyrolog table: no answer: " << printable(name) << '\n';
     }
     if (!with_notes) { return; }
-    for (const std::string& note : population.measured.notes) { console.err << "  " << note << '\n'; }
+    for (const std::string& note : population.measured.notes) { console.notices() << "  " << note << '\n'; }
 }
 
 Status write_population(const FleetRecordings& read, const UnitPopulation& population,

@@ -16,7 +16,7 @@ namespace gyrolog {
 namespace {
 
 std::string residual_text(const CurveDiagnosis& diagnosis, const CurveResidual& residual) {
-    return fmt::format("{:.2f} dB RMS, {:+.2f} dB at worst, at {}, which is {:.2g} times the floor",
+    return fmt::format("{:.2f} dB RMS, {:+.2f} dB at worst, at {}; {:.2g} times what the best fit leaves",
                        residual.rms_db, residual.worst_db, duration_text(residual.worst_tau_s),
                        diagnosis.in_floors(residual));
 }
@@ -43,17 +43,17 @@ std::string cause_words(const CurveCause& cause, const RateUnit& unit) {
                        term_text(*cause.in_model, unit));
 }
 
-std::string cause_text(const CurveCause& cause, std::size_t rank, const RateUnit& unit) {
+std::string cause_text(const CurveCause& cause, const RateUnit& unit) {
     std::string text = wrapped_text(
-        fmt::format("    {}. ", rank),
-        fmt::format("{}: {:.0f} % of the gap, probability {:.0f} %. {}; most of it from {} to {}.",
-                    effect_of(cause).effect, 100.0 * cause.share, 100.0 * cause.probability,
-                    cause_words(cause, unit), duration_text(cause.from_tau_s),
-                    duration_text(cause.to_tau_s)));
+        "    - ", fmt::format("{}: {:.0f} % of the gap, probability {:.0f} %. {}; most of it from {} to {}.",
+                              effect_of(cause).effect, 100.0 * cause.share, 100.0 * cause.probability,
+                              cause_words(cause, unit), duration_text(cause.from_tau_s),
+                              duration_text(cause.to_tau_s)));
     for (const CurveRival& rival : cause.rivals) {
-        text += wrapped_text("       ", fmt::format("`{}` ({}) fits nearly as well, {:.1f} nats less.",
-                                                    effect_name(rival.term.kind), term_text(rival.term, unit),
-                                                    0.5 * rival.criterion_behind));
+        text += wrapped_text("      ",
+                             fmt::format("`{}` ({}) fits nearly as well: it is {:.2g} times less likely.",
+                                         effect_name(rival.term.kind), term_text(rival.term, unit),
+                                         std::exp(0.5 * rival.criterion_behind)));
     }
     return text;
 }
@@ -61,7 +61,7 @@ std::string cause_text(const CurveCause& cause, std::size_t rank, const RateUnit
 std::string left_text(const CurveLeft& left) {
     const std::string from = duration_text(left.from_tau_s);
     const std::string to = duration_text(left.to_tau_s);
-    return fmt::format("left: {}, {:.2g} times the floor",
+    return fmt::format("left: {}, {:.2g} times what the best fit leaves",
                        left.from_tau_s == left.to_tau_s ? "at " + from : from + " to " + to, left.floors);
 }
 
@@ -75,9 +75,7 @@ std::string curve_text(const DiagnosedCurve& curve, const RateUnit& unit) {
     for (const CurveGapStretch& stretch : diagnosis.stretches) {
         text += wrapped_text("    ", stretch_text(stretch));
     }
-    for (std::size_t i = 0; i < diagnosis.causes.size(); ++i) {
-        text += cause_text(diagnosis.causes[i], i + 1, unit);
-    }
+    for (const CurveCause& cause : diagnosis.causes) { text += cause_text(cause, unit); }
     if (!diagnosis.causes.empty()) {
         text += wrapped_text(
             "  after:  ", fmt::format("{}; {:.0f} % of the gap explained",
@@ -96,8 +94,8 @@ std::string curve_diagnosis_text(const CurveDiagnosisReport& report) {
     if (!sentences.causes.empty()) { text += cause_table(sentences.causes) + "\n"; }
     text += wrapped_text(
         "",
-        fmt::format("{} against {}; reading error taken as {:.3g} %. The floor is what the complete noise "
-                    "model, fitted to the curve itself, leaves over. Causes were fitted to the curve on "
+        fmt::format("{} against {}; reading error taken as {:.3g} %. The best fit is that of the complete "
+                    "noise model to the curve itself. Causes were fitted to the curve on "
                     "which the gap is measured: a recording would give data that the fit did not see.",
                     report.curve_name, report.model_name, 100.0 * report.options.reading_error));
     for (const DiagnosedCurve& curve : report.curves) { text += curve_text(curve, report.unit); }

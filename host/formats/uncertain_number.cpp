@@ -78,7 +78,8 @@ std::string in_digits(double value, int digits) {
 }
 
 std::string duration_text(double seconds) {
-    if (seconds < 1.0) { return fmt::format("{:.3g} ms", seconds * 1e3); }
+    // What rounds to a second is one.
+    if (seconds < 0.9995) { return fmt::format("{:.3g} ms", seconds * 1e3); }
     if (seconds < 120.0) { return fmt::format("{:.3g} s", seconds); }
     if (seconds < 7200.0) { return fmt::format("{:.3g} min", seconds / 60.0); }
     return fmt::format("{:.3g} h", seconds / 3600.0);

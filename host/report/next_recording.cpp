@@ -86,7 +86,8 @@ void add_vague(std::vector<std::string>& sentences, const SensorAxes& sensor, No
     double worst_sd = 0.0;
     for (const AxisReport& axis : sensor.axes) {
         const FittedCoefficient& fitted = axis.fit[term];
-        if (fitted.state != State::identified || fitted.sd <= wanted_sd * fitted.value) { continue; }
+        if (fitted.state != State::identified) { continue; }
+        if (std::round(100.0 * fitted.sd / fitted.value) <= 100.0 * wanted_sd) { continue; }  // as it is told
         worst_sd = std::max(worst_sd, fitted.sd / fitted.value);
         asked.add(axis.axis, needed(axis.fit.best.coefficients, wanted_sd));
     }
