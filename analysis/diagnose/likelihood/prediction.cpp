@@ -245,7 +245,7 @@ std::vector<std::size_t> Prediction::level_changes_of_recording() const {
         changes.insert(changes.end(), of_axis.begin(), of_axis.end());
     }
     std::ranges::sort(changes);
-    changes.erase(std::ranges::unique(changes).begin(), changes.end());
+    changes.erase(std::unique(changes.begin(), changes.end()), changes.end());
     return changes;
 }
 
