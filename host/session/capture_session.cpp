@@ -185,8 +185,8 @@ public:
         if (began.ok()) {
             settle_queue();
             stream_until_end();
-            while (outcome_.end == CaptureEnd::device_lost && !is_time_over_ &&
-                   request_.on_unplug == OnUnplug::wait && park()) {
+            while (outcome_.end == CaptureEnd::device_lost && request_.on_unplug == OnUnplug::wait &&
+                   park()) {
                 stream_until_end();
             }
         }
@@ -283,10 +283,12 @@ private:
                 return end(CaptureEnd::device_lost);
             }
             silent_s_ = source_.can_wait() ? 0.0 : silence_.seconds(sink_.data_transfers());
-            // The writer goes by what comes. A link on which nothing comes has the clock alone.
-            is_time_over_ = request_.duration_s && silent_s_ > request_.silence_s &&
-                            seconds_since(start_) >= *request_.duration_s;
-            if (is_time_over_ || silent_s_ > request_.idle_timeout_s) {
+            // The writer goes by what comes. A link on which nothing comes has the clock alone, unless the
+            // board is waited for: the silence of a lost board opens it again first.
+            const bool is_time_over = request_.on_unplug != OnUnplug::wait && request_.duration_s &&
+                                      silent_s_ > request_.silence_s &&
+                                      seconds_since(start_) >= *request_.duration_s;
+            if (is_time_over || silent_s_ > request_.idle_timeout_s) {
                 outcome_.error = Error{
                     ErrorCode::device_lost,
                     fmt::format("{}: silent for {:g} s", source_.identity().uri,
@@ -402,7 +404,6 @@ private:
     double tolerated_stall_s_ = 0.0;
     Silence silence_;
     double silent_s_ = 0.0;
-    bool is_time_over_ = false;
     CaptureOutcome outcome_;
 };
 
