@@ -31,7 +31,8 @@ std::int64_t clock_ns() {
     return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
 }
 
-// `timeout` signals the process, then its group, the process among it. That is one wish.
+// `timeout` signals the process, then its group, the process among it, within microseconds. That is one
+// wish. Nobody presses Ctrl-C twice as quickly.
 bool is_twin(int number) {
     constexpr std::int64_t twins_within_ns = 200'000'000;
     return noted.load() == number && clock_ns() - noted_ns.load() < twins_within_ns;

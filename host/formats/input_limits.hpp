@@ -19,6 +19,14 @@ struct InputLimits {
     std::size_t npy_header_bytes_most = std::size_t{1} << 20;
     // Of numbers in an .npy or in one variable of a .mat: a day of four columns at 8 kHz is 2.8 billion.
     std::size_t numbers_most = std::size_t{1} << 32;
+    // Of a name in a .mat: MATLAB's namelengthmax.
+    std::size_t mat_name_bytes_most = 63;
+    // What libmatio and HDF5 need beside the numbers of a .mat, and the processor time that reading may take,
+    // in s, and in s for each byte of the file. Guessed, far above what a recording takes (tests read within
+    // 0.1 s): they bound a file made to harm.
+    std::size_t mat_library_bytes_most = std::size_t{256} << 20;
+    double mat_read_s_least = 10.0;
+    double mat_read_s_per_byte = 2e-7;
     // Of a model: one with 33 effects on three axes and all their uncertainties takes 200 kB and 3000 keys.
     std::size_t json_bytes_most = std::size_t{16} << 20;
     std::size_t json_keys_most = 10'000;

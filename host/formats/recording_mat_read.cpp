@@ -105,10 +105,9 @@ std::size_t numbers_most(const std::string& path) {
 
 Status take(Variables& variables, mat_t* file, matvar_t& variable, std::size_t most) {
     const std::string name = variable.name == nullptr ? "" : variable.name;
-    constexpr std::size_t name_length_most = 63;  // MATLAB's namelengthmax
-    if (name.size() > name_length_most) {
+    if (name.size() > input_limits.mat_name_bytes_most) {
         return malformed(fmt::format("a variable has a name of {} characters; MATLAB has {} at most",
-                                     name.size(), name_length_most));
+                                     name.size(), input_limits.mat_name_bytes_most));
     }
     const bool is_axes = name == "gyro_axes" && variable.class_type == MAT_C_CHAR;
     if (!is_axes && !is_numeric(variable)) {
@@ -390,15 +389,14 @@ private:
 // depths a file states.
 Result<Variables> read_variables(const std::string& path) {
     GYROLOG_CHECK(check_whole(path));
-    constexpr std::size_t bytes_for_libraries = std::size_t{256} << 20U;
-    constexpr double s_least = 10.0;
-    constexpr double s_per_byte = 2e-7;  // five times what a compressed file of noise takes
     std::error_code unknown;
     const std::uintmax_t file_bytes = std::filesystem::file_size(path, unknown);
     const std::size_t number_bytes = numbers_most(path) * sizeof(double);
-    const ProcessConfines confines{bytes_for_libraries + 4 * number_bytes,
-                                   s_least + (unknown ? 0.0 : s_per_byte * static_cast<double>(file_bytes)),
-                                   bytes_for_libraries + number_bytes};
+    const double s_for_bytes =
+        unknown ? 0.0 : input_limits.mat_read_s_per_byte * static_cast<double>(file_bytes);
+    const ProcessConfines confines{input_limits.mat_library_bytes_most + 4 * number_bytes,
+                                   input_limits.mat_read_s_least + s_for_bytes,
+                                   input_limits.mat_library_bytes_most + number_bytes};
     GYROLOG_TRY(const Bytes told, run_confined(confines, [&](int descriptor) {
                     VariablesWriter(descriptor).write(read_by_libmatio(path));
                 }));

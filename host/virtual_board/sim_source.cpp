@@ -191,8 +191,7 @@ Status SimSource::reconnect() {
     if (!board_->unplugged() || !back_ns) {
         return Error{ErrorCode::unsupported, identity_.uri + ": unplugged for good"};
     }
-    const std::int64_t now_ns =
-        realtime_ ? host_now().monotonic_ns - origin_.monotonic_ns + origin_board_ns_ : *back_ns;
+    const std::int64_t now_ns = realtime_ ? board_ns_of_now() : *back_ns;
     if (now_ns < *back_ns) { return Error{ErrorCode::not_found, identity_.uri + ": unplugged"}; }
     board_->replug(now_ns);
     calls_.clear();
@@ -250,7 +249,7 @@ void SimSource::run_as_fast_as_taken() {
 void SimSource::run_in_real_time() {
     while (!end_) {
         if (!answer_calls()) { return; }
-        const std::int64_t now_ns = host_now().monotonic_ns - origin_.monotonic_ns + origin_board_ns_;
+        const std::int64_t now_ns = board_ns_of_now();
         board_->advance_to(now_ns);
         if (board_->unplugged()) {
             deliver_packets();
@@ -321,8 +320,7 @@ bool SimSource::finish_stream() {
 // False: stop.
 bool SimSource::let_time_pass() {
     if (!wait_for_call(realtime_ ? tick_ns : 0) || !answer_calls()) { return false; }
-    board_->advance_to(realtime_ ? host_now().monotonic_ns - origin_.monotonic_ns + origin_board_ns_
-                                 : board_->now_ns() + step_ns);
+    board_->advance_to(realtime_ ? board_ns_of_now() : board_->now_ns() + step_ns);
     return true;
 }
 
@@ -386,6 +384,10 @@ bool SimSource::hand_over(Transfer& transfer) {
         std::this_thread::sleep_for(std::chrono::nanoseconds(retry_ns));
     }
     return true;
+}
+
+std::int64_t SimSource::board_ns_of_now() const {
+    return host_now().monotonic_ns - origin_.monotonic_ns + origin_board_ns_;
 }
 
 HostTime SimSource::host_time() const { return realtime_ ? host_now() : host_time_of(board_->now_ns()); }

@@ -77,6 +77,7 @@ private:
     void deliver_pair(TransferKind kind, std::uint8_t endpoint, const std::array<std::uint8_t, 8>& setup,
                       ByteView data);
     bool hand_over(Transfer& transfer);
+    std::int64_t board_ns_of_now() const;  // in real time
     HostTime host_time() const;
     HostTime host_time_of(std::int64_t board_ns) const;
     bool stopping();

@@ -16,7 +16,7 @@ constexpr std::string_view jmavsim_facts[] = {
     "addZeroMeanNoise).",
 };
 
-// Java takes \\u000a for the end of a line in a comment, too.
+// Java takes \u000a for the end of a line in a comment, too.
 std::vector<std::string> without_escapes(std::span<const std::string> lines) {
     std::vector<std::string> plain(lines.begin(), lines.end());
     for (std::string& line : plain) { std::ranges::replace(line, '\\', '/'); }
