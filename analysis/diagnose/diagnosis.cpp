@@ -49,8 +49,8 @@ public:
               const DiagnosisOptions& options)
         : recording_(std::move(recording)), options_(options), answer_() {
         const auto world = std::make_shared<const RecordedWorld>(recording_);
-        OwnStart start =
-            with_own_start(std::make_shared<const Prediction>(world, model), recording_, options_.seed);
+        OwnStart start = with_own_start(std::make_shared<const Prediction>(world, model, options_.noise_of),
+                                        recording_, options_.seed);
         prediction_ = std::move(start.prediction);
         faint_lines_hz_ = std::move(start.faint_lines_hz);
         answer_.warnings = world->warnings();
@@ -314,7 +314,7 @@ private:
             lasting.push_back(is_gone ? std::nullopt : std::optional(cause));
         }
         const auto world = std::make_shared<const RecordedWorld>(options_.holdout);
-        const auto given = std::make_shared<const Prediction>(world, prediction_->model());
+        const auto given = prediction_->in_world(world, prediction_->model());
         SensorModel corrected = without_causes(found_.corrected, findings());
         for (const auto& cause : lasting) {
             if (cause) { corrected = with_cause(std::move(corrected), *cause); }
@@ -351,8 +351,10 @@ private:
         const std::optional<Remainder>& left = after_forms_;
         answer_.left = left ? places_that_stand_out(left->curves, left->reference)
                             : places_that_stand_out(last.curves, last.reference);
-        answer_.better_shape = better_shape(found_, prediction_, recording_,
-                                            {.seed = options_.seed, .threads = options_.threads});
+        if (prediction_->noise_is_sensors()) {
+            answer_.better_shape = better_shape(found_, prediction_, recording_,
+                                                {.seed = options_.seed, .threads = options_.threads});
+        }
         for (std::size_t i = 0; i < found_.causes.size(); ++i) {
             Cause cause = with_probability(found_.causes[i], found_, measured_->returning_nats[i],
                                            answer_.better_shape);

@@ -12,6 +12,7 @@
 
 #include "analysis/diagnose/calibration/resolutions.hpp"
 #include "analysis/diagnose/decision_options.hpp"
+#include "analysis/diagnose/likelihood/prediction.hpp"
 #include "analysis/diagnose/report.hpp"
 #include "analysis/diagnose/selection/verdict.hpp"
 #include "analysis/recording/recording.hpp"
@@ -31,6 +32,7 @@ struct DiagnosisOptions {
     unsigned threads = 0;
     double simulations_bytes_most = resolution::simulations_bytes_most;
     std::shared_ptr<const Recording> holdout{};
+    Prediction::NoiseOf noise_of = Prediction::NoiseOf::sensor;
     // Effects that a person describes; without effect_refusal().
     std::vector<DescribedEffect> asked{};
     // With what is being done and its share from 0 to 1; false ends the work.

@@ -200,6 +200,19 @@ struct GapDomain {
     std::string axis_text() const { return of_all_axes ? "all" : axis_names.at(axis); }
 };
 
+// What a recording tells of its reference, before the sensor is judged by it
+// (calibration/reference_error.hpp).
+struct ReferenceQuality {
+    std::size_t samples_per_row = 1;  // that a rate of the reference is a mean of
+    // One sigma of such a rate, by axis: in the tenth of the time where it is least, and where it is most.
+    std::array<Span, 3> error_rad_s{};
+    // Of the sensor against the reference. Which of the two is late nobody can tell.
+    double latency_s = 0.0;
+    double latency_sd_s = 0.0;
+    // Up to which the reference explains at least half of the power that the sensor shows, on any axis.
+    double bandwidth_hz = 0.0;
+};
+
 // A better shape is one that no effect of the catalogue has (selection/nonparametric_alternatives.hpp) and
 // that tells the recording better than the causes do.
 struct BetterShape {
@@ -208,8 +221,10 @@ struct BetterShape {
     double evidence_nats = 0.0;     // by how much its log Bayes factor is more
 };
 
-// A long recording is seen in two passes (multiscale/long_diagnosis.hpp).
+// A long recording is seen in two passes (multiscale/long_diagnosis.hpp), as is one that moves against an
+// orientation (multiscale/motion_diagnosis.hpp).
 struct Pass {
+    bool is_at_rest = false;  // else the beginning, in single samples, or all, in means
     double duration_s = 0.0;
     std::size_t rows = 0;
     std::size_t samples_per_row = 1;
@@ -227,8 +242,9 @@ struct Diagnosis {
     double band_probability = 0.95;
     std::uint64_t seed = 1;
     std::vector<std::size_t> axes;
-    SensorUnit unit = SensorUnit::dps();  // of the sensor, for readers
-    std::vector<Pass> passes;             // empty: the recording was seen in one
+    SensorUnit unit = SensorUnit::dps();        // of the sensor, for readers
+    std::vector<Pass> passes;                   // empty: the recording was seen in one
+    std::optional<ReferenceQuality> reference;  // of one whose quality no model states
 
     Verdict verdict = Verdict::none;
     double p_none = 1.0;

@@ -64,6 +64,7 @@ constexpr ChainLink links[] = {
     effect(temp_noise_effect),
     effect(noise_colour_effect),
     effect(density_table_effect),
+    effect(level_table_effect),
     // white noise from outside, such as the supply's
     effect(common_mode_effect),
     // the sensor's bandwidth

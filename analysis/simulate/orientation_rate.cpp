@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace gyrolog {
 
@@ -97,6 +98,25 @@ void fit_run(std::span<const KnownRow> run, std::size_t half_rows, double rate_h
     }
 }
 
+// Rates of the turns from each row to the next, even between known rows; NaN before and after those.
+std::vector<std::array<double, 3>> turns_to_next(std::span<const Quaternion> orientation, double rate_hz) {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    std::vector<std::array<double, 3>> turns(orientation.size(), {unknown, unknown, unknown});
+    std::optional<std::size_t> before;
+    for (std::size_t row = 0; row < orientation.size(); ++row) {
+        if (std::isnan(rotation_vector(orientation[row])[0])) { continue; }
+        if (before) {
+            std::array<double, 3> turn =
+                rotation_vector(conjugate_times(orientation[*before], orientation[row]));
+            for (double& each : turn) { each *= rate_hz / static_cast<double>(row - *before); }
+            std::fill(turns.begin() + static_cast<std::ptrdiff_t>(*before),
+                      turns.begin() + static_cast<std::ptrdiff_t>(row), turn);
+        }
+        before = row;
+    }
+    return turns;
+}
+
 }  // namespace
 
 std::array<double, 3> rotation_vector(const Quaternion& q) {
@@ -137,6 +157,26 @@ std::vector<std::array<double, 3>> orientation_rate(std::span<const Quaternion> 
         run.push_back(next);
     }
     fit_run(run, half_rows, rate_hz, rates);
+    return rates;
+}
+
+std::vector<std::array<double, 3>> turn_rate(std::span<const Quaternion> orientation, double rate_hz) {
+    const std::vector<std::array<double, 3>> turns = turns_to_next(orientation, rate_hz);
+    std::vector<std::array<double, 3>> centred(orientation.size());
+    for (std::size_t row = 0; row < centred.size(); ++row) {
+        const std::array<double, 3>& to = turns[row];
+        const std::array<double, 3>& from = row > 0 && !std::isnan(turns[row - 1][0]) ? turns[row - 1] : to;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            centred[row][axis] = std::isnan(to[axis]) ? from[axis] : 0.5 * (from[axis] + to[axis]);
+        }
+    }
+    std::vector<std::array<double, 3>> rates = centred;
+    for (std::size_t row = 1; row + 1 < rates.size(); ++row) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double bend = centred[row - 1][axis] - 2.0 * centred[row][axis] + centred[row + 1][axis];
+            if (!std::isnan(bend)) { rates[row][axis] -= bend / 6.0; }
+        }
+    }
     return rates;
 }
 

@@ -13,7 +13,6 @@ using Quaternion = std::array<double, 4>;  // w x y z
 std::array<double, 3> rotation_vector(const Quaternion& q);
 
 // Rates in rad/s in the sensor's axes, of samples that follow each other at `rate_hz`; `orientation` maps the
-// Rates in rad/s in the sensor's axes, of samples that follow each other at `rate_hz`; `orientation` maps the
 // sensor's axes to the world's, any sign of q. Each is the slope of the cubic of least squares through the
 // angles turned at the rows within 50 ms on either side (A. Savitzky, M. J. E. Golay, Anal. Chem. 36 (1964)
 // 1627); of a straight line where there are fewer than six rows (at least one on either side) or most of them
@@ -32,5 +31,14 @@ std::array<double, 3> rotation_vector(const Quaternion& q);
 //
 // No faster than half a turn from a known row to the next.
 std::vector<std::array<double, 3>> orientation_rate(std::span<const Quaternion> orientation, double rate_hz);
+
+// Rates in rad/s at the rows, by the central difference of fourth order of the angle turned (M. Abramowitz,
+// I. Stegun, Handbook of Mathematical Functions, table 25.2): what swings at f comes out by
+//   1 - w^4/30 + ...,   w = 2 pi f / rate_hz.
+// Unlike orientation_rate() it takes no frequency off, and none of the orientation's errors: their sum over
+// rows that follow each other is that of the ends, so that a mean over m rows has nearly s rate_hz sqrt(2) /
+// m of independent errors of sd s. Rows that are unknown (NaN) between known ones turn evenly; those before
+// the first and after the last are NaN. No faster than half a turn from a known row to the next.
+std::vector<std::array<double, 3>> turn_rate(std::span<const Quaternion> orientation, double rate_hz);
 
 }  // namespace gyrolog

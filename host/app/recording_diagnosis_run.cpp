@@ -16,6 +16,7 @@
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/multiscale/long_diagnosis.hpp"
 #include "analysis/diagnose/multiscale/means_model.hpp"
+#include "analysis/diagnose/multiscale/motion_diagnosis.hpp"
 #include "analysis/simulate/accelerometer_as_gyro.hpp"
 #include "analysis/simulate/plain_model.hpp"
 #include "host/app/command.hpp"
@@ -51,6 +52,11 @@ void append_warnings(std::vector<std::string>& to, const DiagnosisInput& of) {
     for (const auto& recording : {of.means, of.samples}) {
         if (recording != nullptr) { append_new(to, recording->warnings); }
     }
+}
+
+// Where its means are long enough.
+bool is_judged_in_motion(const Recording& recording) {
+    return moves_against_orientation(recording) && !diagnosis_refusal(means_against_orientation(recording));
 }
 
 // In means that were asked for.
@@ -227,7 +233,9 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
     auto diagnosis = read.means != nullptr
                          ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
                      : request.average > 1 ? diagnose_means(read, file.model, name, options)
-                                           : diagnose(read.samples, file.model, name, options);
+                     : is_judged_in_motion(*read.samples)
+                         ? diagnose_against_orientation(read.samples, file.model, name, options)
+                         : diagnose(read.samples, file.model, name, options);
     progress.reset();
     append_warnings(diagnosis->warnings, read);
     append_new(diagnosis->warnings, file.notes);

@@ -327,7 +327,9 @@ std::vector<std::string> asked_sentences(const Diagnosis& diagnosis) {
 std::string passes_text(const Diagnosis& diagnosis) {
     std::vector<std::string> passes;
     for (const Pass& pass : diagnosis.passes) {
-        passes.push_back(pass.samples_per_row == 1
+        passes.push_back(pass.is_at_rest
+                             ? fmt::format("at {} of rest sample by sample", duration_text(pass.duration_s))
+                         : pass.samples_per_row == 1
                              ? fmt::format("at the first {} sample by sample", duration_text(pass.duration_s))
                              : fmt::format("at all of it in means of {} samples", pass.samples_per_row));
     }

@@ -122,7 +122,7 @@ std::optional<Remainder> judge_remainder(const std::shared_ptr<const Prediction>
     const bool moves = prediction->moves();
     simulations.simulations *= moves ? options.times_more_in_motion : options.times_more_at_rest;
     simulations.purpose = RandomPurpose::simulations_in_doubt;
-    simulations.measure_anew = moves && can_be_measured_anew(observation.recording());
+    simulations.measure_anew = can_be_measured_anew(*prediction);
     if (!judge(remainder, prediction, simulations)) { return std::nullopt; }
     return remainder;
 }

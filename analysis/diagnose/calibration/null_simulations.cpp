@@ -26,7 +26,7 @@ std::vector<GapCurve> curves_measured_anew(const Prediction& prediction, Recordi
     const auto recording =
         std::make_shared<const Recording>(measured_anew(std::move(simulated), model, seed));
     const auto world = std::make_shared<const RecordedWorld>(recording);
-    return gap_curves(Observation(std::make_shared<const Prediction>(world, model), recording, seed,
+    return gap_curves(Observation(prediction.in_world(world, model), recording, seed,
                                   Observation::ReferenceNoise::measured_anew));
 }
 

@@ -73,7 +73,7 @@ public:
           causes_(causes),
           options_(options),
           simulations_(simulations_of(*without)),
-          new_worlds_(without->moves() && can_be_measured_anew(without->world().recording())) {
+          new_worlds_(can_be_measured_anew(*without)) {
         for (std::size_t i = 0; i < causes_.size(); ++i) {
             SensorModel model = without_->model();
             for (std::size_t other = 0; other < causes_.size(); ++other) {
@@ -117,9 +117,8 @@ private:
             new_worlds_ ? Observation::ReferenceNoise::measured_anew : Observation::ReferenceNoise::drawn;
         std::vector<std::optional<Finding>> findings;
         for (std::size_t i = 0; i < causes_.size(); ++i) {
-            const Sought there = new_worlds_
-                                     ? sought(std::make_shared<const Prediction>(world, others_[i]), i)
-                                     : estimators_[i];
+            const Sought there =
+                new_worlds_ ? sought(without_->in_world(world, others_[i]), i) : estimators_[i];
             findings.push_back(
                 there.estimator ? there.estimator->find(Observation(there.prediction, recording, seed, noise))
                                 : std::nullopt);

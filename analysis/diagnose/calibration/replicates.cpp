@@ -42,7 +42,9 @@ Recording measured_anew(Recording recording, const SensorModel& model, std::uint
     return recording;
 }
 
-bool can_be_measured_anew(const Recording& recording) {
+bool can_be_measured_anew(const Prediction& prediction) {
+    if (!prediction.moves() || !prediction.noise_is_sensors()) { return false; }
+    const Recording& recording = prediction.world().recording();
     const bool has_rate = recording.find("ref_x") != nullptr || recording.find("ref_y") != nullptr ||
                           recording.find("ref_z") != nullptr;
     return has_rate && recording.rows() <= resolution::rows_measured_anew_most;

@@ -18,9 +18,9 @@ Recording replicate_recording(const Prediction& prediction, const SensorModel& m
 // force, as `model` measures them: with noise anew.
 Recording measured_anew(Recording recording, const SensorModel& model, std::uint64_t seed);
 
-// A reference orientation cannot: no model states its noise. Nor can more than a million samples, for the
-// memory that a world of their own takes.
-bool can_be_measured_anew(const Recording& recording);
+// The reference of a sensor that moves can, where a model states its noise: an orientation's none does. More
+// than a million samples cannot, for the memory that a world of their own takes.
+bool can_be_measured_anew(const Prediction& prediction);
 
 struct ReplicateOptions {
     std::size_t count = 0;

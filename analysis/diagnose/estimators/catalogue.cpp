@@ -33,7 +33,10 @@ namespace {
 constexpr EstimatorTraits no_estimator{};
 
 constexpr EstimatorTraits rows[] = {
-    {.method = EvidenceMethod::response, .make = make_mean_response_estimator, .is_response = true},
+    {.method = EvidenceMethod::response,
+     .make = make_mean_response_estimator,
+     .is_response = true,
+     .is_beside_noise = true},
     {.method = EvidenceMethod::spectrum, .make = make_noise_spectrum_estimator, .is_noise = true},
     {.method = EvidenceMethod::line,
      .make = make_line_estimator,
@@ -44,7 +47,10 @@ constexpr EstimatorTraits rows[] = {
      .make = make_narrow_band_estimator,
      .is_noise = true,
      .recurs = true},
-    {.method = EvidenceMethod::step, .make = make_bias_step_estimator, .recurs = true},
+    {.method = EvidenceMethod::step,
+     .make = make_bias_step_estimator,
+     .is_beside_noise = true,
+     .recurs = true},
     {.method = EvidenceMethod::random_telegraph,
      .make = make_random_telegraph_estimator,
      .twin = "gauss_markov",
@@ -76,8 +82,10 @@ constexpr EstimatorTraits rows[] = {
      .make = make_density_table_estimator,
      .is_noise = true,
      .shows_in_means = false},
-    {.method = EvidenceMethod::temperature_table, .make = make_temperature_table_estimator},
-    {.method = EvidenceMethod::rate_table, .make = make_rate_table_estimator},
+    {.method = EvidenceMethod::temperature_table,
+     .make = make_temperature_table_estimator,
+     .is_beside_noise = true},
+    {.method = EvidenceMethod::rate_table, .make = make_rate_table_estimator, .is_beside_noise = true},
     {.method = EvidenceMethod::shared_noise, .make = make_shared_noise_estimator, .is_beside_spectra = true},
     {.method = EvidenceMethod::disturbances,
      .make = make_disturbance_estimator,
@@ -102,6 +110,7 @@ constexpr EstimatorTraits rows[] = {
      .can_be_halved = false},
     {.method = EvidenceMethod::saturation,
      .make = make_saturation_estimator,
+     .is_beside_noise = true,
      .changes_likelihood = true,
      .is_beside_spectra = true,
      .shows_in_means = false,
@@ -109,6 +118,7 @@ constexpr EstimatorTraits rows[] = {
      .can_be_halved = false},
     {.method = EvidenceMethod::stamp_gaps,
      .make = make_stamp_gap_estimator,
+     .is_beside_noise = true,
      .is_beside_spectra = true,
      .is_in_stamps = true,
      .shows_in_means = false,
@@ -116,12 +126,14 @@ constexpr EstimatorTraits rows[] = {
      .can_be_halved = false},
     {.method = EvidenceMethod::stamp_rate,
      .make = make_stamp_rate_estimator,
+     .is_beside_noise = true,
      .is_beside_spectra = true,
      .is_in_stamps = true,
      .shows_in_means = false,
      .can_be_halved = false},
     {.method = EvidenceMethod::stamp_jitter,
      .make = make_stamp_jitter_estimator,
+     .is_beside_noise = true,
      .is_beside_spectra = true,
      .is_in_stamps = true,
      .shows_in_means = false,
@@ -142,6 +154,9 @@ std::string lacking(const EffectSignature& signature, const Prediction& predicti
         return "the recording has no temperature";
     }
     if (signature.needs_reference && !prediction.moves()) { return "the recording has no reference rate"; }
+    if (!prediction.noise_is_sensors() && !row_of(evidence_method(signature, prediction)).is_beside_noise) {
+        return "the error of the reference hides the sensor's noise";
+    }
     if (signature.needs_specific_force && !prediction.world().has_specific_force()) {
         return "the recording has no specific force";
     }

@@ -597,7 +597,7 @@ private:
         double within = 0.0;
         double beyond = 0.0;
         for (const std::size_t axis : finding.where.axes) {
-            const double noise_rad_s = prediction_->reference_noise_rad_s(axis);
+            const double noise_rad_s = prediction_->rate_sd_rad_s(axis);
             const std::vector<float>& rate_rad_s = prediction_->true_rate_rad_s(axis);
             const std::vector<float>& without = prediction_->denoised_response_rad_s(axis);
             for (std::size_t slot = 0; slot < rate_rad_s.size(); ++slot) {

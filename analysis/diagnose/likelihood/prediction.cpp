@@ -42,7 +42,8 @@ double reference_noise(const SensorModel& model, std::size_t axis) {
     return std::hypot(gains[0], gains[1], gains[2]) * model.ref_noise_rad_s;
 }
 
-SpectralParts own_parts(const SensorModel& model, std::size_t axis, bool moves, double f_hz, double rate_hz) {
+SpectralParts own_parts(const SensorModel& model, std::size_t axis, double reference_noise_rad_s, double f_hz,
+                        double rate_hz) {
     const NoiseCoefficients& noise = model.axes[axis].noise;
     const double omega = 2.0 * pi * f_hz;
     // Of the sampled process, both the random walk and the angle's rounding error have their aliases in
@@ -58,7 +59,7 @@ SpectralParts own_parts(const SensorModel& model, std::size_t axis, bool moves, 
     parts.other = step_rad_s * step_rad_s / (12.0 * rate_hz);
     parts.added_signal = sampled_omega * sampled_omega * noise.Q_rad * noise.Q_rad / rate_hz;
     // What the reference does not know of the motion is taken for the sensor's.
-    if (moves) { parts.other += std::pow(reference_noise(model, axis), 2.0) / rate_hz; }
+    parts.other += reference_noise_rad_s * reference_noise_rad_s / rate_hz;
     return parts;
 }
 
@@ -187,16 +188,16 @@ SensorModel without_noise(const SensorModel& model) {
     return noiseless;
 }
 
-Prediction::Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model)
-    : Prediction(std::move(world), model, nullptr, Half::both) {}
+Prediction::Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model, NoiseOf noise)
+    : Prediction(std::move(world), model, noise, nullptr, Half::both) {}
 
-Prediction::Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
+Prediction::Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model, NoiseOf noise,
                        std::shared_ptr<Shared> shared, Half half)
     : world_(std::move(world)), model_(model), shared_(std::move(shared)), half_(half) {
     const Recording& recording = world_->recording();
     rate_hz_ = recording.rate_hz;
     length_ = fast_length(slots_of(recording));
-    if (!shared_) { shared_ = std::make_shared<Shared>(length_); }
+    if (!shared_) { shared_ = std::make_shared<Shared>(length_, noise); }
     axes_ = axes_of(recording);
     read_temperature();
     read_responses();
@@ -375,7 +376,10 @@ void Prediction::expect_spectrum() {
 
 std::vector<SpectralParts> Prediction::parts_of(const SensorModel& model, std::size_t axis) const {
     std::vector<SpectralParts> parts;
-    for (const double f_hz : f_hz_) { parts.push_back(own_parts(model, axis, moves(), f_hz, rate_hz_)); }
+    const double reference_rad_s = stated_noise_rad_s(model, axis);
+    for (const double f_hz : f_hz_) {
+        parts.push_back(own_parts(model, axis, reference_rad_s, f_hz, rate_hz_));
+    }
     for (const ChainLink& link : signal_chain()) {
         const EffectSignature* signature = link.effect == nullptr ? nullptr : link.effect->signature;
         if (signature == nullptr || signature->spectrum == nullptr) { continue; }
@@ -388,16 +392,29 @@ std::vector<SpectralParts> Prediction::parts_of(const SensorModel& model, std::s
     return parts;
 }
 
-double Prediction::reference_noise_rad_s(std::size_t axis) const {
-    return moves() ? reference_noise(model_, axis) : 0.0;
+double Prediction::reference_noise_rad_s(std::size_t axis) const { return stated_noise_rad_s(model_, axis); }
+
+double Prediction::stated_noise_rad_s(const SensorModel& model, std::size_t axis) const {
+    return moves() && noise_is_sensors() ? reference_noise(model, axis) : 0.0;
+}
+
+double Prediction::rate_sd_rad_s(std::size_t axis) const {
+    if (noise_is_sensors()) { return reference_noise_rad_s(axis); }
+    double square = 0.0;
+    double count = 0.0;
+    for (std::size_t b = 0; b < bins_.size(); ++b) {
+        square += bins_[b].count() * parts_[axis][b].sum() * rate_hz_;
+        count += bins_[b].count();
+    }
+    return std::sqrt(square / count);
 }
 
 std::shared_ptr<const Prediction> Prediction::with(const SensorModel& model) const {
-    return std::shared_ptr<const Prediction>(new Prediction(world_, model, shared_, half_));
+    return std::shared_ptr<const Prediction>(new Prediction(world_, model, shared_->noise, shared_, half_));
 }
 
 std::shared_ptr<const Prediction> Prediction::of_half(Half half) const {
-    return std::shared_ptr<const Prediction>(new Prediction(world_, model_, shared_, half));
+    return std::shared_ptr<const Prediction>(new Prediction(world_, model_, shared_->noise, shared_, half));
 }
 
 std::array<std::vector<float>, 3> noise_free_response(const Prediction& prediction,

@@ -35,8 +35,13 @@ std::optional<std::string> diagnosis_refusal(const Recording& recording);
 
 class Prediction {
 public:
+    // Whose noise it is that the samples have about the model's answer. The error of a reference that nobody
+    // states is in it, so that it says nothing of the sensor's.
+    enum class NoiseOf { sensor, reference_too };
+
     // `world`'s recording has no diagnosis_refusal(), `model` no simulation_refusal().
-    Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model);
+    Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
+               NoiseOf noise = NoiseOf::sensor);
 
     const RecordedWorld& world() const { return *world_; }
     std::shared_ptr<const RecordedWorld> shared_world() const { return world_; }
@@ -49,6 +54,13 @@ public:
     Half half() const { return half_; }
     const std::vector<std::size_t>& axes() const { return axes_; }  // that the recording has
     bool moves() const { return world_->has_reference(); }
+    // What judges noise judges the sensor's.
+    bool noise_is_sensors() const { return shared_->noise == NoiseOf::sensor; }
+    // Of another world, with nothing in common but whose the noise is.
+    std::shared_ptr<const Prediction> in_world(std::shared_ptr<const RecordedWorld> world,
+                                               const SensorModel& model) const {
+        return std::make_shared<const Prediction>(std::move(world), model, shared_->noise);
+    }
 
     // The temperature by slot; empty without a thermometer.
     const std::vector<float>& temperature_C() const { return temperature_C_; }
@@ -70,8 +82,12 @@ public:
     const std::vector<float>& denoised_response_rad_s(std::size_t axis) const {
         return denoised_response_rad_s_[axis];
     }
-    // What the reference's noise is worth on the axis, one sigma of a sample.
+    // What the noise that the model states of the reference is worth on the axis, one sigma of a sample; 0
+    // where the model's own noise has it.
     double reference_noise_rad_s(std::size_t axis) const;
+    // Within what nobody knows the rate at a sample, one sigma: the reference's noise, or all noise that may
+    // be the reference's.
+    double rate_sd_rad_s(std::size_t axis) const;
     const UncertainMean& uncertain(std::size_t axis) const { return uncertain_[axis]; }
 
     const SpectralBins& bins() const { return bins_; }
@@ -98,7 +114,8 @@ public:
 private:
     // What predictions of other models have in common with the first.
     struct Shared {
-        explicit Shared(std::size_t length) : transforms(length) {}
+        Shared(std::size_t length, NoiseOf whose) : noise(whose), transforms(length) {}
+        NoiseOf noise;
         ResponseMemory responses;
         RecentResponses recent;
         TransformPool transforms;
@@ -106,9 +123,10 @@ private:
         std::optional<std::vector<std::size_t>> level_changes;
     };
 
-    Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model,
+    Prediction(std::shared_ptr<const RecordedWorld> world, const SensorModel& model, NoiseOf noise,
                std::shared_ptr<Shared> shared, Half half);
 
+    double stated_noise_rad_s(const SensorModel& model, std::size_t axis) const;
     void read_temperature();
     void read_responses();
     std::vector<std::size_t> level_changes_of_recording() const;

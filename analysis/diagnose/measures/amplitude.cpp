@@ -75,7 +75,8 @@ const Measure measures::amplitude{.name = "tails",
                                   .locate = locate_amplitudes,
                                   .over_mean = true,
                                   // One sample further out than any of the simulations' is no wonder.
-                                  .least_sd = 0.5};
+                                  .least_sd = 0.5,
+                                  .is_of_noise = true};
 
 const Measure measures::skewness{.name = "skewness",
                                  .x_name = "",
@@ -84,7 +85,8 @@ const Measure measures::skewness{.name = "skewness",
                                  .shown_y = as_it_is,
                                  .locate = locate_nowhere,
                                  .is_course = false,
-                                 .least_sd = 0.5};
+                                 .least_sd = 0.5,
+                                 .is_of_noise = true};
 
 void add_amplitude_curves(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     if (observation.prediction().world().recording().samples_per_row != 1) { return; }

@@ -172,7 +172,8 @@ const Measure measures::codes{.name = "converter's codes",
                               .is_course = false,
                               // Of a largest deviate.
                               .least_sd = 0.5,
-                              .is_normal_far_out = false};
+                              .is_normal_far_out = false,
+                              .is_of_noise = true};
 
 void add_codes_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     curves.push_back(codes_curve(observation, axis));

@@ -79,7 +79,8 @@ const Measure measures::cross_axis{.name = "correlation with ",
                                    .shown_y = as_it_is,
                                    .locate = locate_correlation,
                                    .log_x = true,
-                                   .names_other = true};
+                                   .names_other = true,
+                                   .is_of_noise = true};
 
 void add_cross_axis_curves(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     for (const std::size_t other : observation.prediction().axes()) {

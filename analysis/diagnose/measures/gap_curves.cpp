@@ -36,6 +36,9 @@ std::vector<GapCurve> gap_curves(const Observation& observation) {
         for (const AddCurves add : of_each_axis) { add(observation, axis, curves); }
     }
     add_noise_level_curves(observation, curves);
+    if (!observation.prediction().noise_is_sensors()) {
+        std::erase_if(curves, [](const GapCurve& curve) { return curve.measure->is_of_noise; });
+    }
     return curves;
 }
 

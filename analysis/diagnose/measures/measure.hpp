@@ -43,6 +43,8 @@ struct Measure {
     // False: a count that takes samples for independent. Far out it says less than a normal deviate: in a sum
     // with other measures Student's tail bounds it.
     bool is_normal_far_out = true;
+    // True: it tells of the noise and nothing of the mean answer to the motion.
+    bool is_of_noise = false;
 };
 
 struct GapCurve {

@@ -98,7 +98,8 @@ const Measure measures::narrow{.name = "narrow lines",
                                .shown_x = as_it_is,
                                .shown_y = as_it_is,
                                .locate = locate_frequencies,
-                               .log_x = true};
+                               .log_x = true,
+                               .is_of_noise = true};
 
 void add_narrow_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     curves.push_back(narrow_curve(observation, axis));

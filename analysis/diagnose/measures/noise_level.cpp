@@ -131,7 +131,8 @@ const Measure measures::memory{.name = "bursts of noise",
                                .shown_y = cube_root_dB,
                                .locate = locate_averaging_times,
                                .log_x = true,
-                               .shared_name = "shared "};
+                               .shared_name = "shared ",
+                               .is_of_noise = true};
 const Measure measures::rhythm{.name = "rhythm of the noise",
                                .x_name = "period (s)",
                                .y_name = "excess (its sd)",
@@ -139,7 +140,8 @@ const Measure measures::rhythm{.name = "rhythm of the noise",
                                .shown_y = as_it_is,
                                .locate = locate_period,
                                .log_x = true,
-                               .least_sd = 1.0};
+                               .least_sd = 1.0,
+                               .is_of_noise = true};
 
 void add_noise_level_curves(const Observation& observation, std::vector<GapCurve>& curves) {
     const Prediction& prediction = observation.prediction();

@@ -77,7 +77,8 @@ const Measure measures::period{.name = "periodicity",
                                .shown_x = as_it_is,
                                .shown_y = as_it_is,
                                .locate = locate_period,
-                               .log_x = true};
+                               .log_x = true,
+                               .is_of_noise = true};
 
 void add_period_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     curves.push_back(period_curve(observation, axis));

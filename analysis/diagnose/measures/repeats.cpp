@@ -75,7 +75,8 @@ const Measure measures::repeats{.name = "repeated samples",
                                 .locate = locate_repeats,
                                 .is_course = false,
                                 .least_sd = 1.0,
-                                .is_normal_far_out = false};
+                                .is_normal_far_out = false,
+                                .is_of_noise = true};
 
 void add_repeats_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     if (observation.prediction().world().recording().samples_per_row != 1) { return; }

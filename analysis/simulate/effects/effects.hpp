@@ -45,6 +45,7 @@ extern const EffectDefinition temp_quadratic_effect;
 extern const EffectDefinition temp_scale_effect;
 extern const EffectDefinition temperature_table_effect;
 extern const EffectDefinition time_table_effect;
+extern const EffectDefinition level_table_effect;
 extern const EffectDefinition tone_effect;
 extern const EffectDefinition variance_change_effect;
 extern const EffectDefinition vibration_rectification_effect;

@@ -1,0 +1,136 @@
+#include "analysis/diagnose/multiscale/motion_diagnosis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "analysis/diagnose/calibration/reference_error.hpp"
+#include "analysis/diagnose/likelihood/corrected_model.hpp"
+#include "analysis/diagnose/multiscale/joined_passes.hpp"
+#include "analysis/diagnose/multiscale/means_model.hpp"
+#include "analysis/recording/recording_part.hpp"
+#include "analysis/recording/still_part.hpp"
+#include "analysis/simulate/orientation_rate.hpp"
+
+namespace gyrolog {
+namespace {
+
+constexpr std::array<const char*, 4> orientation_columns = {"ref_qw", "ref_qx", "ref_qy", "ref_qz"};
+
+bool is_of_reference(const Column& column) { return column.name.starts_with("ref_"); }
+
+std::vector<Quaternion> orientation_of(const Recording& recording, const Segment& segment) {
+    std::vector<Quaternion> orientation(segment.count);
+    for (std::size_t part = 0; part < orientation_columns.size(); ++part) {
+        const Column& column = *recording.find(orientation_columns.at(part));
+        for (std::size_t i = 0; i < segment.count; ++i) {
+            orientation[i].at(part) = column.value(segment.first + i);
+        }
+    }
+    return orientation;
+}
+
+Recording with_turn_rates(Recording recording) {
+    std::array<std::vector<double>, 3> rates;
+    for (std::vector<double>& rate : rates) { rate.resize(recording.rows()); }
+    for (const Segment& segment : recording.segments) {
+        const auto turned = turn_rate(orientation_of(recording, segment), recording.rate_hz);
+        for (std::size_t i = 0; i < segment.count; ++i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                rates.at(axis)[segment.first + i] = turned[i].at(axis);
+            }
+        }
+    }
+    std::erase_if(recording.columns, is_of_reference);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        recording.columns.push_back({std::string("ref_") + axis_names.at(axis),
+                                     "rad/s",
+                                     std::move(rates.at(axis)),
+                                     1.0,
+                                     0.0,
+                                     "",
+                                     {}});
+    }
+    return recording;
+}
+
+// Null where the sensor does not rest for long enough to be judged.
+std::shared_ptr<const Recording> longest_rest(const Recording& recording) {
+    std::vector<std::vector<double>> gyros;
+    for (const char* name : gyro_columns) {
+        if (const Column* column = recording.find(name)) { gyros.push_back(column->values()); }
+    }
+    const TimeSpan still = still_part(recording, gyros);
+    if (!(still.to_s > still.from_s)) { return nullptr; }
+    Recording rest = part_of(recording, still);
+    std::erase_if(rest.columns, is_of_reference);
+    if (diagnosis_refusal(rest)) { return nullptr; }
+    return std::make_shared<const Recording>(std::move(rest));
+}
+
+// The causes in the model that was given: that of the pass holds the reference's error.
+void put_causes_in(const SensorModel& model, Diagnosis& pass, std::size_t samples, double rate_hz) {
+    for (Cause& cause : pass.causes) {
+        cause.finding = finding_of_samples(std::move(cause.finding), samples, rate_hz);
+    }
+    pass.noise_refits.clear();
+    pass.corrected = corrected_model(model, pass, pass.corrected);
+}
+
+std::shared_ptr<const Recording> shared_means(const Recording& recording,
+                                              const MotionDiagnosisOptions& options) {
+    return std::make_shared<const Recording>(means_against_orientation(recording, options));
+}
+
+std::optional<Diagnosis> diagnose_motion(const Recording& recording, const SensorModel& model,
+                                         const std::string& model_name, DiagnosisOptions options,
+                                         const MotionDiagnosisOptions& motion) {
+    const auto rows = shared_means(recording, motion);
+    WithReferenceError error = with_reference_error(
+        model_of_means(model, rows->samples_per_row, recording.rate_hz), rows, options.seed);
+    options.noise_of = Prediction::NoiseOf::reference_too;
+    if (options.holdout) { options.holdout = shared_means(*options.holdout, motion); }
+    std::optional<Diagnosis> pass = diagnose(rows, error.model, model_name, options);
+    if (!pass) { return std::nullopt; }
+    put_causes_in(model, *pass, rows->samples_per_row, recording.rate_hz);
+    pass->reference = error.quality;
+    return pass;
+}
+
+}  // namespace
+
+bool moves_against_orientation(const Recording& recording) {
+    return std::ranges::all_of(orientation_columns,
+                               [&](const char* name) { return recording.find(name) != nullptr; }) &&
+           std::ranges::none_of(axis_names, [&](const char* axis) {
+               return recording.find(std::string("ref_") + axis) != nullptr;
+           });
+}
+
+Recording means_against_orientation(const Recording& recording, const MotionDiagnosisOptions& options) {
+    const double samples = std::max(1.0, std::round(options.row_s * recording.rate_hz));
+    return means_of(with_turn_rates(recording), static_cast<std::size_t>(samples));
+}
+
+std::optional<Diagnosis> diagnose_against_orientation(std::shared_ptr<const Recording> recording,
+                                                      const SensorModel& model, const std::string& model_name,
+                                                      const DiagnosisOptions& options,
+                                                      const MotionDiagnosisOptions& motion) {
+    DiagnosisOptions of_pass = options;
+    const std::shared_ptr<const Recording> rest = longest_rest(*recording);
+    if (rest) { of_pass.false_alarms_most *= 0.5; }
+    std::optional<Diagnosis> moving = diagnose_motion(*recording, model, model_name, of_pass, motion);
+    if (!moving || !rest) { return moving; }
+    of_pass.holdout = nullptr;
+    std::optional<Diagnosis> resting = diagnose(rest, model, model_name, of_pass);
+    if (!resting) { return std::nullopt; }
+    const std::size_t samples = shared_means(*recording, motion)->samples_per_row;
+    Diagnosis whole = joined_passes(model, *resting, *moving, samples);
+    whole.passes.front().is_at_rest = true;
+    whole.reference = moving->reference;
+    return whole;
+}
+
+}  // namespace gyrolog
