@@ -99,22 +99,16 @@ Result<std::uint64_t> samples_of(double duration_s, double rate_hz) {
     return static_cast<std::uint64_t>(samples);
 }
 
-// No text does with less: a time and three numbers, each of one digit. Compressed, a row may take next to
-// nothing.
-constexpr double text_row_bytes_least = 8.0;
-// Of a capture: three counts.
-constexpr double captured_sample_bytes_least = 6.0;
-
 // Whether there can be room, before days of work. What is no file is none of the disk's.
-Status check_room(const std::string& path, double bytes_least) {
+Status check_room(const std::string& path, double bytes) {
     std::error_code unknown;
     const bool other =
         std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown);
     const auto free_bytes = computers_disk().free_bytes(path);
-    if (other || !free_bytes.ok() || bytes_least <= static_cast<double>(*free_bytes)) { return {}; }
+    if (other || !free_bytes.ok() || bytes <= static_cast<double>(*free_bytes)) { return {}; }
     return Error{ErrorCode::disk_full,
-                 fmt::format("write '{}': it takes at least {:.3g} GB, and its disk has {:.3g} GB left", path,
-                             bytes_least * 1e-9, static_cast<double>(*free_bytes) * 1e-9)};
+                 fmt::format("write '{}': it takes about {:.3g} GB, and its disk has {:.3g} GB left", path,
+                             bytes * 1e-9, static_cast<double>(*free_bytes) * 1e-9)};
 }
 
 // The model is of one gyro with three axes, whatever the recording has.
@@ -245,11 +239,11 @@ ExitCode make_text(Console& console, const SimulateOptions& options, Story& stor
         const auto samples = samples_of(story.duration_s.value_or(duration_without_wish_s), rate_hz);
         if (!samples.ok()) { return fail(samples.error()); }
         request.samples = *samples;
-        const double bytes_least =
-            options.output.ends_with(".csv") ? text_row_bytes_least * static_cast<double>(*samples) : 0.0;
-        if (const Status room = check_room(options.output, bytes_least); !room.ok()) {
-            return fail(room.error());
-        }
+    }
+    // Compressed, a row may take next to nothing.
+    if (options.output.ends_with(".csv")) {
+        const Status room = check_room(options.output, text_bytes_of(story.file.model, request));
+        if (!room.ok()) { return fail(room.error()); }
     }
     for (const std::string& warning : story.warnings) {
         console.err << "gyrolog simulate: warning: " << warning << '\n';
@@ -276,7 +270,8 @@ ExitCode make_capture(Console& console, const SimulateOptions& options, const St
     auto source = SimSource::create(board, story.file.model, {std::nullopt, duration_s});
     if (!source.ok()) { return report_error(console, "simulate", source.error()); }
     const double samples = duration_s * options.rate_hz.value_or(story.file.model.rate_hz);
-    if (const Status room = check_room(options.output, captured_sample_bytes_least * samples); !room.ok()) {
+    const double bytes = (*source)->stream_bytes_per_sample() * samples;
+    if (const Status room = check_room(options.output, bytes); !room.ok()) {
         return report_error(console, "simulate", room.error());
     }
     if (const Status written = write_unit(console, options, story.file.model); !written.ok()) {

@@ -23,14 +23,28 @@ private:
     std::uint64_t holes_ = 0;
 };
 
+CsvWriteOptions format_of(const RecordingSimulator& simulator) {
+    CsvWriteOptions options;
+    options.resolved = simulator.simulated_columns();
+    return options;
+}
+
 }  // namespace
+
+double text_bytes_of(const SensorModel& model, const SimulationRequest& request) {
+    RecordingSimulator simulator(model, request);
+    Recording piece;
+    bool more = simulator.next(piece);
+    while (more && piece.rows() == 0) { more = simulator.next(piece); }
+    if (!more) { return 0.0; }
+    const double bytes = csv_row_bytes(piece, format_of(simulator)) * static_cast<double>(piece.rows());
+    return bytes * static_cast<double>(simulator.samples()) / static_cast<double>(simulator.samples_done());
+}
 
 Result<SimulationOutcome> simulate_to_text(Console& console, const SensorModel& model,
                                            const SimulationRequest& request, const std::string& path) {
     RecordingSimulator simulator(model, request);
-    CsvWriteOptions options;
-    options.resolved = simulator.simulated_columns();
-    GYROLOG_TRY(RecordingCsvWriter file, RecordingCsvWriter::create(path, options));
+    GYROLOG_TRY(RecordingCsvWriter file, RecordingCsvWriter::create(path, format_of(simulator)));
     SimulationOutcome outcome;
     outcome.rate_hz = simulator.rate_hz();
     HoleCount holes;

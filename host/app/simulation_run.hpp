@@ -22,6 +22,10 @@ struct SimulationOutcome {
     bool interrupted = false;  // the user stopped it: the file is whole up to there
 };
 
+// What the text will take, without compression: as many bytes a row as the first rows have, for all sampling
+// instants but the share that the first rows lost.
+double text_bytes_of(const SensorModel& model, const SimulationRequest& request);
+
 // Writes text; memory does not grow with the length. Shows progress where the console has it. The file takes
 // its place when it is complete, or the user has stopped it.
 Result<SimulationOutcome> simulate_to_text(Console& console, const SensorModel& model,

@@ -40,7 +40,10 @@ struct CsvWriteOptions {
 Status write_recording_csv(const Recording& recording, const std::string& path,
                            const CsvWriteOptions& options = {});
 
-// The same, piece by piece: for recordings that no memory holds.
+// What a row of this text takes on average; 0 of a piece without rows.
+double csv_row_bytes(const Recording& piece, const CsvWriteOptions& options = {});
+
+// write_recording_csv() piece by piece: for recordings that no memory holds.
 class RecordingCsvWriter {
 public:
     static Result<RecordingCsvWriter> create(const std::string& path, CsvWriteOptions options);

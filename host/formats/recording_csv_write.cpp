@@ -146,6 +146,20 @@ void append_stamp(std::string& text, double t_s) {
     text.append(digits.data(), end);
 }
 
+std::vector<Formatter> formatters_of(const Recording& piece, const CsvWriteOptions& options) {
+    std::vector<Formatter> columns;
+    columns.reserve(piece.columns.size());
+    for (const Column& column : piece.columns) {
+        const bool exact = std::ranges::count(options.resolved, column.name) == 0;
+        columns.emplace_back(output_column(column, options), exact);
+    }
+    return columns;
+}
+
+double stamp_s(const Recording& piece, std::size_t row, std::int64_t index) {
+    return piece.t_s.empty() ? static_cast<double>(index) / piece.rate_hz : piece.t_s[row];
+}
+
 void append_row(std::string& text, double t_s, std::size_t row, const std::vector<Formatter>& columns) {
     append_stamp(text, t_s);
     for (const Formatter& column : columns) {
@@ -173,6 +187,23 @@ std::vector<double> stops_before_segments(const Recording& recording) {
 
 }  // namespace
 
+double csv_row_bytes(const Recording& piece, const CsvWriteOptions& options) {
+    const std::vector<Formatter> columns = formatters_of(piece, options);
+    constexpr double line_end_bytes = 1.0;
+    double bytes = 0.0;
+    std::string text;
+    for (const Segment& segment : piece.segments) {
+        for (std::size_t i = 0; i < segment.count; ++i) {
+            const std::size_t row = segment.first + i;
+            text.clear();
+            append_row(text, stamp_s(piece, row, segment.first_index + static_cast<std::int64_t>(i)), row,
+                       columns);
+            bytes += static_cast<double>(text.size()) + line_end_bytes;
+        }
+    }
+    return piece.rows() == 0 ? 0.0 : bytes / static_cast<double>(piece.rows());
+}
+
 Result<RecordingCsvWriter> RecordingCsvWriter::create(const std::string& path, CsvWriteOptions options) {
     auto file = TextWriter::create(path, options.growth);
     if (!file.ok()) { return in_context("write '" + path + "'", std::move(file).error()); }
@@ -180,11 +211,7 @@ Result<RecordingCsvWriter> RecordingCsvWriter::create(const std::string& path, C
 }
 
 Status RecordingCsvWriter::append(const Recording& piece) {
-    std::vector<Formatter> columns;
-    for (const Column& column : piece.columns) {
-        const bool exact = std::ranges::count(options_.resolved, column.name) == 0;
-        columns.emplace_back(output_column(column, options_), exact);
-    }
+    const std::vector<Formatter> columns = formatters_of(piece, options_);
     if (!headed_) {
         text_ = "t_s";
         for (const Formatter& column : columns) { text_ += "," + column.header(); }
@@ -198,8 +225,8 @@ Status RecordingCsvWriter::append(const Recording& piece) {
         const Segment& segment = piece.segments[s];
         for (std::size_t i = 0; i < segment.count; ++i) {
             const std::size_t row = segment.first + i;
-            const auto index = static_cast<double>(segment.first_index + static_cast<std::int64_t>(i));
-            append_row(text_, piece.t_s.empty() ? index / piece.rate_hz : piece.t_s[row], row, columns);
+            const std::int64_t index = segment.first_index + static_cast<std::int64_t>(i);
+            append_row(text_, stamp_s(piece, row, index), row, columns);
             if (tells_stops_) {
                 text_ += ',';
                 append_exact(text_, i == 0 ? stopped_s[s] : 0.0);

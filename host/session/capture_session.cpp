@@ -12,6 +12,7 @@
 #include "host/session/queueing_sink.hpp"
 #include "host/session/transfer_queue.hpp"
 #include "host/session/writer_thread.hpp"
+#include "host/transport/stream_size.hpp"
 
 namespace gyrolog {
 namespace {
@@ -102,15 +103,6 @@ glp_configure configuration_of(const glp_config& config) {
     wanted.layout = config.layout;
     wanted.samples_per_frame = config.samples_per_frame;
     return wanted;
-}
-
-// A full SAMPLES frame on the wire: header, payload and checksum, stuffed, and its delimiters.
-double wire_bytes(const glp_config& config) {
-    constexpr double header_and_checksum = 12.0;
-    constexpr double payload_before_samples = 28.0;
-    const double body = header_and_checksum + payload_before_samples +
-                        static_cast<double>(config.samples_per_frame * glp_sample_bytes(config.layout));
-    return body + 1.0 + std::floor(body / 254.0) + 1.0;
 }
 
 // How long a board has said nothing while somebody listened. A program that stood still itself has not

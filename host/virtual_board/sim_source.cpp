@@ -9,6 +9,7 @@
 
 #include <gyrolog_protocol/usb_identity.h>
 
+#include "host/transport/stream_size.hpp"
 #include "host/virtual_board/usb_descriptors.hpp"
 
 namespace gyrolog {
@@ -132,6 +133,11 @@ SimSource::SimSource(const SimOptions& options, const SimLimit& limit, std::uniq
 }
 
 SimSource::~SimSource() { stop(); }
+
+double SimSource::stream_bytes_per_sample() const {
+    const glp_config& config = board_->firmware().config;
+    return wire_bytes(config) / config.samples_per_frame;
+}
 
 double SimSource::tolerated_stall_s(double bytes_per_s, double /*bytes_per_frame*/) const {
     if (!realtime_) { return std::numeric_limits<double>::infinity(); }

@@ -41,6 +41,9 @@ public:
     SimSource(const SimSource&) = delete;
     SimSource& operator=(const SimSource&) = delete;
 
+    // Before start(), as the board is set up then.
+    double stream_bytes_per_sample() const;
+
     const SourceIdentity& identity() const override { return identity_; }
     // In real time it goes on, as a board does.
     bool can_wait() const override { return !realtime_; }
