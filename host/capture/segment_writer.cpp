@@ -73,9 +73,13 @@ Status SegmentWriter::open_next() {
     if (number_ == 0) { replaces_ = std::filesystem::is_regular_file(plan_.path, unknown); }
     GYROLOG_TRY(std::unique_ptr<AppendFile> file, create_file());
     ++number_;
-    GYROLOG_TRY(CaptureWriter writer, CaptureWriter::create(std::move(file), identity_, host_now(),
-                                                            CaptureSegment{capture_, number_, connection_}));
-    file_.emplace(std::move(writer));
+    auto writer = CaptureWriter::create(std::move(file), identity_, host_now(),
+                                        CaptureSegment{capture_, number_, connection_});
+    if (!writer.ok()) {
+        forget_file();
+        return std::move(writer).error();
+    }
+    file_.emplace(std::move(writer).value());
     first_transfer_ns_.reset();
     return {};
 }
@@ -151,11 +155,21 @@ void SegmentWriter::drop() {
     if (!file_) { return; }
     static_cast<void>(file_->close());
     file_.reset();
-    if (!keeps_old()) { static_cast<void>(std::remove(paths_.back().c_str())); }
+    forget_file();
+    --connection_;
+}
+
+// Of the file that was made last. A device or a pipe was there before, and so was what a first file was to
+// replace.
+void SegmentWriter::forget_file() {
+    std::error_code unknown;
+    const bool is_old = paths_.size() == 1 && keeps_old();
+    if (!is_old && std::filesystem::is_regular_file(paths_.back(), unknown)) {
+        std::filesystem::remove(paths_.back(), unknown);
+    }
     paths_.pop_back();
     --number_;
     --name_number_;
-    --connection_;
 }
 
 }  // namespace gyrolog

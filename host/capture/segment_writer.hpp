@@ -65,6 +65,7 @@ private:
         : plan_(std::move(plan)), identity_(std::move(identity)), disk_(&disk) {}
 
     Status open_next();
+    void forget_file();
     Result<std::unique_ptr<AppendFile>> create_file();
     Status check_room();
     Status keep_room();

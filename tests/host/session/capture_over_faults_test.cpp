@@ -39,7 +39,8 @@ public:
     std::atomic<bool> breaks{false};  // EIO at the next write
     std::atomic<bool> sync_breaks{false};
     std::atomic<std::uint64_t> told_free_bytes{~std::uint64_t{0}};
-    std::atomic<int> files_with_room{std::numeric_limits<int>::max()};  // then 50 kB are left
+    std::atomic<int> files_with_room{std::numeric_limits<int>::max()};
+    std::atomic<std::uint64_t> room_of_the_last_bytes{50'000};  // of these files
     std::atomic<int> syncs{0};
     std::atomic<std::uint64_t> written_bytes{0};
 
@@ -54,7 +55,7 @@ public:
 
     Result<std::unique_ptr<AppendFile>> create(const std::string& path, IfExists if_exists) override {
         GYROLOG_TRY(std::unique_ptr<AppendFile> file, create_append_file(path, if_exists));
-        if (--files_with_room == 0) { room_bytes = 50'000; }
+        if (--files_with_room == 0) { room_bytes = room_of_the_last_bytes.load(); }
         return std::unique_ptr<AppendFile>(new File(*this, std::move(file)));
     }
     Result<std::uint64_t> free_bytes(const std::string& /*path*/) override {
@@ -417,6 +418,26 @@ TEST_F(CaptureOverFaults, DiskThatRefusesTheNextFileLeavesTheOnesBefore) {
     ASSERT_TRUE(outcome.ok()) << outcome.error().message;
     expect_readable_prefix(*source, *outcome);
     EXPECT_GE(outcome->paths.size(), 3U);
+}
+
+// Where not even the head of a file finds room.
+TEST_F(CaptureOverFaults, FullDiskLeavesNoEmptyFile) {
+    disk_.room_bytes = 100;
+    const auto refused = run_capture(*BoardSource::create({}), request_, go_on);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, ErrorCode::disk_full);
+    EXPECT_FALSE(std::filesystem::exists(request_.path));
+
+    disk_.room_bytes = ~std::uint64_t{0};
+    disk_.files_with_room = 3;
+    disk_.room_of_the_last_bytes = 100;
+    request_.duration_s = 600.0;
+    request_.rotate_bytes = 100'000;
+    const auto outcome = run_capture(*BoardSource::create({}), request_, go_on);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+    EXPECT_EQ(outcome->end, CaptureEnd::storage_failed);
+    EXPECT_EQ(outcome->paths.size(), 2U);
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("night.3.pcapng")));
 }
 
 TEST_F(CaptureOverFaults, FilesThatAreThereAreSteppedOverNotOverwritten) {
