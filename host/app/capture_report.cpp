@@ -136,6 +136,13 @@ std::string end_text(const std::string& path, const LoadedCapture& capture) {
                 "before is intact",
                 counted(file.bytes_in_tail, "byte"), file.bytes_in_tail == 1 ? "is" : "are");
         case FileEnd::damaged:
+            if (file.only_behind_close()) {
+                return fmt::format(
+                    "damaged: {} {} behind its end, where its writer had closed it. Run `gyrolog recover {} "
+                    "-o NEW` to leave them out",
+                    counted(file.bytes_behind_close, "byte"),
+                    file.bytes_behind_close == 1 ? "stands" : "stand", shell_word(path));
+            }
             return fmt::format(
                 "damaged: {} bytes in {} {} are no intact blocks. Run `gyrolog recover {} -o NEW` to keep "
                 "the intact part",
@@ -145,13 +152,19 @@ std::string end_text(const std::string& path, const LoadedCapture& capture) {
     return "";
 }
 
+bool samples_complete(const LoadedCapture& capture) {
+    return capture.decoder->report().complete() && capture.file.truncated_transfers == 0;
+}
+
 // The last line, which people read first.
 std::string verdict(const LoadedCapture& capture) {
     const FileEnd end = capture.file.blocks.end;
-    if (end == FileEnd::damaged || capture.stream_bytes_gone > 0) {
+    const bool longer = capture.file.blocks.only_behind_close();
+    if ((end == FileEnd::damaged && !longer) || capture.stream_bytes_gone > 0) {
         return "damaged: something that was captured is gone";
     }
-    if (!nothing_missing(capture)) { return "something is missing"; }
+    if (!samples_complete(capture)) { return "something is missing"; }
+    if (longer) { return "nothing is missing; what stands behind the capture's end is no part of it"; }
     if (end == FileEnd::torn_tail) {
         return "nothing is missing before the torn tail; what came after it, when the writer died, is not "
                "here";
@@ -176,8 +189,8 @@ std::string started_utc(const LoadedCapture& capture) {
 }
 
 bool nothing_missing(const LoadedCapture& capture) {
-    return capture.decoder->report().complete() && capture.file.truncated_transfers == 0 &&
-           capture.file.blocks.end != FileEnd::damaged && capture.stream_bytes_gone == 0;
+    return samples_complete(capture) && capture.file.blocks.end != FileEnd::damaged &&
+           capture.stream_bytes_gone == 0;
 }
 
 Json check_json(const std::string& path, const LoadedCapture& capture) {

@@ -39,7 +39,7 @@ std::string recovery_text(const RecoverOptions& options, const RecoveryReport& r
     return fmt::format("{}: {} of {} kept, {} left out in {}{}\n", options.recovered,
                        format_bytes(report.bytes_kept), format_bytes(source.bytes_total),
                        counted(left_out, "byte"), counted(source.damaged_ranges, "damaged place"),
-                       source.bytes_in_tail > 0 ? " and a torn tail" : "");
+                       source.bytes_in_tail > source.bytes_behind_close ? " and a torn tail" : "");
 }
 
 ExitCode recover(Console& console, const RecoverOptions& options) {

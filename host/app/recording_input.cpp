@@ -19,6 +19,10 @@ namespace {
 // Empty: nothing. Who reads a part only does not see the end.
 std::string what_is_wrong_with_the_end(const LoadedCapture& capture, const RecordingInput& input) {
     const BlockAccounts& blocks = capture.file.blocks;
+    if (blocks.only_behind_close()) {
+        return fmt::format("{} behind the end of the capture, which its writer had closed: they are left out",
+                           counted(blocks.bytes_behind_close, "byte"));
+    }
     if (blocks.end == FileEnd::damaged) {
         return fmt::format("the file is damaged in {}; the samples lost there count as missing",
                            counted(blocks.damaged_ranges, "place"));

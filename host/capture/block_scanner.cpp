@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "host/capture/byte_order.hpp"
+#include "host/capture/capture_metadata.hpp"
 #include "host/capture/pcapng.hpp"
 #include "host/capture/usbmon_record.hpp"
 
@@ -64,6 +65,7 @@ void BlockScanner::rewind() {
     offset_ = 0;
     own_section_ = format_ == Format::pcapng;
     vouched_seen_ = false;
+    closed_ = false;
     interfaces_.clear();
 }
 
@@ -78,10 +80,8 @@ Result<std::optional<CaptureBlock>> BlockScanner::next() {
         GYROLOG_TRY(const std::uint64_t from, end_of_broken(offset_));
         GYROLOG_TRY(const std::optional<std::uint64_t> intact, find_intact(from));
         if (!intact) {
-            accounts_.bytes_in_tail = accounts_.bytes_total - offset_;
             GYROLOG_TRY(const bool torn, is_torn(offset_));
-            if (!torn) { ++accounts_.damaged_ranges; }
-            offset_ = accounts_.bytes_total;
+            enter_tail(torn);
             break;
         }
         enter_damage(offset_, *intact - offset_);
@@ -342,6 +342,7 @@ void BlockScanner::enter(const CaptureBlock& block) {
     accounts_.bytes_in_blocks += block.bytes.size();
     ++accounts_.blocks;
     vouched_seen_ = vouched_seen_ || block.vouched;
+    closed_ = closes_capture(block);
     if (format_ == Format::pcap && block.kind == BlockKind::section) {
         const bool in_ns = get<std::uint32_t>(block.bytes, 0) == pcap_magic_ns;
         interfaces_ = {{get<std::uint32_t>(block.bytes, 20) & 0xFFFFU, in_ns ? 1'000'000'000U : 1'000'000U}};
@@ -359,6 +360,21 @@ void BlockScanner::enter(const CaptureBlock& block) {
         }
         interfaces_.push_back(interface);
     }
+}
+
+bool BlockScanner::closes_capture(const CaptureBlock& block) const {
+    if (block.kind != BlockKind::statistics || !own_section_) { return false; }
+    const auto comment = pcapng::statistics_comment(block.bytes);
+    const auto checkpoint = comment ? read_checkpoint_json(*comment) : std::nullopt;
+    return checkpoint && checkpoint->last;
+}
+
+// A writer that has closed its file was writing nothing, so it tore nothing.
+void BlockScanner::enter_tail(bool torn) {
+    accounts_.bytes_in_tail = accounts_.bytes_total - offset_;
+    if (closed_) { accounts_.bytes_behind_close = accounts_.bytes_in_tail; }
+    if (closed_ || !torn) { ++accounts_.damaged_ranges; }
+    offset_ = accounts_.bytes_total;
 }
 
 void BlockScanner::enter_damage(std::uint64_t offset, std::uint64_t bytes) {

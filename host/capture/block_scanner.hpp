@@ -50,7 +50,8 @@ struct DamagedRange {
 enum class FileEnd {
     clean,      // the last block ends where the file ends
     torn_tail,  // the file ends inside the block that was being written, in zeros, or both: the writer died
-    damaged,    // anything else that is no intact block: the medium or an editor did that
+    damaged,    // anything else that is no intact block, and anything behind the block that closes a capture:
+                // the medium or an editor did that
 };
 
 struct BlockAccounts {
@@ -60,10 +61,15 @@ struct BlockAccounts {
     std::uint64_t bytes_in_tail = 0;  // with nothing intact behind them, torn or damaged
     std::uint64_t blocks = 0;
     std::uint64_t damaged_ranges = 0;
-    std::vector<DamagedRange> damage;  // the first of them, up to a thousand
+    std::uint64_t bytes_behind_close = 0;  // of the tail, where the writer had closed the file before it
+    std::vector<DamagedRange> damage;      // the first of them, up to a thousand
     FileEnd end = FileEnd::clean;
     std::uint64_t bytes_judged_in_vain = 0;  // of candidates that looked like blocks and were none
 
+    // Nothing of the capture is damaged: its end is known, and something else stands behind it.
+    bool only_behind_close() const {
+        return bytes_behind_close > 0 && bytes_behind_close == bytes_damaged + bytes_in_tail;
+    }
     bool balanced() const { return bytes_total == bytes_in_blocks + bytes_damaged + bytes_in_tail; }
 };
 
@@ -113,6 +119,8 @@ private:
     Result<std::uint64_t> end_of_data(std::uint64_t from);
     Result<bool> is_torn(std::uint64_t offset);
     bool may_begin_block(ByteView bytes) const;
+    bool closes_capture(const CaptureBlock& block) const;
+    void enter_tail(bool torn);
     void enter(const CaptureBlock& block);
     void enter_damage(std::uint64_t offset, std::uint64_t bytes);
 
@@ -121,6 +129,7 @@ private:
     bool recognised_ = false;
     bool own_section_ = true;    // until a section header says otherwise, every block must vouch for itself
     bool vouched_seen_ = false;  // in the present section
+    bool closed_ = false;        // the block read last is the one with which the writer closes a file
     std::vector<Interface> interfaces_;
     std::uint64_t offset_ = 0;
     Bytes window_;

@@ -29,6 +29,7 @@ void add(CaptureAccounts& sum, const CaptureAccounts& part) {
     sum.blocks.bytes_in_tail += part.blocks.bytes_in_tail;
     sum.blocks.blocks += part.blocks.blocks;
     sum.blocks.damaged_ranges += part.blocks.damaged_ranges;
+    sum.blocks.bytes_behind_close += part.blocks.bytes_behind_close;
     sum.blocks.damage.insert(sum.blocks.damage.end(), part.blocks.damage.begin(), part.blocks.damage.end());
     sum.blocks.end = worse(sum.blocks.end, part.blocks.end);
     sum.transfers += part.transfers;
@@ -128,6 +129,12 @@ Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples, c
     }
     if (loaded.file.blocks.bytes_total == 0) {
         return Error{ErrorCode::malformed, "read capture '" + path + "': the file is empty"};
+    }
+    if (loaded.file.blocks.blocks == 0) {
+        return Error{ErrorCode::malformed,
+                     "read capture '" + path +
+                         "': it holds no whole block: it is no capture, or its writer died before it had "
+                         "written one"};
     }
     return loaded;
 }

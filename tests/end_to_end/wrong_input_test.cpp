@@ -92,6 +92,7 @@ protected:
         const std::string whole = read_whole_file("c.pcapng");
         write("empty.pcapng", "");
         write("noise.pcapng", noise(5000));
+        write("head.pcapng", whole.substr(0, 40));
         std::string damaged = whole;
         std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(damaged.size() / 2), 200, '\x55');
         write("damaged.pcapng", damaged);
@@ -234,6 +235,8 @@ TEST_F(WrongInput, OfCommandsThatReadACapture) {
         row(" none.pcapng", 1, "open 'none.pcapng': No such file or directory");
         row(" dir", 1, "open 'dir': not a regular file");
         row(" empty.pcapng", 1, "read capture 'empty.pcapng': the file is empty");
+        row(" head.pcapng", 1,
+            "read capture 'head.pcapng': it holds no whole block: it is no capture, or its writer died");
         row(" noise.pcapng", 1, "open 'noise.pcapng': not a capture: neither pcapng nor pcap");
         row(" c.csv", 1, "open 'c.csv': not a capture: neither pcapng nor pcap");
         row(" m.json", 1, "open 'm.json': not a capture");

@@ -113,6 +113,26 @@ TEST(CaptureFile, FindsNoPhantomsInAZeroFilledTail) {
     EXPECT_EQ(read->accounts.blocks.bytes_in_tail, 5000U);
 }
 
+// A writer that has closed its file tore nothing: whatever follows is no part of the capture.
+TEST(CaptureFile, WhatStandsBehindItsCloseIsNoTornTail) {
+    const MadeCapture made = make_capture(6, 50);
+    const auto with = [&](const Bytes& behind) {
+        Bytes bytes = made.bytes;
+        bytes.insert(bytes.end(), behind.begin(), behind.end());
+        return read_capture(bytes);
+    };
+    const auto begin = made.bytes.begin() + static_cast<std::ptrdiff_t>(made.ends[3]);
+    for (const Bytes& behind : {Bytes(5000, 0), Bytes(7, 'x'), Bytes(begin, begin + 40)}) {
+        const auto read = with(behind);
+        ASSERT_TRUE(read.ok());
+        EXPECT_EQ(read->transfers.size(), made.transfers.size());
+        EXPECT_EQ(read->accounts.blocks.end, FileEnd::damaged);
+        EXPECT_EQ(read->accounts.blocks.bytes_behind_close, behind.size());
+        EXPECT_TRUE(read->accounts.blocks.only_behind_close());
+        EXPECT_TRUE(read->accounts.blocks.balanced());
+    }
+}
+
 TEST(CaptureFile, LosesAtMostOneTransferToAnyFlippedBit) {
     const MadeCapture made = make_capture(3, 20);
     for (std::size_t bit = 0; bit < made.bytes.size() * 8; ++bit) {
