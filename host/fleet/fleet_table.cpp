@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "host/base/printable.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -17,7 +19,8 @@ struct Row {
     std::string outlier;
 };
 
-Cell cell(const std::string& text) { return text.empty() ? Cell() : Cell(text); }
+// A name or a message from outside may hold what a terminal obeys, and line breaks.
+Cell cell(const std::string& text) { return text.empty() ? Cell() : Cell(printable(text)); }
 Cell cell(const std::optional<double>& number) { return number ? Cell(*number) : Cell(); }
 Cell cell(const std::optional<std::uint64_t>& number) {
     if (!number || *number > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {

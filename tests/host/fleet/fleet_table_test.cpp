@@ -99,6 +99,19 @@ TEST(FleetTable, WhatWasExpectedAndDidNotComeIsARow) {
     EXPECT_EQ(shown(table, 6, "exit"), "");
 }
 
+// In every cell of text, from a line as from a list of names.
+TEST(FleetTable, ANameFromOutsideCommandsNoTerminal) {
+    nlohmann::json line = analysis_of({.file = "a\x1b[2J.csv"});
+    line["board"] = "S1\nb.csv,,";
+    const FleetRecordings of =
+        joined({line, {{"file", "b.csv"}, {"exit", 1}, {"error", "\x1b]0;x\x07"}}}, {"c\x1b[31m.csv\xFF"});
+    const FleetTable table = table_of(of);
+    EXPECT_EQ(shown(table, 0, "file"), "a\\u001b[2J.csv");
+    EXPECT_EQ(shown(table, 0, "board"), "\"S1\\u000ab.csv,,\"");
+    EXPECT_EQ(shown(table, 3, "error"), "\\u001b]0;x\\u0007");
+    EXPECT_EQ(shown(table, 4, "file"), "c\\u001b[31m.csv\\xff");
+}
+
 TEST(FleetTable, AnAccelerometerHasRowsOnRequest) {
     nlohmann::json line = analysis_of({});
     line["accelerometer"]["axes"]["x"] = {
