@@ -1,9 +1,13 @@
 #include "host/formats/text_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <archive.h>
@@ -50,21 +54,61 @@ Error error_of(archive* file) {
 }
 
 // Those that libarchive knows itself. For others it would run programs, and which is for the file to say.
+struct Compression {
+    const char* name;
+    std::string_view ending;
+    int code;
+    int (*know)(archive*);
+    int (*write)(archive*);
+};
+constexpr std::array compressions{
+    Compression{"gzip", ".gz", ARCHIVE_FILTER_GZIP, archive_read_support_filter_gzip,
+                archive_write_add_filter_gzip},
+    Compression{"xz", ".xz", ARCHIVE_FILTER_XZ, archive_read_support_filter_xz, archive_write_add_filter_xz},
+    Compression{"zstd", ".zst", ARCHIVE_FILTER_ZSTD, archive_read_support_filter_zstd,
+                archive_write_add_filter_zstd},
+    Compression{"bzip2", ".bz2", ARCHIVE_FILTER_BZIP2, archive_read_support_filter_bzip2,
+                archive_write_add_filter_bzip2}};
+
+// Null: it names none.
+const Compression* compression_named(const std::string& path) {
+    const auto* const found = std::ranges::find_if(
+        compressions, [&](const Compression& one) { return path.ends_with(one.ending); });
+    return found == compressions.end() ? nullptr : found;
+}
+
+// Null: it is not compressed.
+const Compression* compression_found(archive* file) {
+    const auto* const found = std::ranges::find_if(
+        compressions, [&](const Compression& one) { return archive_filter_code(file, 0) == one.code; });
+    return found == compressions.end() ? nullptr : found;
+}
+
 Status know_compressions(archive* file) {
-    struct Compression {
-        int (*know)(archive*);
-        const char* name;
-    };
-    constexpr std::array compressions{Compression{archive_read_support_filter_gzip, "gzip"},
-                                      Compression{archive_read_support_filter_xz, "xz"},
-                                      Compression{archive_read_support_filter_zstd, "zstd"},
-                                      Compression{archive_read_support_filter_bzip2, "bzip2"}};
-    for (const auto& [know, name] : compressions) {
-        if (know(file) != ARCHIVE_OK) {
-            return Error{ErrorCode::unsupported, std::string("this system's libarchive cannot read ") + name};
+    for (const Compression& one : compressions) {
+        if (one.know(file) != ARCHIVE_OK) {
+            return Error{ErrorCode::unsupported,
+                         std::string("this system's libarchive cannot read ") + one.name};
         }
     }
     return {};
+}
+
+// What is named one way and packed another was renamed or cut, or is not what the user takes it for.
+Status check_name(archive* file, const std::string& path) {
+    std::error_code unknown;
+    if (own_descriptor(path) || !std::filesystem::is_regular_file(path, unknown)) { return {}; }
+    const Compression* const named = compression_named(path);
+    const Compression* const found = compression_found(file);
+    if (named == found) { return {}; }
+    if (named == nullptr) {
+        return malformed(std::string("it is compressed with ") + found->name +
+                         ", and its name does not say so: it should end in " + std::string(found->ending));
+    }
+    return malformed(
+        "its name ends in " + std::string(named->ending) + ", and it is " +
+        (found == nullptr ? std::string("not compressed") : std::string("compressed with ") + found->name) +
+        ": give it the name of what it is");
 }
 
 // Memory in proportion to the file, whatever was packed into it. -1 is the file, 0 what comes out.
@@ -94,6 +138,7 @@ Result<TextReader> TextReader::open(const std::string& path) {
     }
     archive_entry* entry = nullptr;
     const int header = archive_read_next_header(file, &entry);
+    if (header == ARCHIVE_OK) { GYROLOG_CHECK(check_name(file, path)); }
     if (header != ARCHIVE_OK && header != ARCHIVE_EOF) { return error_of(file); }
     reader.buffer_.resize(header == ARCHIVE_EOF ? 0 : read_bytes);
     return reader;
@@ -117,15 +162,7 @@ Result<TextWriter> TextWriter::create(const std::string& path, TextGrowth growth
     archive* file = archive_write_new();
     writer.archive_.reset(file);
     archive_write_set_format_raw(file);
-    if (path.ends_with(".xz")) {
-        archive_write_add_filter_xz(file);
-    } else if (path.ends_with(".gz")) {
-        archive_write_add_filter_gzip(file);
-    } else if (path.ends_with(".zst")) {
-        archive_write_add_filter_zstd(file);
-    } else if (path.ends_with(".bz2")) {
-        archive_write_add_filter_bzip2(file);
-    }
+    if (const Compression* const named = compression_named(path)) { named->write(file); }
     // Without this the file would be filled up to a multiple of a tape's block.
     archive_write_set_bytes_in_last_block(file, 1);
     if (growth == TextGrowth::growing) { archive_write_set_bytes_per_block(file, 0); }

@@ -1,5 +1,4 @@
-// Text files by name, compressed or not: .xz, .gz, .zst and .bz2 are told by their content when read, and by
-// the name's ending when written.
+// Text files by name, compressed or not, as the name's ending says: .xz, .gz, .zst or .bz2.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +14,8 @@ namespace gyrolog {
 
 class TextReader {
 public:
+    // Error malformed where a file's name and its content disagree about its compression. A pipe and standard
+    // input have no name that would say it: there the content does.
     static Result<TextReader> open(const std::string& path);
 
     // The next piece of the file, valid until the next call; empty at its end.

@@ -105,6 +105,9 @@ protected:
         write("empty.csv", "");
         write("noise.csv", noise(5000));
         write("torn.csv.xz", compressed.substr(0, compressed.size() / 2));
+        write("packed.csv", compressed);
+        write("plain.csv.gz", whole);
+        write("other.csv.gz", compressed);
         std::string returns = whole;
         std::ranges::replace(returns, '\n', '\r');
         write("cr.csv", returns);
@@ -345,6 +348,10 @@ TEST_F(WrongInput, OfAnalyze) {
         {"analyze noise.csv", 1, "read 'noise.csv': this is no text, and no capture"},
         {"analyze noise.pcapng", 1, "open 'noise.pcapng': not a capture"},
         {"analyze m.json", 1, "read 'm.json': this is JSON, a model or a report perhaps, and no table"},
+        {"analyze packed.csv", 1,
+         "read 'packed.csv': it is compressed with xz, and its name does not say so: it should end in .xz"},
+        {"analyze plain.csv.gz", 1, "read 'plain.csv.gz': its name ends in .gz, and it is not compressed"},
+        {"analyze other.csv.gz", 1, "its name ends in .gz, and it is compressed with xz"},
         {"analyze torn.csv.xz", 1, "read 'torn.csv.xz': its compressed text is damaged or cut off"},
         {"analyze cr.csv", 1, "line 1: the lines end in carriage returns alone: end them in line feeds"},
         {"analyze mixed.csv", 1, "line 3, column 't_s': '0.2' has a decimal point where line 2 has a comma"},

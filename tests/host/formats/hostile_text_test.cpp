@@ -9,9 +9,11 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "host/formats/input_limits.hpp"
 #include "host/formats/model_json.hpp"
@@ -62,6 +64,20 @@ TEST_F(HostileText, CompressedInLayersIsRefused) {
     EXPECT_THAT(refusal_of_recording(twice), HasSubstr("compressed more than once"));
     EXPECT_THAT(refusal_of_model(file("thrice.json.xz", read_whole_file(twice))),
                 HasSubstr("compressed more than once"));
+}
+
+// A pipe has no name that says how it is compressed.
+TEST_F(HostileText, OfAPipeIsReadByItsContent) {
+    const std::string packed = read_whole_file(file("rows.csv.gz", "t_s,gx_dps\n0,1\n1,2\n2,1\n3,2\n"));
+    const std::string pipe = folder_.path("pipe");
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << packed; });
+    const auto read = read_recording_csv(pipe, {});
+    writer.join();
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->rows(), 4U);
+    std::ofstream(folder_.path("rows.csv"), std::ios::binary) << packed;
+    EXPECT_THAT(refusal_of_recording(folder_.path("rows.csv")), HasSubstr("it should end in .gz"));
 }
 
 TEST_F(HostileText, ALineWithoutEndIsRefused) {
