@@ -89,11 +89,6 @@ Status write_fitted_model(const AnalysisRequest& request, const Recording& recor
     return write_model(fitted_model(report, recording), request.model_path);
 }
 
-// Where the figure of an accelerometer beside a gyro goes; nowhere, where a pipe takes one figure.
-std::string second_figure(const std::string& path) {
-    return is_figure_file(path) ? path_of_accelerometer(path) : std::string();
-}
-
 // A figure for each sensor: an accelerometer beside a gyro has a file of its own, NAME.accelerometer.png.
 void write_figures(ResultOutput& results, const AnalysisReport& report, const std::string& path,
                    const std::function<Status(SensorKind, const std::string&)>& write) {
@@ -158,6 +153,10 @@ Status write_results(Console& console, const char* command, const AnalysisReques
 }
 
 }  // namespace
+
+std::string second_figure(const std::string& path) {
+    return is_figure_file(path) ? path_of_accelerometer(path) : std::string();
+}
 
 ExitCode analyze_to_files(Console& console, const char* command, const AnalysisRequest& request) {
     const NamedPath read[] = {{"RECORDING", request.recording_path}};

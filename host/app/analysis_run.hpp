@@ -37,6 +37,9 @@ struct AnalysisRequest {
     StageObserver on_stage{};  // of those of reading and analysing, then "json", "plot", "model", "report"
 };
 
+// Where the figure of an accelerometer beside a gyro goes; empty where a pipe takes one figure.
+std::string second_figure(const std::string& path);
+
 // Prints the report for people on `out`, unless the JSON goes there.
 ExitCode analyze_to_files(Console& console, const char* command, const AnalysisRequest& request);
 

@@ -3,7 +3,9 @@
 
 #include <csignal>
 #include <ctime>
+#include <filesystem>
 #include <memory>
+#include <span>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -35,6 +37,19 @@ std::string without_extension(const std::string& path) {
     return path.ends_with(ending) ? path.substr(0, path.size() - ending.size()) : path;
 }
 
+// Names that the program chooses: what stands there is somebody's, and was not given up by naming it.
+Status refuse_existing(std::span<const NamedPath> results) {
+    for (const NamedPath& result : results) {
+        std::error_code unknown;
+        if (std::filesystem::is_regular_file(result.path, unknown)) {
+            return invalid_argument(
+                fmt::format("write {} '{}': it exists; choose another name for the capture, or --force",
+                            result.option, result.path));
+        }
+    }
+    return {};
+}
+
 ExitCode bench_session(Console& console, BenchSessionOptions options) {
     if (options.capture.devices.size() > 1) {
         return report_error(
@@ -48,17 +63,23 @@ ExitCode bench_session(Console& console, BenchSessionOptions options) {
     request.json_path = without_extension(options.path) + ".json";
     request.plot_path = without_extension(options.path) + ".png";
     request.model_path = without_extension(options.path) + ".model.json";
+    const std::string second_plot = second_figure(request.plot_path);
     const std::string device =
         options.capture.devices.empty() ? std::string() : file_of_device(options.capture.devices.front());
     const NamedPath read[] = {{"--device", device}};
     const NamedPath written[] = {{"--output", options.path},
                                  {"the report", request.json_path},
                                  {"the figure", request.plot_path},
+                                 {"the accelerometer's figure", second_plot},
                                  {"the noise model", request.model_path}};
     if (const Status fine = check_output_paths(read, written); !fine.ok()) {
         return report_error(console, "", fine.error());
     }
     if (const Status fine = check_ending(written[0], "a capture", capture_endings); !fine.ok()) {
+        return report_error(console, "", fine.error());
+    }
+    if (const Status fine = refuse_existing(std::span(written).subspan(1));
+        !options.capture.force && !fine.ok()) {
         return report_error(console, "", fine.error());
     }
     const CaptureResult captured = capture_to_file(console, "", options.capture, options.path, true);

@@ -458,6 +458,26 @@ TEST_F(Capture, TheBareProgramEndsAtATerminationWithoutAnalysis) {
     }
 }
 
+// Their names are the program's choice: nobody gave up what stands there.
+TEST_F(Capture, TheBareProgramWritesOverNoResultUnlessForced) {
+    for (const char* name : {"a.json", "a.png", "a.accelerometer.png", "a.model.json"}) {
+        std::ofstream(folder.path(name)) << "precious";
+        std::vector<std::string> line{"--device", "sim:rate=1000",        "--duration", "1s",
+                                      "-o",       folder.path("a.pcapng")};
+        const ProgramResult refused = run_gyrolog(line);
+        EXPECT_EQ(refused.exit_code, 2) << name << refused.err;
+        EXPECT_NE(refused.err.find(std::string(name) + "': it exists"), std::string::npos) << refused.err;
+        EXPECT_FALSE(fs::exists(folder.path("a.pcapng"))) << name;
+        EXPECT_EQ(read_whole_file(folder.path(name)), "precious");
+        line.emplace_back("--force");
+        EXPECT_EQ(run_gyrolog(line).exit_code, 0);
+        EXPECT_NE(read_whole_file(folder.path(name)), "precious") << name;
+        for (const char* made : {"a.pcapng", "a.json", "a.png", "a.accelerometer.png", "a.model.json"}) {
+            fs::remove(folder.path(made));
+        }
+    }
+}
+
 TEST_F(Capture, AModelFileDrivesTheVirtualBoard) {
     ASSERT_EQ(capture("sim:", "first.pcapng", {"--duration", "2m"}).exit_code, 0);
     ASSERT_EQ(
