@@ -1,9 +1,11 @@
 #include "host/app/stop_signal.hpp"
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdint>
 #include <ctime>
+#include <span>
 
 #include "host/app/live_keys.hpp"
 #include "host/base/unfinished_files.hpp"
@@ -57,6 +59,17 @@ void on_crash(int number) {
     end_by(number);
 }
 
+// By signal(7), of all signals: what does not end a process, or cannot be caught.
+constexpr std::array harmless{SIGCHLD, SIGCONT, SIGURG,  SIGWINCH, SIGTSTP,
+                              SIGTTIN, SIGTTOU, SIGSTOP, SIGKILL};
+constexpr std::array crashes{SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS};
+// A pipe that nobody reads and a file at its limit (ulimit -f) are errors of the write.
+constexpr std::array errors_of_writes{SIGPIPE, SIGXFSZ};
+
+bool is_one_of(std::span<const int> numbers, int number) {
+    return std::ranges::find(numbers, number) != numbers.end();
+}
+
 void install(int number, void (*handler)(int)) {
     struct sigaction before {};
     if (sigaction(number, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) { return; }
@@ -68,21 +81,23 @@ void install(int number, void (*handler)(int)) {
 }  // namespace
 
 void install_stop_signals() {
-    // All that end a process (signal(7)): the second row is sent by limits of processor time, timers, power
-    // supplies, and people who take them for a question.
-    for (const int number : {SIGINT, SIGTERM, SIGHUP,  //
-                             SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGPOLL, SIGPWR}) {
-        install(number, on_stop_signal);
-    }
-    for (const int number : {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS}) {
+    for (const int number : crashes) {
         // A sanitizer tells of a crash in its own handler.
         struct sigaction before {};
         if (sigaction(number, nullptr, &before) == 0 && before.sa_handler == SIG_DFL) {
             install(number, on_crash);
         }
     }
-    // A pipe that nobody reads and a file at its limit (ulimit -f) are errors of the write.
-    for (const int number : {SIGPIPE, SIGXFSZ}) { static_cast<void>(std::signal(number, SIG_IGN)); }
+    for (const int number : errors_of_writes) { static_cast<void>(std::signal(number, SIG_IGN)); }
+    // All others that end a process, the real-time ones too: they are sent by limits of processor time,
+    // timers, power supplies, and people who take them for a question. The C library keeps some, and refuses
+    // them.
+    for (int number = 1; number <= SIGRTMAX; ++number) {
+        if (!is_one_of(harmless, number) && !is_one_of(crashes, number) &&
+            !is_one_of(errors_of_writes, number)) {
+            install(number, on_stop_signal);
+        }
+    }
 }
 
 TidyEnd::TidyEnd() { ++tidy_ends; }

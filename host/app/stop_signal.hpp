@@ -5,10 +5,10 @@
 
 namespace gyrolog {
 
-// SIGINT, SIGTERM and SIGHUP end the program at once, whatever it is doing: what it was writing and is not
-// yet whole is removed, a terminal and serial ports get their modes back, and the exit status tells of the
-// signal. SIGQUIT, SIGABRT and a crash give these back as well. A signal that was ignored when the program
-// began (nohup, a job in the background) stays ignored.
+// SIGINT, SIGTERM, SIGHUP and every other signal that ends a process end the program at once, whatever it is
+// doing: what it was writing and is not yet whole is removed, a terminal and serial ports get their modes
+// back, and the exit status tells of the signal. SIGQUIT, SIGABRT and a crash give these back as well. A
+// signal that was ignored when the program began (nohup, a job in the background) stays ignored.
 void install_stop_signals();
 
 // While one lives, the first signal is only noted, and the one who holds it ends tidily: a capture is closed.

@@ -136,7 +136,8 @@ TEST_F(LiveTerminal, StoppedAndContinuedItTakesItsKeysAgainAndLosesNothing) {
 }
 
 TEST_F(LiveTerminal, EverySignalThatEndsItGivesTheTerminalBack) {
-    for (const int number : {SIGQUIT, SIGABRT, SIGTRAP, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU, SIGALRM}) {
+    for (const int number : {SIGQUIT, SIGABRT, SIGTRAP, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU, SIGALRM, SIGSTKFLT,
+                             SIGRTMIN, SIGRTMIN + 5, SIGRTMAX}) {
         Terminal terminal(command());
         ASSERT_TRUE(terminal.shows("keys:")) << terminal.screen();
         EXPECT_FALSE(terminal.echoes());

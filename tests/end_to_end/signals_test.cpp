@@ -151,7 +151,7 @@ TEST_F(Signals, OfLimitsAndTimersAreTidyToo) {
     const auto writes =
         std::ranges::find_if(all, [](const LongCommand& command) { return !command.leaves.empty(); });
     ASSERT_NE(writes, all.end());
-    for (const int number : {SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGPROF}) {
+    for (const int number : {SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGPROF, SIGRTMIN}) {
         expect_tidy_end(*writes, number);
     }
 }
