@@ -14,7 +14,10 @@ namespace gyrolog {
 namespace {
 
 std::string comment_of(std::string_view sign, std::string_view text) {
-    const std::string wrapped = wrapped_text("", text);
+    std::string plain(text);
+    // In C and C++ a backslash at the end of a line goes on with the comment in the next one.
+    if (sign == "//") { std::ranges::replace(plain, '\\', '/'); }
+    const std::string wrapped = wrapped_text("", plain);
     std::string lines;
     for (std::size_t begin = 0; begin < wrapped.size();) {
         const std::size_t end = wrapped.find('\n', begin);

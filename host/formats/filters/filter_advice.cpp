@@ -112,7 +112,7 @@ std::vector<std::string> filter_advice(const ExportSource& source) {
     }
     if (source.temperature) { add_of_temperature(advice, *source.temperature); }
     for (const std::string& effect : source.effects) {
-        advice.push_back("The model has the effect " + effect + ", the filter has not.");
+        advice.push_back("The model has the effect " + printable(effect) + ", the filter has not.");
     }
     return advice;
 }

@@ -1,5 +1,6 @@
 #include "host/formats/filters/filter_number.hpp"
 #include "host/formats/filters/filters.hpp"
+#include "host/formats/python_encoding.hpp"
 
 namespace gyrolog {
 namespace {
@@ -39,6 +40,7 @@ constinit const FilterFormat gtsam_format = {
         "params.setIntegrationCovariance(1.0e-8 * np.eye(3))\n"
         "params.setBiasAccOmegaInit(np.zeros((6, 6)))\n",
     .after = "",
+    .first = python_encoding_line,
     .missing = "raise ValueError(\"{key} is missing: GTSAM would take a default of 1\")",
 };
 

@@ -16,7 +16,7 @@ constexpr std::string_view carla_facts[] = {
 
 std::string carla_text(const SimulatorSource& source, std::span<const std::string> head) {
     std::string text =
-        commented(head, "#") +
+        commented_for_python(head) +
         "\n\ndef set_imu(blueprint):\n    \"\"\"Of blueprint_library.find('sensor.other.imu').\"\"\"\n" +
         fmt::format("    blueprint.set_attribute(\"sensor_tick\", \"{:.9g}\")  # s\n", 1.0 / source.rate_hz);
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -22,7 +22,7 @@ std::string genesis_text(const SimulatorSource& source, std::span<const std::str
         sd_rad_s[axis] = source.sample_sd_rad_s(axis);
         walk_rad_s[axis] = source.noise[axis].K_rad_per_s_sqrt_s / std::sqrt(source.rate_hz);
     }
-    return commented(head, "#") +
+    return commented_for_python(head) +
            fmt::format(
                "import genesis as gs\n\n\ndef imu_options(entity_idx, link_idx_local=0):\n"
                "    return gs.sensors.IMU(\n        entity_idx=entity_idx,\n"

@@ -29,7 +29,7 @@ std::string gnss_ins_sim_text(const SimulatorSource& source, std::span<const std
         correlation_s[axis] =
             noise.gauss_markov.sigma_rad_per_s > 0.0 ? noise.gauss_markov.correlation_s : 100.0;
     }
-    return commented(head, "#") +
+    return commented_for_python(head) +
            fmt::format(
                "import numpy as np\nfrom gnss_ins_sim.sim import imu_model\n\n"
                "fs = {:.9g}  # Hz\nimu_err = {{\n    'gyro_b': np.array([{}]),  # deg/h\n"

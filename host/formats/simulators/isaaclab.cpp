@@ -18,7 +18,7 @@ constexpr std::string_view isaaclab_facts[] = {
 std::string isaaclab_text(const SimulatorSource& source, std::span<const std::string> head) {
     Vector3 sd_rad_s{};
     for (std::size_t axis = 0; axis < 3; ++axis) { sd_rad_s[axis] = source.sample_sd_rad_s(axis); }
-    return commented(head, "#") +
+    return commented_for_python(head) +
            fmt::format(
                "import torch\nfrom isaaclab.utils.noise import GaussianNoiseCfg\n\n"
                "# noise of an ObservationTermCfg of the angular velocity, rad/s\n"

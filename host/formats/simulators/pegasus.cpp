@@ -18,7 +18,7 @@ std::string pegasus_text(const SimulatorSource& source, std::span<const std::str
     const NoiseProjection& noise = source.noise[0];
     const double correlation_s =
         noise.gauss_markov.sigma_rad_per_s > 0.0 ? noise.gauss_markov.correlation_s : 1000.0;
-    return commented(head, "#") +
+    return commented_for_python(head) +
            fmt::format(
                "imu_config = {{\n    \"update_rate\": {0:.9g},  # Hz\n    \"gyroscope\": {{\n"
                "        \"noise_density\": {1:.9g},  # rad/s/sqrt(Hz)\n"

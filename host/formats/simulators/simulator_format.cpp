@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "host/formats/python_encoding.hpp"
 #include "host/formats/simulators/simulators.hpp"
 
 namespace gyrolog {
@@ -36,6 +37,10 @@ std::string commented(std::span<const std::string> head, std::string_view sign) 
     std::string text;
     for (const std::string& line : head) { text += std::string(sign) + ' ' + line + '\n'; }
     return text;
+}
+
+std::string commented_for_python(std::span<const std::string> head) {
+    return std::string(python_encoding_line) + commented(head, "#");
 }
 
 std::string xml_comment(std::span<const std::string> head) {

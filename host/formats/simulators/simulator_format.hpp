@@ -31,6 +31,8 @@ std::string simulator_text(const SimulatorFormat& format, const SensorModel& mod
 
 // The head as comments: each line behind `sign`.
 std::string commented(std::span<const std::string> head, std::string_view sign);
+// The same for Python, behind python_encoding_line.
+std::string commented_for_python(std::span<const std::string> head);
 // What stands in an XML comment, a line each.
 std::string xml_comment(std::span<const std::string> head);
 

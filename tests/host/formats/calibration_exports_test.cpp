@@ -148,6 +148,15 @@ TEST_P(CalibrationExports, ArduPilotGivesBackGravityAndRest) {
     }
 }
 
+// A backslash at the end of a line would make the next one a comment.
+TEST(CalibrationHeader, ANameFromOutsideGoesOnInNoLineOfTheCHeader) {
+    Calibration calibration = made_calibration();
+    calibration.recordings = {std::string(90, 'a') + "\\ " + std::string(90, 'b') + "\\"};
+    const std::string text = calibration_c_header(calibration);
+    EXPECT_EQ(text.find("\\\n"), std::string::npos) << text.substr(0, 400);
+    EXPECT_NE(text.find("aaa/"), std::string::npos);
+}
+
 // With misalignment and g-sensitivity, compiled by the C compiler that a firmware's author has.
 TEST_P(CalibrationExports, TheCHeaderGivesBackGravityAndRest) {
     if (!has_program("cc")) { GTEST_SKIP() << needs_program("cc"); }

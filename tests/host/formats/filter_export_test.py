@@ -269,6 +269,7 @@ def main():
             assert said.count("warning: left out: ") == 2 and "not measured" in said, said
             assert "There is no accelerometer in the source" in out.read_text()
             if name == "gtsam":
+                assert out.read_text().startswith("# -*- coding: utf-8 -*-\n"), "Python asks the first two lines"
                 try:
                     reader(out.read_text())
                 except ValueError as stopped:

@@ -547,5 +547,15 @@ TEST(SimulatorExport, OfAHostileNameIsNoCode) {
     EXPECT_THAT(text, Not(HasSubstr("\\")));
 }
 
+// Python takes the encoding of a file from a comment of its first two lines, unless the first has named one.
+TEST(SimulatorExport, OfANameThatNamesAnEncodingIsReadAsUtf8) {
+    for (const char* format : {"carla", "genesis", "gnss-ins-sim", "isaaclab", "pegasus"}) {
+        const std::string text = simulator_text(*find_simulator_format(format), typical_mpu9250(),
+                                                "coding:utf-7 +AAo-import os", 600.0);
+        EXPECT_TRUE(text.starts_with("# -*- coding: utf-8 -*-\n")) << format;
+        EXPECT_THAT(text, HasSubstr("coding:utf-7")) << format;
+    }
+}
+
 }  // namespace
 }  // namespace gyrolog
