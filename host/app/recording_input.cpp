@@ -37,6 +37,19 @@ std::string what_is_wrong_with_the_end(const LoadedCapture& capture, const Recor
     return {};
 }
 
+// What `check` counts as missing and no hole between samples shows.
+void warn_of_missing_ends(Recording& recording, const LinkReport& report, double rate_hz) {
+    const auto warn = [&](std::uint64_t samples, const char* place, const char* end) {
+        if (samples == 0) { return; }
+        recording.warnings.push_back(
+            fmt::format("the capture {} {:.3g} s {} sample: {} missing there", place,
+                        static_cast<double>(samples) / rate_hz, end,
+                        samples == 1 ? "1 sample is" : counted(samples, "sample") + " are"));
+    };
+    warn(report.samples_missing_at_start, "begins", "before its first");
+    warn(report.samples_missing_at_end, "goes on for", "behind its last");
+}
+
 bool has_sensor(SensorKind sensor, const Recording& recording) {
     return std::ranges::any_of(recording.columns,
                                [&](const Column& column) { return is_of(sensor, column); });
@@ -93,6 +106,10 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
     GYROLOG_CHECK(check_gyro(*recording, input));
     const std::string hurt = what_is_wrong_with_the_end(capture, input);
     if (!hurt.empty()) { recording->warnings.push_back(hurt); }
+    if (input.samples_most == RecordingInput{}.samples_most) {
+        warn_of_missing_ends(*recording, capture.decoder->report(),
+                             recording->rate_hz * static_cast<double>(input.samples_per_row));
+    }
     const TextChoice& text = input.text;
     if (!text.columns.empty() || !text.gyro_unit.empty() || !text.accelerometer_unit.empty()) {
         recording->warnings.emplace_back(

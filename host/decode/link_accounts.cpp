@@ -331,7 +331,14 @@ LinkCounts LinkAccounts::counts(const FrameDecoder& decoder) const {
 
 LinkReport LinkAccounts::report(const FrameDecoder& decoder) const {
     LinkReport report{counts(decoder), dropouts_, dropouts_unlisted_, joins_, restarts_, {}};
-    for (const LinkDropout& part : tail_gap()) { report.dropouts.push_back(part); }
+    for (const LinkDropout& part : dropouts_) {
+        if (part.run != 0 || part.first_index != report.samples_missing_at_start) { break; }
+        report.samples_missing_at_start += part.samples;
+    }
+    for (const LinkDropout& part : tail_gap()) {
+        report.dropouts.push_back(part);
+        report.samples_missing_at_end += part.samples;
+    }
     return report;
 }
 

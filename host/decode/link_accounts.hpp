@@ -103,6 +103,9 @@ struct LinkReport : LinkCounts {
     // clocks say of how many instants.
     std::vector<LinkJoin> restarts;
     std::vector<LinkDropout> stops;
+    // Of the missing ones, before the first sample and behind the last: no recording has a place for them.
+    std::uint64_t samples_missing_at_start = 0;
+    std::uint64_t samples_missing_at_end = 0;
 
     bool complete() const {
         return frames.missing == 0 && samples.missing == 0 && joins.empty() && samples_frozen == 0;

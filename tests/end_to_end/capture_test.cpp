@@ -340,6 +340,18 @@ TEST_F(Capture, OneReadingAgainAndAgainIsToldCountedAndNoSuccess) {
 }
 
 // In real time, because it is the user's time that counts.
+// No hole between samples shows it; what `check` counts, the analysis says.
+TEST_F(Capture, ASensorThatIsSilentToTheEndIsToldByTheAnalysisToo) {
+    ASSERT_EQ(capture("sim:rate=1000,seed=7,fault=int_lost@10", "a.pcapng", {"--duration", "30s"}).exit_code,
+              5);
+    const std::uint64_t missing = check("a.pcapng", 5)["samples"]["missing"];
+    EXPECT_GT(missing, 19'000U);
+    const ProgramResult analysis = run_gyrolog({"analyze", folder.path("a.pcapng"), "--json", "-"});
+    const std::string warnings = json::parse(analysis.out)["warnings"].dump();
+    EXPECT_THAT(warnings, HasSubstr("the capture goes on for 20 s behind its last sample: 20,00"));
+    EXPECT_THAT(warnings, HasSubstr(" samples are missing there"));
+}
+
 TEST_F(Capture, ASilentSensorIsToldWhileItIsSilent) {
     const ProgramResult silent =
         capture("sim:rate=1000,realtime=1,fault=int_lost@0.5..3.5", "a.pcapng", {"--duration", "5s"});
