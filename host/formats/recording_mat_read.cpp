@@ -338,8 +338,7 @@ public:
     explicit VariablesReader(ByteView bytes) : left_(bytes) {}
 
     Result<Variables> read() {
-        const bool is_read = number() == 1;
-        if (!is_read) { return malformed(fine_ ? text() : "it is damaged"); }
+        if (number() != 1) { return malformed(told_reason()); }
         Variables variables;
         for (std::uint64_t n = number(); fine_ && n > 0; --n) {
             MatMatrix matrix{text(), number(), number(), {}};
@@ -362,6 +361,11 @@ public:
     }
 
 private:
+    std::string told_reason() {
+        constexpr std::size_t bytes_most = 400;  // of the reasons that there are
+        const std::string reason = text();
+        return fine_ && !reason.empty() ? reason.substr(0, bytes_most) : "it is damaged";
+    }
     void take(void* data, std::size_t size) {
         fine_ = fine_ && size <= left_.size();
         if (!fine_) { return; }
@@ -387,7 +391,7 @@ private:
 
 // libmatio and the HDF5 behind it crash on some damaged files, and believe what lengths, dimensions and
 // depths a file states.
-Result<Variables> read_variables(const std::string& path) {
+Result<Bytes> ask_confined_process(const std::string& path) {
     GYROLOG_CHECK(check_whole(path));
     std::error_code unknown;
     const std::uintmax_t file_bytes = std::filesystem::file_size(path, unknown);
@@ -397,14 +401,23 @@ Result<Variables> read_variables(const std::string& path) {
     const ProcessConfines confines{input_limits.mat_library_bytes_most + 4 * number_bytes,
                                    input_limits.mat_read_s_least + s_for_bytes,
                                    input_limits.mat_library_bytes_most + number_bytes};
-    GYROLOG_TRY(const Bytes told, run_confined(confines, [&](int descriptor) {
-                    VariablesWriter(descriptor).write(read_by_libmatio(path));
-                }));
-    return VariablesReader(told).read();
+    return run_confined(confines, [&](int descriptor) { tell_mat_file(path, descriptor); });
 }
 
-Result<Recording> read_mat_file(const std::string& path, RecordingReadOptions options) {
-    GYROLOG_TRY(Variables variables, read_variables(path));
+Result<Recording> read_mat_file(const std::string& path, const RecordingReadOptions& options) {
+    GYROLOG_TRY(const Bytes told, ask_confined_process(path));
+    return recording_of_mat_answer(told, path, options);
+}
+
+}  // namespace
+
+void tell_mat_file(const std::string& path, int descriptor) {
+    VariablesWriter(descriptor).write(read_by_libmatio(path));
+}
+
+Result<Recording> recording_of_mat_answer(ByteView told, const std::string& path,
+                                          RecordingReadOptions options) {
+    GYROLOG_TRY(Variables variables, VariablesReader(told).read());
     std::vector<NumberColumn> columns = columns_of(variables.matrices, variables.gyro_axes);
     GYROLOG_CHECK(keep_samples(columns));
     if (columns.empty()) {
@@ -417,8 +430,6 @@ Result<Recording> read_mat_file(const std::string& path, RecordingReadOptions op
     if (!options.rate_hz && !has_time) { options.rate_hz = rate_of(variables); }
     return recording_of_numbers(std::move(columns), path.substr(path.find_last_of('/') + 1), options);
 }
-
-}  // namespace
 
 Result<Recording> read_recording_mat(const std::string& path, const RecordingReadOptions& options) {
     Result<Recording> recording = read_mat_file(path, options);

@@ -8,6 +8,7 @@
 
 #include <string>
 
+#include "host/base/bytes.hpp"
 #include "host/base/result.hpp"
 #include "host/formats/recording_columns.hpp"
 
@@ -16,5 +17,12 @@ namespace gyrolog {
 // Errors: malformed (no MAT-file; cut off; columns of different lengths), invalid_argument (a unit or a rate
 // is missing), and those of reading a file.
 Result<Recording> read_recording_mat(const std::string& path, const RecordingReadOptions& options);
+
+// Its two halves. The process that reads tells `descriptor` what libmatio finds in the file, or why nothing;
+// libmatio may crash, or take all memory.
+void tell_mat_file(const std::string& path, int descriptor);
+// The program believes nothing of what it is told. Errors as above, without the file's name.
+Result<Recording> recording_of_mat_answer(ByteView told, const std::string& path,
+                                          RecordingReadOptions options);
 
 }  // namespace gyrolog

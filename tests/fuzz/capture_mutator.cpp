@@ -1,12 +1,12 @@
 // Mutates the blocks of a capture file behind their lengths, hashes and checksums: packets, the records in
-// them, comments.
+// them, the frames in those, comments.
 
 #include <span>
 
 #include "host/capture/byte_order.hpp"
 #include "host/capture/pcapng.hpp"
 #include "host/capture/usbmon_record.hpp"
-#include "tests/fuzz/mutation.hpp"
+#include "tests/fuzz/frame_mutation.hpp"
 
 namespace {
 
@@ -49,7 +49,11 @@ Bytes change_packet(Mutation& mutation, const pcapng::Packet& packet) {
     if (mutation.one_in(4)) { time_ns += std::uint64_t{1} << mutation.below(64); }
     if (record.size() > usbmon_header_bytes && mutation.one_in(2)) {
         Bytes data(record.begin() + usbmon_header_bytes, record.end());
-        Mutation::change(data, change_bytes_max);
+        if (mutation.one_in(2)) {
+            data = change_frames(mutation, data);
+        } else {
+            Mutation::change(data, change_bytes_max);
+        }
         record.resize(usbmon_header_bytes);
         record.insert(record.end(), data.begin(), data.end());
     } else {

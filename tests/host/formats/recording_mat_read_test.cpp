@@ -145,6 +145,28 @@ TEST_F(RecordingMat, UnpacksInProportionToTheFile) {
 }
 
 // Lengths, dimensions and depths that the library believes: it takes all memory, or crashes.
+// The process that reads may have been taken over by the file.
+TEST_F(RecordingMat, BelievesNothingThatItIsTold) {
+    const auto number = [](std::uint64_t value) {
+        Bytes bytes(sizeof value);
+        std::memcpy(bytes.data(), &value, sizeof value);
+        return bytes;
+    };
+    const auto refusal = [](const Bytes& told) {
+        const auto read = recording_of_mat_answer(told, "a.mat", {});
+        return read.ok() ? std::string() : read.error().message;
+    };
+    Bytes without_reason = number(0);
+    EXPECT_EQ(refusal({}), "it is damaged");
+    EXPECT_EQ(refusal(without_reason), "it is damaged");
+    for (const std::uint8_t byte : number(0)) { without_reason.push_back(byte); }
+    EXPECT_EQ(refusal(without_reason), "it is damaged");
+    Bytes long_reason = number(0);
+    for (const std::uint8_t byte : number(1'000'000)) { long_reason.push_back(byte); }
+    long_reason.resize(long_reason.size() + 1'000'000, 'x');
+    EXPECT_EQ(refusal(long_reason).size(), 400U);
+}
+
 TEST_F(RecordingMat, BelievesNoNumberInTheFile) {
     const auto number = [](std::uint32_t value) {
         std::string bytes(4, '\0');
