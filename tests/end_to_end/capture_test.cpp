@@ -348,8 +348,8 @@ TEST_F(Capture, ASensorThatIsSilentToTheEndIsToldByTheAnalysisToo) {
     EXPECT_GT(missing, 19'000U);
     const ProgramResult analysis = run_gyrolog({"analyze", folder.path("a.pcapng"), "--json", "-"});
     const std::string warnings = json::parse(analysis.out)["warnings"].dump();
-    EXPECT_THAT(warnings, HasSubstr("the capture goes on for 20 s behind its last sample: 20,00"));
-    EXPECT_THAT(warnings, HasSubstr(" samples are missing there"));
+    EXPECT_THAT(warnings, HasSubstr("the capture goes on for 20."));
+    EXPECT_THAT(warnings, HasSubstr("behind its last sample: " + std::to_string(missing / 1000) + ","));
 }
 
 TEST_F(Capture, ASilentSensorIsToldWhileItIsSilent) {

@@ -102,7 +102,7 @@ TEST(FleetTable, WhatWasExpectedAndDidNotComeIsARow) {
 // In every cell of text, from a line as from a list of names.
 TEST(FleetTable, ANameFromOutsideCommandsNoTerminal) {
     nlohmann::json line = analysis_of({.file = "a\x1b[2J.csv"});
-    line["board"] = "S1\nb.csv,,";
+    line["recording"]["board"] = "S1\nb.csv,,";
     const FleetRecordings of =
         joined({line, {{"file", "b.csv"}, {"exit", 1}, {"error", "\x1b]0;x\x07"}}}, {"c\x1b[31m.csv\xFF"});
     const FleetTable table = table_of(of);
