@@ -13,9 +13,6 @@
 namespace gyrolog {
 
 struct PopulationOptions {
-    // Of |robust z|: B. Iglewicz, D. C. Hoaglin, "How to Detect and Handle Outliers", ASQC (1993), ch. 3. One
-    // in 2150 of Gaussian values lies beyond it by chance.
-    double outlier_z = 3.5;
     // A spread of fewer is no spread: the interval of the robust standard deviation holds its chance from
     // four on (robust_spread.hpp).
     std::size_t units_least = 4;
@@ -24,11 +21,18 @@ struct PopulationOptions {
     double probability = 0.95;  // of the intervals
 };
 
+// The |robust z| beyond which a value stands out of so many units: of Gaussian values 1 in 2150 lies beyond
+// it by chance, whatever the number of units. Of very many that is 3.5: B. Iglewicz, D. C. Hoaglin, "How to
+// Detect and Handle Outliers", ASQC (1993), ch. 3. Of few the spread itself is uncertain, and beyond 3.5 lies
+// 1 in 26 of 5: the bound is 36 there, 8 of 10, 5.2 of 20.
+double outlier_bound(std::size_t units);
+
 // Where a recording stands out.
 struct OutlyingParameter {
     std::size_t recording = 0;  // its place among those that were given
     std::string axis;           // "" for rate_hz
     std::string name;
+    double value = 0.0;  // in the unit of the population (population_json.hpp)
     double z = 0.0;
 };
 
@@ -46,7 +50,7 @@ struct UnitPopulation {
 //   uncertainty
 //
 // so that a short recording does not stand out by its noise. Where more than half of the values are equal
-// there is no spread, and none stands out.
+// there is no spread, and none stands out. What is farther than outlier_bound() stands out.
 UnitPopulation population_of(std::span<const FleetLine> recordings, const PopulationOptions& options = {});
 
 }  // namespace gyrolog

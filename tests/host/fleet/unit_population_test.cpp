@@ -1,5 +1,6 @@
 #include "host/fleet/unit_population.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -107,6 +108,27 @@ TEST(UnitPopulation, AUnitOutsideIsFlaggedAndDoesNotHideItself) {
         EXPECT_EQ(one.recording, 20U);
         EXPECT_EQ(one.name, "N");
         EXPECT_GT(one.z, 20.0);
+    }
+}
+
+// 1 in 2150, however few they are; within four standard deviations, and the 4 % by which the bound is known.
+TEST(UnitPopulation, CallsAsFewGaussianUnitsOutliersOfFewAsOfMany) {
+    Normals normals(7);
+    for (const std::size_t units : {4U, 5U, 9U, 16U, 19U, 20U, 40U}) {
+        const std::size_t fleets = 400'000 / units;
+        const std::vector<double> uncertainties(units, 0.0);
+        std::vector<double> values(units);
+        std::size_t alarms = 0;
+        for (std::size_t fleet = 0; fleet < fleets; ++fleet) {
+            for (double& value : values) { value = normals.next(); }
+            const RobustSpread spread = robust_spread(values, uncertainties);
+            alarms += static_cast<std::size_t>(std::ranges::count_if(values, [&](double value) {
+                return std::abs(value - spread.median) > outlier_bound(units) * spread.observed_sd;
+            }));
+        }
+        const double expected = static_cast<double>(fleets * units) / 2150.0;
+        EXPECT_NEAR(static_cast<double>(alarms), expected, 4.0 * std::sqrt(2.0 * expected) + 0.1 * expected)
+            << units;
     }
 }
 
