@@ -395,7 +395,8 @@ private:
 
     // What would settle what is open.
     void propose_recordings() {
-        for (const Cause& cause : answer_.causes) {
+        for (Cause& cause : answer_.causes) {
+            state_deciding_length(cause, prediction_->duration_s());
             std::string proposal = deciding_recording(cause);
             if (!proposal.empty()) { answer_.next_recordings.push_back(std::move(proposal)); }
         }

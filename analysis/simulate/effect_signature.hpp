@@ -135,8 +135,8 @@ struct EffectSignature {
     bool (*hides_losses)(const EffectValues& effect) = nullptr;
 
     // For the report: a sentence with {parameter} where a fitted value belongs; what "the model has ... that
-    // the recording lacks", likewise; and the recording that would tell the effect from its rivals. They say
-    // what is seen, not what made it.
+    // the recording lacks", likewise; and the recording that would tell the effect from its rivals, with
+    // {length} where that depends on how far the rivals are behind. They say what is seen, not what made it.
     std::string_view words{};
     std::string_view noun{};
     std::string_view decided_by{};

@@ -1,7 +1,9 @@
 #include "analysis/diagnose/selection/cause_probability.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "analysis/diagnose/decision_options.hpp"
 #include "analysis/diagnose/estimators/catalogue.hpp"
@@ -15,6 +17,27 @@ constexpr std::size_t ties_most = 4;
 }  // namespace gyrolog::resolution
 
 namespace gyrolog {
+namespace {
+
+// A rival that is as good as the cause would ask for a recording without end.
+constexpr double least_behind_nats = 0.5;
+
+// In the unit in which it has one or two digits, rounded up: "40 s", "1 h", "30 h", "5 days".
+std::string length_text(double length_s) {
+    struct Unit {
+        double length_s;
+        const char* name;
+    };
+    constexpr std::array units{Unit{86400.0, " days"}, Unit{3600.0, " h"}, Unit{60.0, " min"},
+                               Unit{1.0, " s"}};
+    const auto* unit = std::ranges::find_if(units, [&](const Unit& one) {
+        return length_s >= (one.length_s > 3600.0 ? 2.0 : 1.0) * one.length_s;
+    });
+    if (unit == units.end()) { --unit; }
+    return std::to_string(static_cast<long>(std::ceil(length_s / unit->length_s - 1e-9))) + unit->name;
+}
+
+}  // namespace
 
 Cause with_probability(const FoundCause& found, const CauseSelection& selection, double returning_nats,
                        const std::optional<BetterShape>& better_shape) {
@@ -58,16 +81,16 @@ std::string telling_apart(const std::string& effect) { return "to tell " + effec
 
 std::string deciding_recording(const Cause& cause) {
     if (cause.decided_by.empty()) { return {}; }
-    const Rival& rival = cause.tie_group[1];
-    std::string proposal = telling_apart(cause.finding.effect) + rival.effect + ": " + cause.decided_by;
-    // What noise tells grows with the time that it is listened to.
-    if (traits_of(cause.finding.effect).is_noise) {
-        const double times =
-            std::ceil(decisions.certain_nats() / std::max(rival.evidence_below_best_nats, 0.5));
-        proposal +=
-            ", some " + std::to_string(std::max(2, static_cast<int>(times))) + " times as long as this one";
-    }
-    return proposal;
+    return telling_apart(cause.finding.effect) + cause.tie_group[1].effect + ": " + cause.decided_by;
+}
+
+void state_deciding_length(Cause& cause, double duration_s) {
+    constexpr std::string_view place = "{length}";
+    const std::size_t at = cause.decided_by.find(place);
+    if (at == std::string::npos || cause.tie_group.size() < 2) { return; }
+    const double behind_nats = std::max(cause.tie_group[1].evidence_below_best_nats, least_behind_nats);
+    const double times = std::max(2.0, std::ceil(decisions.certain_nats() / behind_nats));
+    cause.decided_by.replace(at, place.size(), length_text(times * duration_s) + " or more");
 }
 
 }  // namespace gyrolog

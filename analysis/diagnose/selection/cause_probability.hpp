@@ -23,6 +23,10 @@ double probability_of_tie(const Cause& cause);
 // What would settle the cause's tie: a sentence, empty where there is none.
 std::string deciding_recording(const Cause& cause);
 
+// Puts the length that would settle the tie into `decided_by`, where that has a place for it. Evidence grows
+// with the time that is listened to: of `duration_s` it is what the first rival is behind.
+void state_deciding_length(Cause& cause, double duration_s);
+
 // How the sentence begins.
 std::string telling_apart(const std::string& effect);
 

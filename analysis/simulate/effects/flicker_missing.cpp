@@ -36,7 +36,7 @@ constexpr EffectSignature flicker_missing_signature = {
     .spectrum = flicker_missing_spectrum,
     .words = "Flicker noise is missing in the model, a bias instability of {B_dps}",
     .noun = "flicker noise of {B_dps}",
-    .decided_by = "a still recording of 6 hours or more at a steady temperature",
+    .decided_by = "a still recording of {length} at a steady temperature",
 };
 
 }  // namespace

@@ -60,7 +60,7 @@ constexpr EffectSignature heavy_tail_signature = {
     .degrees_of_freedom = degrees_of_freedom,
     .words = "Single samples stray further than normal noise does: Student's t with {nu} degrees of freedom.",
     .noun = "tails of Student's t with {nu} degrees of freedom",
-    .decided_by = "a longer recording at rest, of raw samples",
+    .decided_by = "a recording at rest of {length}, of raw samples",
 };
 
 }  // namespace

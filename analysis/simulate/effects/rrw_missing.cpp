@@ -40,7 +40,7 @@ constexpr EffectSignature rrw_missing_signature = {
     .spectrum = rrw_missing_spectrum,
     .words = "The output wanders: a rate random walk of {K_dps_sqrt_hz} is missing in the model",
     .noun = "a rate random walk of {K_dps_sqrt_hz}",
-    .decided_by = "a still recording at least three times as long, at a steady temperature",
+    .decided_by = "a still recording of {length} at a steady temperature",
 };
 
 }  // namespace

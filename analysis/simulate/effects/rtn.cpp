@@ -110,7 +110,7 @@ constexpr EffectSignature rtn_signature = {
         "{dwell_high_s} on the upper one and {dwell_low_s} on the lower one, on average.",
     .noun = "telegraph noise of {amplitude_dps}",
     .decided_by =
-        "a recording at rest that is ten times as long: two levels then show as two peaks in the "
+        "a recording at rest of {length}: two levels then show as two peaks in the "
         "distribution of short averages, Gauss-Markov noise as one",
 };
 

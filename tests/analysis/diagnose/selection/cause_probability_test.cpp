@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/decision_options.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -35,6 +36,24 @@ TEST(CauseProbability, ComparesWithRivalsAndWithNothing) {
     ASSERT_THAT(one_of_two.tie_group, SizeIs(2));
     EXPECT_NEAR(probability_of_tie(one_of_two), 1.0, 1e-12);
     EXPECT_THAT(deciding_recording(one_of_two), HasSubstr("to tell temp_lag from temp_linear: "));
+}
+
+// One length, that which the evidence asks for, in a unit that one can read.
+TEST(CauseProbability, AsksForALengthThatFollowsFromTheEvidence) {
+    const auto proposal = [](const char* effect, double behind_nats, double duration_s) {
+        const FoundCause found{finding(effect, 50.0), {finding("gauss_markov", 50.0 - behind_nats)}};
+        Cause cause = with_probability(found, {}, 40.0, {});
+        state_deciding_length(cause, duration_s);
+        EXPECT_EQ(deciding_recording(cause),
+                  "to tell " + std::string(effect) + " from gauss_markov: " + cause.decided_by);
+        return cause.decided_by;
+    };
+    const int times = static_cast<int>(std::ceil(decisions.certain_nats()));
+    EXPECT_EQ(proposal("flicker_missing", 1.0, 600.0),
+              "a still recording of " + std::to_string(10 * times) + " min or more at a steady temperature");
+    EXPECT_THAT(proposal("flicker_missing", 1.0, 6.0 * 3600.0), HasSubstr(" h or more"));
+    EXPECT_THAT(proposal("rtn", 0.0, 86400.0), HasSubstr(" days or more: two levels then"));
+    EXPECT_EQ(proposal("temp_lag", 1.0, 600.0), "one sweep of the temperature up and down by 5 degC or more");
 }
 
 // What is as strong beside all causes is a further cause, not a rival.
