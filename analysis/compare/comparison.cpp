@@ -313,6 +313,7 @@ Comparison compare_recordings(const Recording& recording, const Recording& other
     Comparison comparison;
     describe(recording, comparison);
     comparison.other_name = other.name;
+    comparison.other_duration_s = other.segments.empty() ? 0.0 : other.duration_s();
     comparison.less_reference = has_reference(recording) || has_reference(other);
     const std::vector<std::string> axes = axes_of(recording);
     const double alarms = false_alarms_a_part(parts_with_recording, axes.size());

@@ -49,6 +49,7 @@ struct Comparison {
     double rate_hz = 0.0;  // of the recording
     double duration_s = 0.0;
     std::size_t samples = 0;
+    double other_duration_s = 0.0;  // of the other recording; 0 with simulations, which are as long
     bool less_reference = false;
     SensorUnit unit = SensorUnit::dps();  // of the sensor's numbers, for readers
     std::size_t simulations = 0;          // 0: with a recording

@@ -244,6 +244,31 @@ void add_keys(Panel& panel, const AllanFigure& allan, bool has_band) {
     }
 }
 
+// What the model has beside N, B and K, a line each: without it the dashed curve has humps that nothing
+// tells.
+std::vector<std::string> shaped_terms(const AllanFigure& allan) {
+    constexpr std::size_t told_most = 6;
+    std::vector<std::string> told;
+    const auto size = [&](double value) {
+        return rounded_number(value * allan.unit.per_unit_of_data) + " " + allan.unit.name;
+    };
+    for (const AllanTrace& trace : allan.traces) {
+        for (const PlottedGaussMarkov& noise : trace.gauss_markov) {
+            told.push_back(trace.name + ": Gauss-Markov, σ " + size(noise.sigma) + ", correlation time " +
+                           rounded_number(noise.correlation_s) + " s");
+        }
+        for (const PlottedSinusoid& line : trace.sinusoids) {
+            told.push_back(trace.name + ": sinusoid, amplitude " + size(line.amplitude) + ", " +
+                           rounded_number(line.f_hz) + " Hz");
+        }
+    }
+    if (told.size() <= told_most) { return told; }
+    const std::size_t more = told.size() - told_most + 1;
+    told.resize(told_most - 1);
+    told.push_back("and " + std::to_string(more) + " more terms");
+    return told;
+}
+
 // Marks of one name that lie together have one letter.
 void share_letters(std::vector<Callout>& marks) {
     constexpr double together_decades = 0.3;
@@ -308,6 +333,7 @@ Panel allan_panel(const AllanFigure& allan) {
     }
     share_letters(panel.callouts);
     add_keys(panel, allan, has_band);
+    if (groups.size() == allan.traces.size()) { panel.notes = shaped_terms(allan); }
     add_guides(panel);
 
     return panel;

@@ -53,6 +53,16 @@ struct ModelDensity {
     double density = 0.0;  // two-sided, unit of the curve squared, per Hz
 };
 
+// What carries the model beside N, B and K, in the unit of the curve.
+struct PlottedGaussMarkov {
+    double sigma = 0.0;
+    double correlation_s = 0.0;
+};
+struct PlottedSinusoid {
+    double amplitude = 0.0;
+    double f_hz = 0.0;
+};
+
 struct AllanTrace {
     std::string name;  // "x"
     AllanCurve curve;
@@ -61,7 +71,9 @@ struct AllanTrace {
     PowerSpectrum spectrum;
     std::vector<ModelDensity> model_spectrum;  // by rising frequency
     std::vector<SpectralLine> lines;           // strongest first
-    std::string group;                         // "x" for every x axis of an array; empty: its name
+    std::vector<PlottedGaussMarkov> gauss_markov{};
+    std::vector<PlottedSinusoid> sinusoids{};
+    std::string group;  // "x" for every x axis of an array; empty: its name
 };
 
 struct AllanFigure {

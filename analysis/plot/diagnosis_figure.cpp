@@ -23,16 +23,17 @@ constexpr int diagnosed_columns_most = 3;
 constexpr std::size_t rows_most = 6;
 constexpr std::size_t rows_least = 3;
 
-// From light to dark in grey, too: band before, band after, recording.
+// From light to dark in grey, too: band before, band after, recording. Only the first is filled: two fills on
+// each other have a colour that is neither's.
 constexpr Colour before_colour = colours::orange;
 constexpr Colour after_colour = colours::blue;
 constexpr Colour measured_colour = colours::ink;
 
 const Stroke before_edge{mixed(before_colour, colours::ink, 0.25), 1.3, {6.0, 4.0}};
-const Stroke after_edge{mixed(after_colour, colours::ink, 0.2), 1.3, {}};
+const Stroke after_edge{mixed(after_colour, colours::ink, 0.2), 2.0, {}};
 const Stroke measured_line{measured_colour, 2.2, {}};
-constexpr double before_opacity = 0.30;
-constexpr double after_opacity = 0.50;
+constexpr double before_opacity = 0.40;
+constexpr double after_opacity = 0.0;
 
 constexpr double least_decibels = 1.0;
 
@@ -81,10 +82,12 @@ public:
                 curve.stroke = measured_line;
                 break;
             case Part::before:
-            case Part::after:
                 curve.lo = curve.hi = {0.0};
-                curve.stroke = part == Part::before ? before_edge : after_edge;
-                curve.band_opacity = part == Part::before ? before_opacity : after_opacity;
+                curve.stroke = before_edge;
+                curve.band_opacity = before_opacity;
+                break;
+            case Part::after:
+                curve.stroke = after_edge;
                 break;
             case Part::outside_before:
             case Part::outside_after:
@@ -204,15 +207,17 @@ private:
     void add_band(Panel& panel, const Band& band) const {
         Curve upper;
         upper.x = along_x(band.half_width);
-        upper.lo = along_y(band.lo);
-        upper.hi = along_y(band.hi);
-        upper.y = upper.hi;
+        upper.y = along_y(band.hi);
         upper.stroke = band.edge;
-        upper.band_opacity = band.opacity;
         Curve lower;
         lower.x = upper.x;
-        lower.y = upper.lo;
+        lower.y = along_y(band.lo);
         lower.stroke = band.edge;
+        if (band.opacity > 0.0) {
+            upper.lo = lower.y;
+            upper.hi = upper.y;
+            upper.band_opacity = band.opacity;
+        }
         panel.curves.push_back(std::move(upper));
         panel.curves.push_back(std::move(lower));
     }

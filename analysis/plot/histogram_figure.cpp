@@ -11,8 +11,13 @@ namespace {
 
 constexpr std::size_t most_in_one_column = 4;
 constexpr int histogram_heading_px = 130;
+constexpr int histogram_key_px = 44;
 constexpr int wide_panel_px = 430;
 constexpr int small_panel_px = 380;
+
+constexpr double samples_opacity = 0.25;
+constexpr const char* gaussian_name = "Gaussian of equal deviation";
+const Stroke gaussian_line{colours::ink, 2.0, {14.0, 7.0}};
 
 // A bin of one sample still stands above the foot of a logarithmic axis.
 constexpr double foot = 0.5;
@@ -78,11 +83,11 @@ Panel panel_of(const HistogramTrace& trace, const HistogramFigure& figure, Colou
     samples.lo.assign(samples.x.size(), foot);
     samples.hi = samples.y;
     samples.stroke = {colour, 1.8, {}};
-    samples.band_opacity = 0.25;
+    samples.band_opacity = samples_opacity;
     samples.legend = {"samples of " + trace.name};
-    gaussian.stroke = {colours::ink, 2.0, {14.0, 7.0}};
+    gaussian.stroke = gaussian_line;
     gaussian.sets_range = false;
-    gaussian.legend = {"Gaussian of equal deviation"};
+    gaussian.legend = {gaussian_name};
     panel.y.range = Range{foot, 4.0 * most};
     panel.curves.push_back(std::move(samples));
     if (histogram.standard_deviation > 0.0) { panel.curves.push_back(std::move(gaussian)); }
@@ -100,6 +105,22 @@ Panel panel_of(const HistogramTrace& trace, const HistogramFigure& figure, Colou
 
 }  // namespace
 
+namespace {
+
+// Of panels that have no room for a legend of their own.
+std::vector<Curve> key_of_small_panels() {
+    std::vector<Curve> key(2);
+    key[0].stroke = {colours::muted_ink, 1.8, {}};
+    key[0].lo = key[0].hi = {0.0};
+    key[0].band_opacity = samples_opacity;
+    key[0].legend = {"samples"};
+    key[1].stroke = gaussian_line;
+    key[1].legend = {gaussian_name};
+    return key;
+}
+
+}  // namespace
+
 Figure figure_of(const HistogramFigure& histograms) {
     Figure figure;
     figure.title = histograms.title;
@@ -112,10 +133,12 @@ Figure figure_of(const HistogramFigure& histograms) {
         figure.panels.push_back(
             panel_of(histograms.traces[i], histograms, colours::cycle.at(i % (are_many ? 3 : 6)), are_many));
     }
+    if (are_many) { figure.key = key_of_small_panels(); }
     const auto columns = static_cast<std::size_t>(figure.columns);
     const auto rows = static_cast<int>((figure.panels.size() + columns - 1) / columns);
     figure.width_px = histograms.paper.width_px();
-    figure.height_px = histograms.paper.scaled_pixels(histogram_heading_px +
+    const int key_px = are_many ? histogram_key_px : 0;
+    figure.height_px = histograms.paper.scaled_pixels(histogram_heading_px + key_px +
                                                       rows * (are_many ? small_panel_px : wide_panel_px));
     return figure;
 }

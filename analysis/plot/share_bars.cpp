@@ -48,6 +48,8 @@ std::string on_axes(const std::vector<std::size_t>& axes) {
     return text;
 }
 
+bool is_simulated(const Diagnosis& diagnosis) { return diagnosis.simulations > 0; }
+
 double excess(double gap, const Gap& of) { return gap * gap - of.floor * of.floor; }
 
 Share left_share(const Diagnosis& diagnosis) {
@@ -75,7 +77,10 @@ std::vector<Bar> bars_of(const Diagnosis& diagnosis) {
     bars.push_back({"left", left_share(diagnosis), "", left_colour});
     const Gap& before = diagnosis.gap_before;
     const double floor = before.floor * before.floor / excess(before.value, before);
-    bars.push_back({"by chance", {floor, 0.0, 0.0}, ", what two simulations differ by", floor_colour});
+    // A curve is not simulated: its floor is what a free fit leaves.
+    bars.push_back(is_simulated(diagnosis)
+                       ? Bar{"by chance", {floor, 0.0, 0.0}, ", what two simulations differ by", floor_colour}
+                       : Bar{"best fit", {floor, 0.0, 0.0}, ", what a free fit leaves", floor_colour});
     return bars;
 }
 
@@ -150,7 +155,8 @@ std::optional<Panel> share_bars(const Diagnosis& diagnosis) {
     panel.y.range = Range{-0.6, count - 0.4};
     panel.x.range = Range{least, longest * (1.0 + room_for_words)};
     panel.x.names = percent_ticks(*panel.x.range, longest);
-    panel.x.title = "share of the gap's square (%), with its 95 % interval; shares may overlap";
+    panel.x.title = std::string("share of the gap's square (%)") +
+                    (is_simulated(diagnosis) ? ", with its 95 % interval" : "") + "; shares may overlap";
     panel.spans_row = true;
     panel.height_share = around_bars_px + bar_px * count;
     return panel;

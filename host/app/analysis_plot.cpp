@@ -59,6 +59,7 @@ AllanTrace trace_of(const AxisReport& axis, bool is_allan) {
         trace.model_spectrum.push_back({point.f_hz, noise.psd(point.f_hz)});
     }
     trace.lines = axis.lines;
+    if (is_allan) { add_shaped_terms(trace, axis.fit); }
     trace.group = axis.axis.substr(0, 1);
     return trace;
 }
@@ -145,6 +146,15 @@ HistogramFigure samples_figure(const AnalysisReport& report, const Recording& re
                                  axis.bias.coverage_factor});
     }
     return figure;
+}
+
+void add_shaped_terms(AllanTrace& trace, const NoiseFit& fit) {
+    for (const FittedGaussMarkov& noise : fit.gauss_markov) {
+        trace.gauss_markov.push_back({noise.value.sigma_rad_per_s, noise.value.correlation_s});
+    }
+    for (const FittedSinusoid& line : fit.sinusoids) {
+        trace.sinusoids.push_back({line.value.amplitude_rad_per_s, line.value.frequency_hz});
+    }
 }
 
 std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, NoiseTerm term) {

@@ -24,6 +24,9 @@ Status write_analysis_plot(const AnalysisReport& report, SensorKind sensor, cons
 Status write_histogram_plot(const AnalysisReport& report, const Recording& recording, SensorKind sensor,
                             const PaperSize& paper, const std::string& path);
 
+// What the fit has beside the five coefficients.
+void add_shaped_terms(AllanTrace& trace, const NoiseFit& fit);
+
 // For a curve's marks: none where the fit did not identify it.
 std::optional<PlottedCoefficient> plotted_coefficient(const NoiseFit& fit, NoiseTerm term);
 

@@ -19,6 +19,7 @@ AllanTrace trace_of(const PrintedCurveReport& curve) {
     trace.B = plotted_coefficient(curve.fit.noise, NoiseTerm::B);
     if (trace.B && curve.slopes.B) { trace.B->tau_s = curve.slopes.B->tau_s; }
     trace.K = plotted_coefficient(curve.fit.noise, NoiseTerm::K);
+    add_shaped_terms(trace, curve.fit.noise);
     for (const AllanPoint& point : curve.curve.points) {
         const double variance = curve.fit.noise.best.allan_variance(point.tau_s);
         if (variance > 0.0) { trace.model.push_back({point.tau_s, std::sqrt(variance)}); }

@@ -104,6 +104,20 @@ TEST(AllanFigure, WritesCoefficientsInTheUnitsOfTheirColumns) {
     EXPECT_THAT(row->legend, ElementsAre("x", "0.005000(50)", "0.3000(30)", "3.60", "5.00×10⁻⁵"));
 }
 
+// What makes humps in the dashed curve is told.
+TEST(AllanFigure, TellsWhatTheModelHasBesideItsCoefficients) {
+    AllanTrace trace = trace_of("x", 0.01, 1000.0, 30);
+    trace.gauss_markov = {{0.002 * rad_per_deg, 12.5}};
+    trace.sinusoids = {{0.01 * rad_per_deg, 0.25}};
+    EXPECT_THAT(figure_of(small_figure({trace})).panels[0].notes,
+                ElementsAre("x: Gauss-Markov, σ 0.00200 °/s, correlation time 12.5 s",
+                            "x: sinusoid, amplitude 0.0100 °/s, 0.250 Hz"));
+    trace.sinusoids.assign(9, trace.sinusoids[0]);
+    const std::vector<std::string> many = figure_of(small_figure({trace})).panels[0].notes;
+    ASSERT_EQ(many.size(), 6U);
+    EXPECT_EQ(many.back(), "and 5 more terms");
+}
+
 TEST(AllanFigure, ADegreePerSecondIs3600DegreesPerHourOnTheRight) {
     EXPECT_DOUBLE_EQ(figure_of(small_figure({})).panels.at(0).right->factor, 3600.0);
     AllanFigure in_rad = small_figure({});

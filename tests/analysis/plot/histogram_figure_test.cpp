@@ -86,6 +86,11 @@ TEST(HistogramFigure, OfAnArrayHasThreeColumns) {
     for (int i = 0; i < 24; ++i) {
         histograms.traces.push_back(trace_of(std::string("x").append(std::to_string(i))));
     }
+    // Small panels share a legend.
+    const std::vector<Curve> key = figure_of(histograms).key;
+    ASSERT_EQ(key.size(), 2U);
+    EXPECT_EQ(key[0].legend, std::vector<std::string>{"samples"});
+    EXPECT_EQ(key[1].legend, std::vector<std::string>{"Gaussian of equal deviation"});
     const Rendering rendering = render(histograms);
     ASSERT_TRUE(rendering.ok()) << rendering.problem;
     ASSERT_EQ(rendering.panels.size(), 24U);
