@@ -192,9 +192,7 @@ ExitCode analyze_to_files(Console& console, const char* command, const AnalysisR
     const AnalysisReport report = analyze(recording, *options);
     progress.reset();
     if (request.json_path == "-") {  // the report for people, which is not written then, has them too
-        for (const std::string& warning : report.warnings) {
-            console.err << "gyrolog " << command << ": warning: " << warning << '\n';
-        }
+        for (const std::string& warning : report.warnings) { say_warning(console, command, warning); }
     }
     if (!report.has_axes()) {
         return report_error(console, command,

@@ -95,7 +95,7 @@ ExitCode refuse(Console& console, const Calibration& calibration) {
         report_error(console, "calibrate", Error{ErrorCode::failed, refusal_of(calibration)});
     console.err << undetermined_text(calibration);
     for (const std::string& warning : calibration.warnings) {
-        console.err << "gyrolog calibrate: warning: " << printable(warning) << '\n';
+        say_warning(console, "calibrate", printable(warning));
     }
     return code;
 }
@@ -126,7 +126,7 @@ Status write_results(Console& console, const CalibrationRequest& request, const 
         results.show(calibration_text(calibration));
     } else {
         for (const std::string& warning : calibration.warnings) {
-            console.err << "gyrolog calibrate: warning: " << warning << '\n';
+            say_warning(console, "calibrate", warning);
         }
     }
     results.json(request.json_path, [&] { return calibration_json(calibration); });

@@ -31,8 +31,12 @@ void CaptureOptions::declare_settings(CLI::App& app) {
     app.add_option("--rate", rate_hz, "Output rate of the sensor")->type_name("HZ")->check(positive_number());
     app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")
         ->type_name("DPS")
-        ->check(whole_number(1, std::numeric_limits<std::uint16_t>::max()));
-    app.add_option("--dlpf", dlpf, "The sensor's low-pass filter: bandwidth, or off")->type_name("HZ|off");
+        ->check(whole_number(1, std::numeric_limits<std::uint16_t>::max()))
+        ->check(offered({"250", "500", "1000", "2000"}));
+    app.add_option("--dlpf", dlpf,
+                   "The sensor's low-pass filter: 5, 10, 20, 41, 92, 184, 250 or 3600 Hz, or off")
+        ->type_name("HZ|off")
+        ->check(offered({"5", "10", "20", "41", "92", "184", "250", "3600", "off"}));
 }
 
 void CaptureOptions::declare(CLI::App& app) {

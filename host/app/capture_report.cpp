@@ -14,6 +14,8 @@
 #include "host/base/printable.hpp"
 #include "host/formats/json.hpp"
 #include "host/formats/stops_text.hpp"
+#include "host/formats/text_width.hpp"
+#include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -248,7 +250,7 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
         text +=
             fmt::format("  in {} files, up to {}\n", capture.files.size(), printable(capture.files.back()));
     }
-    text += fmt::format("  end of file: {}\n", end_text(path, capture));
+    text += wrapped_text("  end of file: ", end_text(path, capture));
     text += row("bytes of the stream", link.bytes.total);
     if (capture.stream_bytes_gone > 0) {
         text += row("  gone", capture.stream_bytes_gone, "its writer counted so many more");
@@ -284,7 +286,7 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
     if (!link.stops.empty()) {
         text += fmt::format("  {}\n", stops_text(link.stops.size(), stopped_s(capture, link)));
     }
-    text += fmt::format("  {}\n", verdict(capture));
+    text += wrapped_text("  ", verdict(capture));
     return text;
 }
 
@@ -404,7 +406,9 @@ std::vector<LabelledLine> info_lines(const std::string& path, const LoadedCaptur
 std::string info_text(const std::string& path, const LoadedCapture& capture) {
     std::string text = printable(path) + "\n";
     for (const LabelledLine& line : info_lines(path, capture)) {
-        text += fmt::format("  {:<10} {}\n", line.label, line.text);
+        // A note of the user keeps its spaces where it fits.
+        const std::string whole = fmt::format("  {:<10} {}\n", line.label, line.text);
+        text += width_of(whole) <= 81 ? whole : wrapped_text(fmt::format("  {:<10} ", line.label), line.text);
     }
     return text;
 }

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -47,10 +50,16 @@ Action setup_table(CLI::App& app);
 // The program without a command: find the board, capture, analyse.
 Action setup_bench_session(CLI::App& app);
 
+// Of all commands, in the order in which the help lists them.
+std::vector<std::string> all_command_names();
+
 // "gyrolog NAME", or "gyrolog" for the program without a command.
 std::string program_and(const char* command);
 
 // "gyrolog NAME: message" on err, and the exit code that goes with the error.
 ExitCode report_error(Console& console, const char* command, const Error& error);
+
+// "gyrolog NAME: warning: ..." on err.
+void say_warning(Console& console, const char* command, std::string_view warning);
 
 }  // namespace gyrolog

@@ -45,6 +45,7 @@ struct CompareRequest {
     std::optional<double> lsb_dps;
     std::optional<double> lsb_g;
     std::string sensor = "gyro";
+    bool is_verbose = false;
     TextChoice text{};
     PartChoice part;  // of the recording, not of another one
     ModelComparisonOptions simulations;
@@ -134,23 +135,30 @@ Result<Comparison> with_recording(const CompareRequest& request) {
     return comparison;
 }
 
+// Of two recordings each has its own: what differs at long averaging times may be the length.
+std::string length_text(const Comparison& comparison) {
+    const std::string length = format_duration(comparison.duration_s);
+    const std::string other = format_duration(comparison.other_duration_s);
+    if (comparison.simulations > 0 || other == length) { return length; }
+    return length + " (the other " + other + ")";
+}
+
 Status write_plot(const Comparison& comparison, const PaperSize& paper, const std::string& path) {
-    const Rendering rendering = render(
-        ComparisonFigure{comparison,
-                         {fmt::format("{:.6g} Hz", comparison.rate_hz),
-                          format_duration(comparison.duration_s), counted(comparison.samples, "sample")},
-                         paper});
+    const Rendering rendering =
+        render(ComparisonFigure{comparison,
+                                {fmt::format("{:.6g} Hz", comparison.rate_hz), length_text(comparison),
+                                 counted(comparison.samples, "sample")},
+                                paper});
     return write_figure(rendering, path);
 }
 
 Status write_results(Console& console, const CompareRequest& request, const Comparison& comparison) {
     ResultOutput results(console);
     if (request.json_path != "-") {
-        results.show(comparison_text(comparison));
+        results.show_verdict(
+            comparison_text(comparison, request.is_verbose ? Wording::whole : Wording::brief));
     } else {
-        for (const std::string& warning : comparison.warnings) {
-            console.err << "gyrolog compare: warning: " << warning << '\n';
-        }
+        for (const std::string& warning : comparison.warnings) { say_warning(console, "compare", warning); }
     }
     results.text(request.json_path, [&] { return comparison_json(comparison); });
     results.file(request.plot_path, [&] { return write_plot(comparison, request.paper, request.plot_path); });
@@ -234,6 +242,7 @@ Action setup_compare(CLI::App& app) {
         ->check(CLI::IsMember({"gyro", "accelerometer"}))
         ->type_name("SENSOR")
         ->capture_default_str();
+    app.add_flag("--verbose", request->is_verbose, "Also say where each axis lies outside, place by place");
     return [request, many](Console& console) { return compare(console, *request, *many); };
 }
 

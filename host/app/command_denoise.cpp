@@ -16,6 +16,7 @@
 #include "host/app/option_check.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/part_options.hpp"
+#include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
@@ -76,7 +77,7 @@ ShownUnit shown_unit(const Column& column, SensorKind sensor) {
         return {unit.name, unit.per_column_unit, unit.name, "specific force"};
     }
     if (column.unit == "lsb") { return {"lsb", 1.0, "lsb"}; }
-    if (column.source_unit == "rad_s") { return {"rad_s", 1.0, "rad/s"}; }
+    if (column.source_unit == "rad_s") { return {"rad/s", 1.0, "rad/s"}; }
     return {};
 }
 
@@ -84,12 +85,16 @@ class DenoiseRun {
 public:
     explicit DenoiseRun(const Request& request) : request_(request) {}
 
-    Status run() {
+    Status run(Console& console) {
+        ProgressLine progress(console);
+        progress.show("reading");
         GYROLOG_TRY(recording_, read_input());
         GYROLOG_CHECK(check_array());
         GYROLOG_TRY(std::vector<DenoiseDesign> designs, choose_designs());
+        progress.show("learning the noise of the units");
         GYROLOG_CHECK(find_still());
         GYROLOG_TRY(std::vector<AxisKnowledge> knowledge, learn());
+        progress.show("denoising");
         DenoiseRequest work;
         work.designs = std::move(designs);
         work.still = still_;
@@ -351,9 +356,7 @@ Status write_results(Console& console, const Request& request, const DenoiseRun&
     const DenoiseReport& report = run.report();
     ResultOutput results(console);
     if (request.json_path == "-") {
-        for (const std::string& warning : report.warnings) {
-            console.err << "gyrolog denoise: warning: " << warning << '\n';
-        }
+        for (const std::string& warning : report.warnings) { say_warning(console, "denoise", warning); }
     } else {
         results.show(denoise_text(report));
     }
@@ -377,7 +380,7 @@ ExitCode denoise_command(Console& console, const Request& request) {
         {"--output", request.output}, {"--json", request.json_path}, {"--plot", request.plot_path}};
     if (const Status fine = check_output_paths(read, outputs); !fine.ok()) { return fail(fine.error()); }
     DenoiseRun run(request);
-    if (const Status done = run.run(); !done.ok()) { return fail(done.error()); }
+    if (const Status done = run.run(console); !done.ok()) { return fail(done.error()); }
     const Status written = write_results(console, request, run);
     return written.ok() ? ExitCode::ok : fail(written.error());
 }

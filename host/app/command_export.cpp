@@ -57,6 +57,13 @@ std::string known_simulators() {
     return names;
 }
 
+std::vector<std::string> known_targets() {
+    std::vector<std::string> names;
+    for (const SimulatorFormat* format : simulator_formats()) { names.emplace_back(format->name); }
+    for (const FilterFormat* format : filter_formats()) { names.emplace_back(format->name); }
+    return names;
+}
+
 // The model, read at --rate where that is given; what was taken for granted is said.
 Result<ModelSource> rated_model(Console& console, const ExportOptions& options) {
     GYROLOG_TRY(ModelSource source, read_model_source(options.source, options.seed));
@@ -155,9 +162,7 @@ Status export_recording(Console& console, const ExportOptions& options, const Ex
     input.on_share = progress->of_reading();
     GYROLOG_TRY(const Recording recording, read_recording(input));
     progress.reset();
-    for (const std::string& warning : recording.warnings) {
-        console.err << "gyrolog export: warning: " << warning << '\n';
-    }
+    for (const std::string& warning : recording.warnings) { say_warning(console, "export", warning); }
     if (const Stops stops = recording.stops(); stops.events > 0) {
         console.err << "gyrolog export: the recording was " << stops_text(stops.events, stops.s)
                     << "; what is written has a hole there\n";
@@ -260,7 +265,8 @@ Action setup_export(CLI::App& app) {
                "--for", options->target,
                "Write the model as this simulator's own file, whatever the ending: " + known_simulators() +
                    "; or the noise of a recording or model as this filter takes it: " + known_filters())
-            ->type_name("NAME");
+            ->type_name("NAME")
+            ->check(offered(known_targets()));
     app.add_option("--horizon", options->horizon,
                    "With --for and a simulator: averaging times up to this count where noise can only be "
                    "approximated")

@@ -7,6 +7,7 @@
 
 #include "host/app/command.hpp"
 #include "host/app/help_text.hpp"
+#include "host/app/ink.hpp"
 #include "host/base/nearest_name.hpp"
 #include "host/base/printable.hpp"
 #include "host/base/program_name.hpp"
@@ -28,8 +29,9 @@ constexpr std::array commands{
     Command{"analyze", "Work out Allan deviation, noise coefficients and bias", setup_analyze,
             "  gyrolog analyze night.pcapng --plot night.png --model night.model.json\n"
             "  gyrolog analyze log.csv --columns t,gx,gy,gz --unit deg/s --still auto\n"},
-    Command{"report", "Write one page on a recording: health, noise, bias, and a model's gap", setup_report,
-            "  gyrolog report night.pcapng --model night.model.json -o night.html\n"},
+    Command{"report", "Write one page on a recording, or on the results of many", setup_report,
+            "  gyrolog report night.pcapng --model night.model.json -o night.html\n"
+            "  gyrolog report analyses.jsonl gaps.jsonl -o boards.html\n"},
     Command{"compare", "Hold a recording against a model's simulations, or against another one",
             setup_compare, "  gyrolog compare day.pcapng night.model.json --plot compare.png\n"},
     Command{"calibrate", "Find scale, misalignment, bias and temperature's part from rests, turns and ramps",
@@ -60,6 +62,14 @@ constexpr std::array commands{
     Command{"completion", "Print what lets a shell complete commands and options", setup_completion,
             "  gyrolog completion bash > ~/.local/share/bash-completion/completions/gyrolog\n"},
 };
+
+constexpr const char* program_examples =
+    "    gyrolog                        # the board that is plugged in, live\n"
+    "    gyrolog --device sim:          # the virtual one\n"
+    "    gyrolog capture --duration 8h -o night.pcapng\n"
+    "    gyrolog analyze night.pcapng --plot night.png --model night.model.json\n"
+    "    gyrolog diagnose day.pcapng --model night.model.json\n"
+    "    gyrolog diagnose --help        # each command has examples of its own\n";
 
 // A word that is empty is a shell's variable that was never set, and no option's absence.
 std::string name_of_empty(const CLI::App& app) {
@@ -94,13 +104,6 @@ std::string plain_words(const std::string& problem) {
     return problem;
 }
 
-std::string command_meant(const std::string& word) {
-    std::vector<std::string> names;
-    names.reserve(commands.size());
-    for (const Command& command : commands) { names.emplace_back(command.name); }
-    return suggestion(word, names);
-}
-
 // The first of the words that the parser has left over and that looks like an option, with the one that may
 // be meant. Empty: there is none.
 std::string unknown_option(const CLI::App& app) {
@@ -116,20 +119,43 @@ std::string unknown_option(const CLI::App& app) {
     return {};
 }
 
+// A flag that is given a value, as in --quiet=yes. Empty: there is none.
+std::string valued_flag(const CLI::App& app, const std::string& problem) {
+    static const std::regex not_converted("^Could not convert: (--[a-z-]+) = (.*)$");
+    std::smatch found;
+    if (!std::regex_search(problem, found, not_converted)) { return {}; }
+    const CLI::Option* option = app.get_option_no_throw(found[1].str());
+    if (option == nullptr || option->get_expected_min() > 0) { return {}; }
+    return found[1].str() + " takes no value, and has '" + found[2].str() + "'";
+}
+
 // What the parser complains of first may be missing only because its name is misspelt.
 std::string problem_of(const CLI::App& app, const CLI::ParseError& wrong) {
-    const std::string unknown = unknown_option(app);
-    return unknown.empty() ? plain_words(wrong.what()) : unknown;
+    if (std::string unknown = unknown_option(app); !unknown.empty()) { return unknown; }
+    if (std::string flag = valued_flag(app, wrong.what()); !flag.empty()) { return flag; }
+    return plain_words(wrong.what());
 }
 
 }  // namespace
+
+void say_warning(Console& console, const char* command, std::string_view warning) {
+    console.err << Ink::warning << program_and(command) << ": warning: " << warning << Ink::plain << '\n';
+}
+
+std::vector<std::string> all_command_names() {
+    std::vector<std::string> names;
+    names.reserve(commands.size());
+    for (const Command& command : commands) { names.emplace_back(command.name); }
+    return names;
+}
 
 std::string program_and(const char* command) {
     return *command == '\0' ? "gyrolog" : std::string("gyrolog ") + command;
 }
 
 ExitCode report_error(Console& console, const char* command, const Error& error) {
-    console.err << program_and(command) << ": " << printable(error.message) << '\n';
+    console.err << Ink::error << program_and(command) << ": " << printable(error.message) << Ink::plain
+                << '\n';
     if (console.told_error != nullptr) { *console.told_error = error.message; }
     return exit_code_of(error);
 }
@@ -137,14 +163,15 @@ ExitCode report_error(Console& console, const char* command, const Error& error)
 ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
     std::string called = "gyrolog";
     const auto refuse = [&](const std::string& problem) {
-        console.err << called << ": " << problem << "\nrun `" << called << " --help` to see what there is\n";
+        console.err << Ink::error << called << ": " << problem << Ink::plain << "\nrun `" << called
+                    << " --help` to see what there is\n";
         return ExitCode::usage;
     };
     if (!arguments.empty() && !arguments.front().starts_with('-')) {
         const auto is_named = [&](const Command& command) { return arguments.front() == command.name; };
         if (std::ranges::none_of(commands, is_named)) {
             return refuse("there is no command '" + arguments.front() + "'" +
-                          command_meant(arguments.front()));
+                          suggestion(arguments.front(), all_command_names()));
         }
         called = program_and(arguments.front().c_str());
     }
@@ -170,6 +197,7 @@ ExitCode run_command_line(std::vector<std::string> arguments, Console console) {
         sub->footer((said.empty() ? "" : said + "\n\n") + "Examples:\n" + examples_text(command.examples));
         sub->callback([&action, &actions, i = actions.size() - 1] { action = actions[i]; });
     }
+    app.footer("Examples:\n" + examples_text(program_examples));  // last: commands inherit it
     try {
         std::reverse(arguments.begin(), arguments.end());  // CLI11 takes its vector back to front
         app.parse(std::move(arguments));

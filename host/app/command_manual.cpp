@@ -4,6 +4,7 @@
 
 #include "host/app/command.hpp"
 #include "host/app/manual_page.hpp"
+#include "host/app/option_check.hpp"
 #include "host/app/result_output.hpp"
 
 namespace gyrolog {
@@ -24,7 +25,8 @@ Action setup_manual(CLI::App& app) {
         return command_of(*root, text) != nullptr ? std::string() : "there is no command '" + text + "'";
     };
     app.add_option("COMMAND", *name, "The command; without one, the page of the program itself")
-        ->check(CLI::Validator(is_command, ""));
+        ->check(CLI::Validator(is_command, ""))
+        ->check(offered(all_command_names()));
     return [name, root](Console& console) {
         ResultOutput results(console);
         results.show(name->empty() ? manual_page(*root) : manual_page_of_command(*command_of(*root, *name)));

@@ -245,9 +245,7 @@ ExitCode make_text(Console& console, const SimulateOptions& options, Story& stor
         const Status room = check_room(options.output, text_bytes_of(story.file.model, request));
         if (!room.ok()) { return fail(room.error()); }
     }
-    for (const std::string& warning : story.warnings) {
-        console.err << "gyrolog simulate: warning: " << warning << '\n';
-    }
+    for (const std::string& warning : story.warnings) { say_warning(console, "simulate", warning); }
     if (const Status written = write_unit(console, options, story.file.model); !written.ok()) {
         return fail(written.error());
     }

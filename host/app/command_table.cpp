@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 
 #include "host/app/command.hpp"
+#include "host/app/fleet_input.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/result_output.hpp"
 #include "host/base/counted.hpp"
 #include "host/base/file_output.hpp"
 #include "host/base/printable.hpp"
-#include "host/fleet/fleet_recording.hpp"
 #include "host/fleet/fleet_sqlite.hpp"
 #include "host/fleet/fleet_table.hpp"
 #include "host/fleet/unit_population.hpp"
@@ -41,21 +41,6 @@ Status check(const TableOptions& options) {
     return check_output_paths(read, written);
 }
 
-int worst_code(int a, int b) {
-    return static_cast<int>(worst_of(static_cast<ExitCode>(a), static_cast<ExitCode>(b)));
-}
-
-Result<FleetRecordings> read_recordings(const TableOptions& options) {
-    std::vector<FleetLine> lines;
-    for (const std::string& path : options.lines) {
-        GYROLOG_TRY(std::vector<FleetLine> more, read_fleet_lines(path));
-        lines.insert(lines.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-    }
-    std::vector<std::string> expected;
-    if (!options.expected.empty()) { GYROLOG_TRY(expected, read_name_list(options.expected)); }
-    return join_lines(lines, expected, worst_code);
-}
-
 void tell(Console& console, const FleetRecordings& read, const UnitPopulation& population, bool with_notes) {
     for (const OutlyingParameter& one : population.outliers) {
         console.err << fmt::format("gyrolog table: outlier: {}{}{}: {}: robust z {:+.1f}\n",
@@ -81,7 +66,7 @@ Status write_population(const FleetRecordings& read, const UnitPopulation& popul
 ExitCode write_table(Console& console, const TableOptions& options) {
     const auto fail = [&](const Error& error) { return report_error(console, "table", error); };
     if (const Status fine = check(options); !fine.ok()) { return fail(fine.error()); }
-    const Result<FleetRecordings> read = read_recordings(options);
+    const Result<FleetRecordings> read = read_fleet(options.lines, options.expected);
     if (!read.ok()) { return fail(read.error()); }
     const UnitPopulation population = population_of(read->recordings);
     const FleetTable table =

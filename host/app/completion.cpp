@@ -3,6 +3,9 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "host/app/option_check.hpp"
 
 namespace gyrolog {
 namespace {
@@ -18,6 +21,7 @@ struct CompletedCommand {
     std::string name;
     std::string summary;
     std::vector<CompletedOption> options;
+    std::vector<std::string> words;  // that stand there without an option
 };
 
 // The words in the braces of CLI11's "SENSOR:{gyro,accelerometer}".
@@ -28,24 +32,37 @@ std::vector<std::string> named_choices(const std::string& type) {
     return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
 }
 
+std::vector<std::string> values_of(CLI::Option& option) {
+    std::vector<std::string> values = offered_values(option);
+    return values.empty() ? named_choices(option.get_type_name()) : values;
+}
+
+std::vector<std::string> words_of_command(CLI::App& command) {
+    for (CLI::Option* option : command.get_options()) {
+        if (!option->get_positional()) { continue; }
+        if (std::vector<std::string> values = values_of(*option); !values.empty()) { return values; }
+    }
+    return {};
+}
+
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-std::vector<CompletedOption> completed_options_of(const CLI::App& app) {
+std::vector<CompletedOption> completed_options_of(CLI::App& app) {
     std::vector<CompletedOption> options;
-    for (const CLI::Option* option : app.get_options()) {
+    for (CLI::Option* option : app.get_options()) {
         for (const std::string& name : option->get_lnames()) {
             options.push_back({"--" + name, first_line(option->get_description()),
-                               option->get_expected_min() > 0, named_choices(option->get_type_name())});
+                               option->get_expected_min() > 0, values_of(*option)});
         }
     }
     return options;
 }
 
-std::vector<CompletedCommand> commands_of(const CLI::App& root) {
+std::vector<CompletedCommand> commands_of(CLI::App& root) {
     std::vector<CompletedCommand> commands;
-    for (const CLI::App* command : root.get_subcommands([](const CLI::App*) { return true; })) {
-        commands.push_back(
-            {command->get_name(), first_line(command->get_description()), completed_options_of(*command)});
+    for (CLI::App* command : root.get_subcommands([](const CLI::App*) { return true; })) {
+        commands.push_back({command->get_name(), first_line(command->get_description()),
+                            completed_options_of(*command), words_of_command(*command)});
     }
     return commands;
 }
@@ -79,12 +96,15 @@ std::string bash_case(const CompletedCommand& command) {
             text += fmt::format("                {}) words='' ;;\n", option.name);
         }
     }
-    return text + fmt::format("                *) [[ $word == -* ]] && words={} ;;\n            esac ;;\n",
-                              in_single_quotes(option_names(command.options)));
+    return text + fmt::format(
+                      "                *) if [[ $word == -* ]]; then words={}; else words={}; fi ;;\n"
+                      "            esac ;;\n",
+                      in_single_quotes(option_names(command.options)),
+                      in_single_quotes(fmt::format("{}", fmt::join(command.words, " "))));
 }
 
 // What is no option is a file, which bash completes by itself.
-std::string bash_script(const CLI::App& root) {
+std::string bash_script(CLI::App& root) {
     const std::vector<CompletedCommand> commands = commands_of(root);
     std::vector<std::string> names;
     std::string cases;
@@ -130,14 +150,16 @@ std::string zsh_options(const std::vector<CompletedOption>& options) {
     return text;
 }
 
-std::string zsh_script(const CLI::App& root) {
+std::string zsh_script(CLI::App& root) {
     std::string described;
     std::string cases;
     for (const CompletedCommand& command : commands_of(root)) {
         described +=
             fmt::format("        {}\n", in_single_quotes(command.name + ":" + zsh_summary(command.summary)));
-        cases += fmt::format("        {})\n            _arguments{} \\\n                '*:file:_files' ;;\n",
-                             command.name, zsh_options(command.options));
+        const std::string words =
+            command.words.empty() ? "_files" : fmt::format("({})", fmt::join(command.words, " "));
+        cases += fmt::format("        {})\n            _arguments{} \\\n                '*:word:{}' ;;\n",
+                             command.name, zsh_options(command.options), words);
     }
     return fmt::format(
         "#compdef gyrolog\n# Completion of gyrolog for zsh.\nlocal -a commands\ncommands=(\n{}    )\n"
@@ -157,7 +179,7 @@ std::string fish_option(const CompletedOption& option, const std::string& condit
     return line + "\n";
 }
 
-std::string fish_script(const CLI::App& root) {
+std::string fish_script(CLI::App& root) {
     std::string text = "# Completion of gyrolog for fish.\n";
     for (const CompletedOption& option : completed_options_of(root)) {
         text += fish_option(option, "__fish_use_subcommand");
@@ -165,16 +187,19 @@ std::string fish_script(const CLI::App& root) {
     for (const CompletedCommand& command : commands_of(root)) {
         text += fmt::format("complete -c gyrolog -n __fish_use_subcommand -f -a {} -d {}\n", command.name,
                             in_single_quotes(command.summary));
-        for (const CompletedOption& option : command.options) {
-            text += fish_option(option, "__fish_seen_subcommand_from " + command.name);
+        const std::string condition = "__fish_seen_subcommand_from " + command.name;
+        if (!command.words.empty()) {
+            text += fmt::format("complete -c gyrolog -n {} -f -a {}\n", in_single_quotes(condition),
+                                in_single_quotes(fmt::format("{}", fmt::join(command.words, " "))));
         }
+        for (const CompletedOption& option : command.options) { text += fish_option(option, condition); }
     }
     return text;
 }
 
 }  // namespace
 
-std::optional<std::string> completion_script(const CLI::App& root, std::string_view shell) {
+std::optional<std::string> completion_script(CLI::App& root, std::string_view shell) {
     if (shell == "bash") { return bash_script(root); }
     if (shell == "zsh") { return zsh_script(root); }
     if (shell == "fish") { return fish_script(root); }

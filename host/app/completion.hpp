@@ -10,6 +10,6 @@
 namespace gyrolog {
 
 // `root` has all commands. A shell that is none of bash, zsh and fish has no script.
-std::optional<std::string> completion_script(const CLI::App& root, std::string_view shell);
+std::optional<std::string> completion_script(CLI::App& root, std::string_view shell);
 
 }  // namespace gyrolog

@@ -154,7 +154,7 @@ Result<Outcome> diagnose(const CurveDiagnosisRequest& request) {
 Status write_results(Console& console, const CurveDiagnosisRequest& request, const Outcome& outcome) {
     const CurveDiagnosisReport& report = outcome.report;
     ResultOutput results(console);
-    if (request.json_path != "-") { results.show(curve_diagnosis_text(report)); }
+    if (request.json_path != "-") { results.show_verdict(curve_diagnosis_text(report)); }
     results.text(request.json_path, [&] { return curve_diagnosis_json(report); });
     results.file(request.plot_path, [&] {
         const Diagnosis diagnosis = as_diagnosis(report);

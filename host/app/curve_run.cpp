@@ -17,9 +17,7 @@ namespace gyrolog {
 namespace {
 
 void warn(Console& console, const char* command, const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) {
-        console.err << program_and(command) << ": warning: " << warning << '\n';
-    }
+    for (const std::string& warning : warnings) { say_warning(console, command, warning); }
 }
 
 Status write_results(Console& console, const char* command, const CurveRequest& request,

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/simulate/sensor_simulator.hpp"
+#include "host/app/command.hpp"
 #include "host/app/figure_file.hpp"
 #include "host/formats/diagnosis_text.hpp"
 
@@ -105,9 +106,7 @@ void tell_notices(Console& console, const std::vector<std::string>& notices) {
 }
 
 void tell_warnings(Console& console, const std::vector<std::string>& warnings) {
-    for (const std::string& warning : warnings) {
-        console.err << "gyrolog diagnose: warning: " << warning << '\n';
-    }
+    for (const std::string& warning : warnings) { say_warning(console, "diagnose", warning); }
 }
 
 }  // namespace gyrolog

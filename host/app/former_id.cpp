@@ -10,10 +10,11 @@ namespace gyrolog {
 void warn_of_former_id(Console& console, const char* command, const std::string& uri, std::uint16_t vendor_id,
                        std::uint16_t product_id) {
     if (glp_usb_id_of(vendor_id, product_id) != glp_usb_id_former) { return; }
-    console.err << fmt::format(
-        "{}: warning: {} has the id {:04x}:{:04x}, which NXP's example of a serial port has as well; new "
-        "firmware has {:04x}:{:04x}\n",
-        program_and(command), uri, vendor_id, product_id, GLP_USB_VENDOR_ID, GLP_USB_PRODUCT_ID);
+    say_warning(
+        console, command,
+        fmt::format("{} has the id {:04x}:{:04x}, which NXP's example of a serial port has as well; new "
+                    "firmware has {:04x}:{:04x}",
+                    uri, vendor_id, product_id, GLP_USB_VENDOR_ID, GLP_USB_PRODUCT_ID));
 }
 
 void warn_of_former_id(Console& console, const char* command, const SourceIdentity& identity) {

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     try {
         gyrolog::set_program_revision(gyrolog::program_revision);
         gyrolog::StandardOutput output;
-        gyrolog::PrintableStream messages(std::cerr);
+        gyrolog::PrintableStream messages(std::cerr, gyrolog::takes_colour(STDERR_FILENO));
         const gyrolog::Console console{output, messages, isatty(STDERR_FILENO) == 1,
                                        &gyrolog::noted_stop_signal(), &std::cerr};
         const gyrolog::ExitCode code =

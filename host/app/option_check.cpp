@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,8 @@
 
 namespace gyrolog {
 namespace {
+
+constexpr std::string_view offered_name = "offered: ";
 
 std::optional<double> number_in(const std::string& text) {
     const char* const end = text.data() + text.size();
@@ -84,5 +87,22 @@ CLI::Validator size() { return understood_by(parse_bytes); }
 CLI::Validator duration_or_none() { return understood_or_none(parse_duration_s); }
 
 CLI::Validator size_or_none() { return understood_or_none(parse_bytes); }
+
+CLI::Validator offered(const std::vector<std::string>& values) {
+    return CLI::Validator([](std::string&) { return std::string(); }, "",
+                          std::string(offered_name) + CLI::detail::join(values, " "));
+}
+
+std::vector<std::string> offered_values(CLI::Option& option) {
+    try {
+        for (int i = 0;; ++i) {
+            const std::string& name = option.get_validator(i)->get_name();
+            if (!name.starts_with(offered_name)) { continue; }
+            return CLI::detail::split(name.substr(offered_name.size()), ' ');
+        }
+    } catch (const CLI::OptionNotFound&) {  // that was the last
+        return {};
+    }
+}
 
 }  // namespace gyrolog

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -30,6 +31,12 @@ CLI::Validator duration_or_none();
 
 // "500M", "2G": what parse_bytes() understands.
 CLI::Validator size();
+
+// Passes everything: the values that a shell offers of an option whose own check knows more, or says it
+// better.
+CLI::Validator offered(const std::vector<std::string>& values);
+// Those of an option; empty: none.
+std::vector<std::string> offered_values(CLI::Option& option);
 
 // The same, or 0.
 CLI::Validator size_or_none();

@@ -28,6 +28,7 @@ Status check_output_paths(std::span<const NamedPath> read, std::span<const Named
 Status check_ending(const NamedPath& written, const char* what, std::span<const char* const> endings);
 
 inline constexpr std::array capture_endings{".pcapng"};
+inline constexpr std::array page_endings{".html", ".htm"};
 // Of recordings as text.
 inline constexpr std::array text_endings{".csv", ".csv.gz", ".csv.xz", ".csv.zst", ".csv.bz2"};
 

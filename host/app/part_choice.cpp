@@ -10,6 +10,10 @@
 namespace gyrolog {
 
 Result<TimeSpan> chosen_span(const Recording& recording, const PartChoice& part, const std::string& path) {
+    if (part.from_s && part.to_s && *part.from_s >= *part.to_s) {
+        return invalid_argument(
+            fmt::format("--from {:.6g} s is not before --to {:.6g} s", *part.from_s, *part.to_s));
+    }
     const double duration_s = recording.segments.empty() ? 0.0 : recording.duration_s();
     TimeSpan span{part.from_s.value_or(0.0), std::min(part.to_s.value_or(duration_s), duration_s)};
     std::size_t samples = 0;

@@ -4,16 +4,22 @@
 #include <ostream>
 #include <streambuf>
 
+#include "host/app/ink.hpp"
 #include "host/base/printable.hpp"
 
 namespace gyrolog {
 
 // Lines and tabs pass; what else a terminal would obey is shown (PrintableText).
-class PrintableStream final : public std::ostream {
+class PrintableStream final : public InkedStream {
 public:
-    explicit PrintableStream(std::ostream& to) : std::ostream(nullptr), buffer_(to) { rdbuf(&buffer_); }
+    explicit PrintableStream(std::ostream& to, bool has_colour = false)
+        : InkedStream(has_colour), to_(to), buffer_(to) {
+        rdbuf(&buffer_);
+    }
 
 private:
+    void write_code(const char* code) override { to_ << code; }
+
     class Buffer final : public std::streambuf {
     public:
         explicit Buffer(std::ostream& to) : to_(to) {}
@@ -38,6 +44,7 @@ private:
         PrintableText text_;
     };
 
+    std::ostream& to_;
     Buffer buffer_;
 };
 

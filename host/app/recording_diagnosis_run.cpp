@@ -155,7 +155,7 @@ Status write_results(Console& console, const RecordingDiagnosisRequest& request,
     std::vector<std::string> told;
     ResultOutput results(console);
     if (request.json_path != "-") {
-        results.show(text_of(request, diagnoses));
+        results.show_verdict(text_of(request, diagnoses));
     } else {
         for (const Diagnosis& diagnosis : diagnoses) { tell_warnings(console, diagnosis.warnings); }
     }

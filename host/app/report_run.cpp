@@ -1,7 +1,6 @@
 #include "host/app/report_run.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <thread>
@@ -20,8 +19,6 @@
 
 namespace gyrolog {
 namespace {
-
-constexpr std::array page_endings{".html", ".htm"};
 
 Status check_paths(const ReportRequest& request) {
     const NamedPath read[] = {{"RECORDING", request.recording_path}, {"--model", request.model_path}};

@@ -37,7 +37,8 @@ void ResultOutput::json(const std::string& path, const std::function<Json()>& an
 
 // Whether standard output took it is asked once, when the program ends.
 Status ResultOutput::finish() {
-    console_.out << shown_ << std::flush;
+    write_inked(console_.out, shown_, emphasis_);
+    console_.out << std::flush;
     for (const std::string& path : written_) { console_.notices() << "written: " << printable(path) << '\n'; }
     return error_ ? Status(*error_) : Status();
 }

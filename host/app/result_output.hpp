@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/app/console.hpp"
+#include "host/app/ink.hpp"
 #include "host/base/result.hpp"
 #include "host/formats/json_fwd.hpp"
 
@@ -27,6 +28,11 @@ public:
     void json(const std::string& path, const std::function<Json()>& answer);
     // For standard output, after the files.
     void show(const std::string& text) { shown_ += text; }
+    // The same of a report that begins with its verdict.
+    void show_verdict(const std::string& report) {
+        emphasis_ = Emphasis::first_paragraph;
+        show(report);
+    }
 
     // Shows, and says on `err` which files were written. All errors in one, with the first one's code.
     Status finish();
@@ -34,6 +40,7 @@ public:
 private:
     Console& console_;
     std::string shown_;
+    Emphasis emphasis_ = Emphasis::none;
     std::vector<std::string> written_;
     std::optional<Error> error_;
 };

@@ -12,8 +12,17 @@ StandardOutput::Buffer::Buffer() { setp(text_.data(), text_.data() + text_.size(
 
 // After a failure nothing more is written: text with a hole in it would be worse than none.
 bool StandardOutput::Buffer::write_out() {
-    const std::string shown = printable_.take({pbase(), static_cast<std::size_t>(pptr() - pbase())});
-    std::string_view rest = shown;
+    write_raw(printable_.take({pbase(), static_cast<std::size_t>(pptr() - pbase())}));
+    setp(text_.data(), text_.data() + text_.size());
+    return problem_ == 0;
+}
+
+void StandardOutput::Buffer::write_code(const char* code) {
+    write_out();
+    write_raw(code);
+}
+
+void StandardOutput::Buffer::write_raw(std::string_view rest) {
     while (problem_ == 0 && !rest.empty()) {
         const ssize_t written = ::write(STDOUT_FILENO, rest.data(), rest.size());
         if (written >= 0) {
@@ -22,8 +31,6 @@ bool StandardOutput::Buffer::write_out() {
             problem_ = errno;
         }
     }
-    setp(text_.data(), text_.data() + text_.size());
-    return problem_ == 0;
 }
 
 StandardOutput::Buffer::int_type StandardOutput::Buffer::overflow(int_type character) {
@@ -35,7 +42,7 @@ StandardOutput::Buffer::int_type StandardOutput::Buffer::overflow(int_type chara
 
 int StandardOutput::Buffer::sync() { return write_out() ? 0 : -1; }
 
-StandardOutput::StandardOutput() : std::ostream(nullptr) { rdbuf(&buffer_); }
+StandardOutput::StandardOutput() : InkedStream(takes_colour(STDOUT_FILENO)) { rdbuf(&buffer_); }
 
 Status StandardOutput::finish() {
     flush();

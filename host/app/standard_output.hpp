@@ -5,13 +5,15 @@
 #include <array>
 #include <ostream>
 #include <streambuf>
+#include <string_view>
 
+#include "host/app/ink.hpp"
 #include "host/base/printable.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
 
-class StandardOutput final : public std::ostream {
+class StandardOutput final : public InkedStream {
 public:
     StandardOutput();
 
@@ -23,6 +25,7 @@ private:
     class Buffer final : public std::streambuf {
     public:
         Buffer();
+        void write_code(const char* code);
         int problem() const { return problem_; }  // errno of the first write that failed; 0: none
 
     protected:
@@ -31,11 +34,14 @@ private:
 
     private:
         bool write_out();
+        void write_raw(std::string_view text);
 
         std::array<char, 65536> text_{};
         PrintableText printable_;
         int problem_ = 0;
     };
+
+    void write_code(const char* code) override { buffer_.write_code(code); }
 
     Buffer buffer_;
 };

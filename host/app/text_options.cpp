@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "host/app/option_check.hpp"
+
 namespace gyrolog {
 namespace {
 
@@ -27,11 +29,13 @@ void add_text_options(CLI::App& app, TextChoice& choice) {
     app.add_option("--unit", choice.gyro_unit,
                    "Unit of gyro columns whose names have none: deg/s, rad/s, deg/h or lsb")
         ->type_name("UNIT")
-        ->check(part_of_choice(&ColumnChoice::gyro_unit));
+        ->check(part_of_choice(&ColumnChoice::gyro_unit))
+        ->check(offered({"deg/s", "rad/s", "deg/h", "lsb"}));
     app.add_option("--acc-unit", choice.accelerometer_unit,
                    "The same of accelerometer columns: g, m/s^2 or lsb")
         ->type_name("UNIT")
-        ->check(part_of_choice(&ColumnChoice::accelerometer_unit));
+        ->check(part_of_choice(&ColumnChoice::accelerometer_unit))
+        ->check(offered({"g", "m/s^2", "lsb"}));
 }
 
 }  // namespace gyrolog

@@ -24,8 +24,9 @@ Diagnostic check_clock(const Machine& machine, const DoctorOptions& options);
 
 // The file of the udev rule that counts and knows the boards; empty: there is none.
 std::string udev_rule(const Machine& machine);
+// The program writes its own copy: where a file of it lies depends on how the program came here.
 inline constexpr const char* install_udev_rule =
-    "sudo cp tools/60-gyrolog.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm "
-    "trigger";
+    "gyrolog doctor --udev-rule | sudo tee /etc/udev/rules.d/60-gyrolog.rules > /dev/null && sudo udevadm "
+    "control --reload && sudo udevadm trigger";
 
 }  // namespace gyrolog

@@ -133,19 +133,21 @@ void find_outliers(const Measurements& of, const RobustSpread& spread,
 }
 
 // Quantiles of |z| at which 1 in 2150 Gaussian values lies beyond, simulated with robust_spread()'s factors:
-// 2e7 values of each count, known to 2 %. From 20 on they fall as 3.5 + 33.5 / n within that.
+// 2e7 values of each count, known to 2 %. From 20 on they fall as 3.5 + 26.5 / n + 150 / n^2 within that.
 constexpr std::array bounds_of_few{27.3, 35.9, 13.8, 15.1, 9.7,  10.1, 7.95, 8.09,
-                                   6.90, 6.95, 6.22, 6.28, 5.77, 5.85, 5.47, 5.50};  // of 4 to 19
+                                   6.90, 6.95, 6.22, 6.28, 5.77, 5.81, 5.44, 5.48};  // of 4 to 19
 constexpr std::size_t few_least = 4;
 constexpr double bound_of_many = 3.5;
-constexpr double bound_rise = 33.5;
+constexpr double bound_rise = 26.5;   // over n
+constexpr double bound_bend = 150.0;  // over n squared
 
 }  // namespace
 
 double outlier_bound(std::size_t units) {
     const std::size_t at = std::max(units, few_least) - few_least;
     if (at < bounds_of_few.size()) { return bounds_of_few.at(at); }
-    return bound_of_many + bound_rise / static_cast<double>(units);
+    const auto n = static_cast<double>(units);
+    return bound_of_many + (bound_rise + bound_bend / n) / n;
 }
 
 UnitPopulation population_of(std::span<const FleetLine> recordings, const PopulationOptions& options) {

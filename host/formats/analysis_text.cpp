@@ -132,7 +132,7 @@ std::string head_of(const AnalysisReport& report) {
                             (report.rate_hz / *report.nominal_rate_hz - 1.0) * 1e6);
     }
     if (report.stamps == StampKind::none) { text += " as given"; }
-    text += "\n";
+    text = wrapped_text("", text);
     if (report.dropouts > 0) {
         text += fmt::format("{}, {} missing; {}\n", counted(report.dropouts, "dropout"),
                             counted(static_cast<std::uint64_t>(report.samples_missing), "sample"),
@@ -156,6 +156,23 @@ std::string signs_text(const AnalysisReport& report, const char* expanded) {
         expanded, report.confidence * 100.0, edf_to_read, report.confidence * 100.0);
 }
 
+// Empty where the record tells the slow terms of every axis.
+std::string limits_text(const std::vector<AxisReport>& axes) {
+    const auto is_limit = [&](NoiseTerm term) {
+        return std::ranges::any_of(axes, [term](const AxisReport& axis) {
+            const FittedCoefficient& fitted = axis.fit[term];
+            return fitted.state == FittedCoefficient::State::not_identifiable && fitted.upper > 0.0;
+        });
+    };
+    std::string terms = is_limit(NoiseTerm::B) ? "B (flicker_missing)" : "";
+    if (is_limit(NoiseTerm::K)) { terms += (terms.empty() ? "" : " or ") + std::string("K (rrw_missing)"); }
+    if (terms.empty()) { return {}; }
+    return wrapped_text("  ",
+                        "A model has 0 in place of a term below its limit. `diagnose` tests that 0 and may "
+                        "find a " +
+                            terms + ": a size below the limit does not contradict it.");
+}
+
 // One in the trade's units with the text below it, and one in SI.
 std::string tables_of(const SensorTable& sensor, double confidence, const std::string& below) {
     std::vector<FitOfColumn> fits;
@@ -176,14 +193,16 @@ std::string analysis_text(const AnalysisReport& report) {
     std::string text = head_of(report);
     if (!report.axes.empty()) {
         if (report.accelerometer) { text += "\ngyro\n"; }
-        text += tables_of({report.axes, report.unit}, report.confidence, signs_text(report, "bias"));
+        text += tables_of({report.axes, report.unit}, report.confidence,
+                          signs_text(report, "bias") + limits_text(report.axes));
     }
     if (report.accelerometer) {
         const AccelerometerReport& of = *report.accelerometer;
         const std::string signs =
             gravity_text(of) + (report.axes.empty() ? signs_text(report, "mean, gravity, tilt") : "") +
             "  Mean, gravity and tilt: expanded, 95.45 %, as far as this record's noise goes;\n"
-            "  the axes' own biases and scale factors are in them.\n";
+            "  the axes' own biases and scale factors are in them.\n" +
+            limits_text(of.axes);
         text +=
             "\naccelerometer\n" + tables_of({of.axes, of.unit.is_counts() ? of.unit : SensorUnit::micro_g()},
                                             report.confidence, signs);

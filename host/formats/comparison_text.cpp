@@ -125,7 +125,9 @@ std::string worst_number_text(const SensorUnit& unit, const AxisComparison& axis
 }
 
 std::string other_text(const Comparison& comparison) {
-    if (comparison.simulations == 0) { return printable(comparison.other_name); }
+    if (comparison.simulations == 0) {
+        return printable(comparison.other_name) + ", " + duration_text(comparison.other_duration_s);
+    }
     return fmt::format("{} simulations of {} (seed {})", comparison.simulations,
                        printable(comparison.other_name), comparison.seed);
 }
@@ -149,14 +151,30 @@ std::string explanation_text(const Comparison& comparison) {
     return text;
 }
 
+// ", 0.0212 dps where simulations have 0.0123": the larger gap's amplitudes.
+std::string amplitudes_text(const Comparison& comparison, const AxisComparison& axis,
+                            const ComparedCurve& curve) {
+    const auto point = std::ranges::find(curve.at, curve.gap.at);
+    if (point == curve.at.end()) { return {}; }
+    const auto i = static_cast<std::size_t>(point - curve.at.begin());
+    const double per_unit = comparison.unit.per_column_unit;
+    return fmt::format(" ({} {:.3g}, {} {:.3g} {}{})",
+                       &curve == &axis.allan ? "Allan deviation" : "noise density",
+                       curve.recording[i] * per_unit, comparison.simulations > 0 ? "simulated" : "the other",
+                       curve.other[i] * per_unit, comparison.unit.name, &curve == &axis.allan ? "" : "/√Hz");
+}
+
+bool differs(const AxisComparison& axis) { return axis.worst() != nullptr || axis.worst_number() != nullptr; }
+
 // The sentence without the axis before it.
 std::string outcome(const Comparison& comparison, const AxisComparison& axis) {
     std::string curve;
     if (const ComparedCurve* worst = axis.worst()) {
         const PlaceText place = worst == &axis.allan ? &duration_text : &frequency_text;
-        curve = fmt::format("{} is {} at {}",
+        curve = fmt::format("{} is {} at {}{}",
                             comparison.simulations > 0 ? "the simulation" : "the first recording",
-                            difference_text(comparison, worst->gap.dB), place(worst->gap.at));
+                            difference_text(comparison, worst->gap.dB), place(worst->gap.at),
+                            amplitudes_text(comparison, axis, *worst));
     }
     // Where a curve stands out, it has said of the standard deviation what there is to say.
     std::string number;
@@ -172,26 +190,77 @@ std::string outcome(const Comparison& comparison, const AxisComparison& axis) {
                                        : "the recordings differ no more than their uncertainty allows");
 }
 
+// A column for each axis.
+std::string summary_text(const Comparison& comparison) {
+    std::vector<std::string> heads;
+    std::vector<TextRow> rows{{"std. deviation", comparison.unit.name, {}},
+                              {comparison.simulations > 0 ? "   simulated" : "   of the other", "", {}},
+                              {"excess kurtosis", "", {}},
+                              {comparison.simulations > 0 ? "   simulated" : "   of the other", "", {}},
+                              {"Allan deviation", "points outside", {}},
+                              {"spectrum", "points outside", {}}};
+    const auto other = [](const ComparedNumber& number, double per_unit) {
+        if (!number.lo) { return fmt::format("{:.3g}", number.other * per_unit); }
+        return fmt::format("{:.3g} to {:.3g}", *number.lo * per_unit, *number.hi * per_unit);
+    };
+    const auto outside = [](const ComparedCurve& curve) {
+        return fmt::format("{} of {}", curve.points_outside(), curve.at.size());
+    };
+    for (const AxisComparison& axis : comparison.axes) {
+        const double per_unit = comparison.unit.per_column_unit;
+        heads.push_back(printable(axis.axis));
+        const std::array cells{fmt::format("{:.4g}", axis.standard_deviation.recording * per_unit),
+                               other(axis.standard_deviation, per_unit),
+                               fmt::format("{:.3g}", axis.excess_kurtosis.recording),
+                               other(axis.excess_kurtosis, 1.0),
+                               outside(axis.allan),
+                               outside(axis.spectrum)};
+        for (std::size_t i = 0; i < cells.size(); ++i) { rows[i].cells.push_back(cells[i]); }
+    }
+    return text_table(heads, rows);
+}
+
+std::string next_text(const Comparison& comparison) {
+    const bool any = std::ranges::any_of(comparison.axes, differs);
+    std::string sentence;
+    if (comparison.simulations > 0) {
+        sentence = any ? fmt::format("`gyrolog diagnose {} --model {}` says what makes the difference.",
+                                     shell_word(comparison.recording_name), shell_word(comparison.other_name))
+                       : "use the model: it makes such recordings. `gyrolog diagnose` tests it harder.";
+    } else {
+        sentence = any ? "`gyrolog analyze` of each says which noise term differs."
+                       : "nothing: the recordings agree, as far as their lengths can tell.";
+    }
+    return "\nwhat to do next\n" + wrapped_text("  - ", sentence);
+}
+
+std::string details_text(const Comparison& comparison) {
+    std::string text = '\n' + explanation_text(comparison);
+    for (const AxisComparison& axis : comparison.axes) {
+        text += fmt::format("\n{}\n", printable(axis.axis)) + curves_text(comparison, axis) + '\n' +
+                distribution_text(comparison, axis);
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string outcome_sentence(const Comparison& comparison, const AxisComparison& axis) {
     return axis.axis + ": " + outcome(comparison, axis);
 }
 
-std::string comparison_text(const Comparison& comparison) {
-    std::string text =
-        fmt::format("{} against {}\n", printable(comparison.recording_name), other_text(comparison));
-    for (const std::string& warning : comparison.warnings) { text += wrapped_text("warning: ", warning); }
-    text += '\n';
+std::string comparison_text(const Comparison& comparison, Wording wording) {
+    std::string text;
     for (const AxisComparison& axis : comparison.axes) {
         text += wrapped_text(printable(axis.axis) + ": ", outcome(comparison, axis));
     }
-    text += '\n' + explanation_text(comparison);
+    text += '\n' + summary_text(comparison) + next_text(comparison) + '\n';
+    text += wrapped_text("", fmt::format("compared: {}, {}, against {}", printable(comparison.recording_name),
+                                         duration_text(comparison.duration_s), other_text(comparison)));
     for (const std::string& note : comparison.notes) { text += wrapped_text("model: ", note); }
-    for (const AxisComparison& axis : comparison.axes) {
-        text += fmt::format("\n{}\n", printable(axis.axis)) + curves_text(comparison, axis) + '\n' +
-                distribution_text(comparison, axis);
-    }
+    if (wording == Wording::whole) { text += details_text(comparison); }
+    if (!comparison.warnings.empty()) { text += '\n'; }
+    for (const std::string& warning : comparison.warnings) { text += wrapped_text("warning: ", warning); }
     return text;
 }
 

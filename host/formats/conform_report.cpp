@@ -6,6 +6,7 @@
 
 #include "host/base/printable.hpp"
 #include "host/formats/json.hpp"
+#include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -121,22 +122,23 @@ std::string conform_text(const ConformanceReport& report) {
         const char* word = verdict.state == JudgementState::pass   ? "pass"
                            : verdict.state == JudgementState::fail ? "FAIL"
                                                                    : "-";
-        text += fmt::format("{:<5} {:<4} {}\n", one.rule->number, word, one.rule->title);
+        text += wrapped_text(fmt::format("{:<5} {:<4} ", one.rule->number, word), one.rule->title);
         if (verdict.state == JudgementState::not_tested) {
-            text += fmt::format("           not tested: {}\n", verdict.expected);
+            text += wrapped_text("           not tested: ", verdict.expected);
         }
         if (verdict.state != JudgementState::fail) { continue; }
-        text +=
-            fmt::format("           expected: {}\n           came:     {}\n", verdict.expected, verdict.came);
+        text += wrapped_text("           expected: ", verdict.expected) +
+                wrapped_text("           came:     ", verdict.came);
         if (!verdict.bytes.empty()) {
-            text += fmt::format("           at {:.3f} s:{}\n", verdict.at_s, spaced_hex(verdict.bytes));
+            text += wrapped_text(fmt::format("           at {:.3f} s: ", verdict.at_s),
+                                 spaced_hex(verdict.bytes));
         }
         if (verdict.times > 1) {
             text += fmt::format("           {} times; this is the first\n", verdict.times);
         }
     }
     if (!report.broken_off.empty()) {
-        text += fmt::format("the conversation was broken off: {}\n", report.broken_off);
+        text += wrapped_text("the conversation was broken off: ", report.broken_off);
     }
     text += fmt::format("{}: {} rules pass, {} fail{}, {} not tested\n",
                         report.conforms() ? "conforms" : "does not conform",

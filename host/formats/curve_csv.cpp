@@ -10,6 +10,7 @@
 
 #include "host/base/printable.hpp"
 #include "host/formats/csv_table.hpp"
+#include "host/formats/text_file.hpp"
 
 namespace gyrolog {
 namespace {
@@ -132,7 +133,17 @@ CsvTable curve_table() {
     return {std::move(form), judge_header};
 }
 
+bool is_capture(const std::string& path) {
+    auto reader = TextReader::open(path);
+    if (!reader.ok()) { return false; }
+    const auto beginning = reader->read();
+    return beginning.ok() && begins_as_capture(*beginning);
+}
+
 Result<PrintedCurves> read_file(const std::string& path) {
+    if (is_capture(path)) {
+        return malformed("this is a capture, not an Allan curve: give it as RECORDING, without --curve");
+    }
     CsvTable table = curve_table();
     GYROLOG_CHECK(read_csv_file(table, path));
     return curves_of(table.columns(), path.substr(path.find_last_of('/') + 1));

@@ -89,7 +89,7 @@ std::string curve_text(const DiagnosedCurve& curve, const RateUnit& unit) {
 
 std::string curve_diagnosis_text(const CurveDiagnosisReport& report) {
     const Diagnosis diagnosis = as_diagnosis(report);
-    std::string text = verdict_sentence(diagnosis, "curve") + "\n\n";
+    std::string text = wrapped_text("", verdict_line(diagnosis, "curve")) + "\n";
     const DiagnosisSentences sentences = diagnosis_sentences(diagnosis);
     if (!sentences.causes.empty()) { text += cause_table(sentences.causes) + "\n"; }
     text += wrapped_text(
@@ -98,6 +98,10 @@ std::string curve_diagnosis_text(const CurveDiagnosisReport& report) {
                     "noise model to the curve itself. Causes were fitted to the curve on "
                     "which the gap is measured: a recording would give data that the fit did not see.",
                     report.curve_name, report.model_name, 100.0 * report.options.reading_error));
+    text += "\nwhat to do next\n";
+    for (const std::string& sentence : next_sentences(diagnosis, "curve")) {
+        text += wrapped_text("  - ", sentence);
+    }
     for (const DiagnosedCurve& curve : report.curves) { text += curve_text(curve, report.unit); }
     if (!report.warnings.empty()) { text += "\nwarnings\n"; }
     for (const std::string& warning : report.warnings) { text += wrapped_text("  - ", warning); }

@@ -8,6 +8,7 @@
 #include "host/base/printable.hpp"
 #include "host/formats/text_table.hpp"
 #include "host/formats/uncertain_number.hpp"
+#include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
 namespace {
@@ -81,7 +82,9 @@ std::string motion_table(const DenoiseReport& report, const AxisDenoising& axis)
     for (const DenoisedSignal& signal : axis.signals) {
         if (signal.motion) { row(std::string(name_of(signal.design.method)), *signal.motion); }
     }
-    return "against the reference (variance of the error; its part by lag and gain; its part by noise):\n" +
+    return wrapped_text("",
+                        "against the reference (variance of the error; its part by lag and gain; its part "
+                        "by noise):") +
            text_table(heads, rows);
 }
 
@@ -100,7 +103,9 @@ std::string bands_table(const AxisDenoising& axis) {
                          band.gain_best > 0.0 ? fmt::format("1/{:.3g}", band.gain_best) : "",
                          std::isfinite(limit) ? fmt::format("1/{:.3g} at most", limit) : "not limited"}});
     }
-    return fmt::format("what the {} units have in common, and what averaging gains in each band:\n", units) +
+    return wrapped_text("", fmt::format("what the {} units have in common, and what averaging gains in each "
+                                        "band:",
+                                        units)) +
            text_table(heads, rows);
 }
 
@@ -108,7 +113,7 @@ std::string units_table(const DenoiseReport& report, const AxisDenoising& axis) 
     const std::size_t units = axis.knowledge.units.size();
     if (units < 2) { return ""; }
     const std::vector<std::string> heads{"white noise", "drift", "weight", "in drift",
-                                         "lines (share of its variance)"};
+                                         "lines (of its variance)"};
     std::vector<TextRow> rows;
     for (std::size_t i = 0; i < units; ++i) {
         const UnitKnowledge& unit = axis.knowledge.units[i];
@@ -128,17 +133,19 @@ std::string units_table(const DenoiseReport& report, const AxisDenoising& axis) 
                          fmt::format("{:.3f}", axis.sample_weights[i]),
                          fmt::format("{:.3f}", axis.drift_weights[i]), lines}});
     }
-    return "units (white noise a sample, drift in sqrt(Hz)):\n" + text_table(heads, rows, 130);
+    return fmt::format("units (white noise of a sample; drift in {}*sqrt(Hz)):\n", report.unit) +
+           text_table(heads, rows);
 }
 
 std::string failures_text(const AxisDenoising& axis) {
     std::string text;
     for (std::size_t i = 0; i < std::min(failures_shown, axis.failures.size()); ++i) {
         const UnitFailure& failure = axis.failures[i];
-        text += fmt::format("  unit{} {}{} from {:.6g} s to {:.6g} s, {} samples\n",
-                            failure.unit.empty() ? "" : " " + failure.unit, name_of(failure.state),
-                            axis.knowledge.units.size() > 1 ? ", left out" : "", failure.from_s, failure.to_s,
-                            failure.samples);
+        text += wrapped_text(
+            "  ", fmt::format("unit{} {}{} from {:.6g} s to {:.6g} s, {} samples",
+                              failure.unit.empty() ? "" : " " + failure.unit, name_of(failure.state),
+                              axis.knowledge.units.size() > 1 ? ", left out" : "", failure.from_s,
+                              failure.to_s, failure.samples));
     }
     const std::size_t more =
         axis.failures.size() + axis.failures_more - std::min(failures_shown, axis.failures.size());
@@ -162,13 +169,14 @@ std::string design_text(const DenoiseDesign& design) {
 }
 
 std::string denoise_text(const DenoiseReport& report) {
-    std::string text = fmt::format("{}: {:.6g} Hz, {}, {} samples\n", printable(report.name), report.rate_hz,
-                                   duration_text(report.duration_s), report.samples);
-    for (const std::string& warning : report.warnings) { text += "warning: " + warning + '\n'; }
-    text += "noise of the units: " + report.learned_from + '\n';
+    std::string text =
+        wrapped_text("", fmt::format("{}: {:.6g} Hz, {}, {} samples", printable(report.name), report.rate_hz,
+                                     duration_text(report.duration_s), report.samples));
+    for (const std::string& warning : report.warnings) { text += wrapped_text("warning: ", warning); }
+    text += wrapped_text("noise of the units: ", report.learned_from);
     if (report.axes.empty()) { return text; }
     for (const DenoisedSignal& signal : report.axes.front().signals) {
-        text += design_text(signal.design) + "; " + response_text(signal.response) + '\n';
+        text += wrapped_text("", design_text(signal.design) + "; " + response_text(signal.response));
     }
     for (const AxisDenoising& axis : report.axes) {
         text += fmt::format("\n{}\n", axis.knowledge.axis);

@@ -11,6 +11,7 @@
 #include "host/formats/diagnosis_details.hpp"
 #include "host/formats/effect_words.hpp"
 #include "host/formats/place_text.hpp"
+#include "host/formats/text_width.hpp"
 #include "host/formats/uncertain_number.hpp"
 #include "host/formats/wrapped_text.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 
 // The verdict is one line.
 constexpr std::size_t causes_in_verdict_most = 3;
+constexpr std::size_t verdict_width_max = 80;
 
 // "a", "a and b", "a, b and c"
 std::string listed(const std::vector<std::string>& items) {
@@ -296,6 +298,56 @@ std::string verdict_on(const std::string& causes, const Diagnosis& diagnosis, st
     return fmt::format("unexplained: there is a gap, and {} {} too little of it", causes, explain);
 }
 
+// "31.4 Hz, 0.00933 deg/s"; empty where axes differ in it, which the table shows.
+std::string size_text(const Cause& cause) {
+    const std::vector<CauseSize> sizes = cause_sizes(without_uncertainty(cause));
+    return sizes.size() == 1 ? fmt::format("{}", fmt::join(sizes.front().values, ", ")) : "";
+}
+
+std::string cause_with_size(const Cause& cause) {
+    const std::string size = size_text(cause);
+    return cause_name(cause) + (size.empty() ? "" : " (" + size + ")");
+}
+
+// What is seen of the terms that `analyze` may give as a limit only.
+std::string limit_sentence(const Diagnosis& diagnosis) {
+    struct SlowNoise {
+        std::string_view effect;
+        char term;
+    };
+    for (const SlowNoise& slow : {SlowNoise{"flicker_missing", 'B'}, SlowNoise{"rrw_missing", 'K'}}) {
+        const bool is_cause = std::ranges::any_of(
+            diagnosis.causes, [&](const Cause& cause) { return cause.finding.effect == slow.effect; });
+        if (!is_cause) { continue; }
+        return fmt::format(
+            "{0}: where `analyze` gives {1} as an upper limit (\"<\") only, the model that it "
+            "writes has {1} = 0. This says that 0 is too little; a size below that limit "
+            "contradicts nothing.",
+            slow.effect, slow.term);
+    }
+    return {};
+}
+
+// What one can do with the answer as it is, before another recording.
+std::string next_step(const Diagnosis& diagnosis, std::string_view of) {
+    const bool is_simulated = diagnosis.simulations > 0;
+    if (diagnosis.verdict == Verdict::none) {
+        return fmt::format(
+            "use the model: it makes such {}s. One that is longer, or taken under other "
+            "conditions, tests it harder.",
+            of);
+    }
+    if (diagnosis.causes.empty()) {
+        return is_simulated
+                   ? "`--model-out FILE --unnamed` writes the model with what was found without a name."
+                   : "diagnose the recording itself, which tells more than its curve.";
+    }
+    const bool has_rest = diagnosis.verdict != Verdict::known && is_simulated;
+    return fmt::format("`--model-out FILE` writes the model with {} in it, which `gyrolog simulate` takes{}.",
+                       diagnosis.causes.size() == 1 ? "the cause" : "the causes",
+                       has_rest ? "; `--unnamed` adds what has no name" : "");
+}
+
 std::string amount_text(const Asked::Answer& answer) {
     return answer.amount ? fmt::format("{} times what is described, ",
                                        with_uncertainty(answer.amount->value, answer.amount->sd))
@@ -347,6 +399,19 @@ std::string short_verdict_sentence(const Diagnosis& diagnosis, std::string_view 
         of);
 }
 
+std::string verdict_line(const Diagnosis& diagnosis, std::string_view of) {
+    std::vector<std::string> causes;
+    for (const Cause& cause : diagnosis.causes) { causes.push_back(cause_with_size(cause)); }
+    std::string line = verdict_on(listed(causes), diagnosis, of);
+    return width_of(line) <= verdict_width_max ? line : verdict_sentence(diagnosis, of);
+}
+
+std::vector<std::string> next_sentences(const Diagnosis& diagnosis, std::string_view of) {
+    std::vector<std::string> sentences{next_step(diagnosis, of)};
+    sentences.insert(sentences.end(), diagnosis.next_recordings.begin(), diagnosis.next_recordings.end());
+    return sentences;
+}
+
 DiagnosisSentences diagnosis_sentences(const Diagnosis& diagnosis) {
     DiagnosisSentences sentences;
     sentences.heading = heading_text(diagnosis);
@@ -373,16 +438,19 @@ std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer
 
 std::string diagnosis_text(const Diagnosis& diagnosis, Wording wording) {
     const DiagnosisSentences sentences = diagnosis_sentences(diagnosis);
-    std::string text = verdict_sentence(diagnosis) + "\n" + unnamed_sentence(diagnosis);
+    std::string text = wrapped_text("", verdict_line(diagnosis)) + unnamed_sentence(diagnosis);
     text += "\n" + wrapped_text("", "gap: " + sentences.gap);
     if (diagnosis.verdict != Verdict::none) {
         text += explained_section(sentences);
         text += "\n" + wrapped_text("", "left: " + sentences.left);
         for (const std::string& item : sentences.left_items) { text += wrapped_text("  - ", item); }
     }
-    text += sentences_text("what to record next", diagnosis.next_recordings);
+    text += sentences_text("what to do next", next_sentences(diagnosis));
     text += sentences_text("what was asked", asked_sentences(diagnosis));
     text += words_section(sentences);
+    if (const std::string limit = limit_sentence(diagnosis); !limit.empty()) {
+        text += wrapped_text("  ", limit);
+    }
     text += "\n" + wrapped_text("", "compared: " + sentences.heading);
     if (wording == Wording::whole) { text += diagnosis_details(diagnosis); }
     text += sentences_text("warnings", diagnosis.warnings);

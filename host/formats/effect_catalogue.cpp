@@ -4,6 +4,7 @@
 
 #include "analysis/simulate/chain.hpp"
 #include "host/formats/json.hpp"
+#include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
 
@@ -34,8 +35,9 @@ bool has_plausible(const EffectParam& param) {
 }
 
 std::string table_text(const EffectTable& table) {
-    return fmt::format("    table                    {} over {}: {}{}\n", table.value, table.at,
-                       table.meaning, table.positive ? "; above 0" : "");
+    return wrapped_text("    table                    ",
+                        fmt::format("{} over {}: {}{}", table.value, table.at, table.meaning,
+                                    table.positive ? "; above 0" : ""));
 }
 
 Json table_json(const EffectTable& table) {
@@ -46,12 +48,12 @@ Json table_json(const EffectTable& table) {
 }
 
 std::string param_text(const EffectParam& param) {
-    std::string text = fmt::format("    {:<24} {}; {}", param.name, param.meaning, allowed(param));
+    std::string text = fmt::format("{}; {}", param.meaning, allowed(param));
     if (has_plausible(param)) {
         text += fmt::format(", plausible {:g} to {:g}", param.plausible_from, param.plausible_to);
     }
     if (param.otherwise) { text += fmt::format("; without it {:g}", *param.otherwise); }
-    return text + "\n";
+    return wrapped_text(fmt::format("    {:<24} ", param.name), text);
 }
 
 Json param_json(const EffectParam& param) {
@@ -69,19 +71,19 @@ Json param_json(const EffectParam& param) {
 
 std::string effect_catalogue_text() {
     std::string text =
-        "Effects that a model may list, in the order in which they act on a sample. An entry of the model:\n"
-        "  {\"effect\": NAME, \"axes\": [\"x\", \"y\", \"z\"], \"params\": {NAME: NUMBER}}; without axes it "
-        "acts on all.\n"
+        "Effects that a model may list, in the order in which they act on a sample. An\n"
+        "entry of the model; without axes it acts on all:\n"
+        "  {\"effect\": NAME, \"axes\": [\"x\", \"y\", \"z\"], \"params\": {NAME: NUMBER}}\n"
         "One that follows a course has a table of its points, straight between them:\n"
         "  \"table\": {COLUMN: [NUMBER, ...], COLUMN: [NUMBER, ...]}.\n"
         "Plausible ranges are those of an MPU-9250.\n";
     for (const ChainLink& link : signal_chain()) {
         if (link.effect == nullptr) { continue; }
         const EffectDefinition& effect = *link.effect;
-        text += fmt::format("\n{}\n    {}\n", effect.name, effect.model);
+        text += fmt::format("\n{}\n", effect.name) + wrapped_text("    ", effect.model);
         for (const EffectParam& param : effect.params) { text += param_text(param); }
         if (effect.table) { text += table_text(*effect.table); }
-        if (!effect.source.empty()) { text += fmt::format("    source: {}\n", effect.source); }
+        if (!effect.source.empty()) { text += wrapped_text("    source: ", effect.source); }
     }
     return text;
 }

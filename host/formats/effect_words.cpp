@@ -364,6 +364,16 @@ std::vector<std::string> values_of(const Finding& finding, std::size_t entry) {
 
 }  // namespace
 
+namespace {
+
+bool is_fitted(const Finding& finding, const std::string& param) {
+    const auto has_sd = [&](const auto& sd) { return sd.contains(param) && sd.at(param) > 0.0; };
+    return std::ranges::none_of(finding.sd, [](const auto& sd) { return !sd.empty(); }) ||
+           std::ranges::any_of(finding.sd, has_sd);
+}
+
+}  // namespace
+
 std::vector<CauseSize> cause_sizes(const Cause& cause) {
     const Finding& finding = cause.finding;
     std::vector<CauseSize> sizes;
@@ -383,6 +393,16 @@ std::vector<CauseSize> cause_sizes(const Cause& cause) {
         sizes.front().axes = fmt::format("{}", fmt::join(axes, ", "));
     }
     return sizes;
+}
+
+Cause without_uncertainty(Cause cause) {
+    // What was fitted stays known as such: by its presence cause_sizes() chooses what it shows.
+    for (auto& entry : cause.finding.entries) {
+        std::erase_if(entry.params,
+                      [&](const auto& param) { return !is_fitted(cause.finding, param.first); });
+    }
+    cause.finding.sd.clear();
+    return cause;
 }
 
 std::string axes_text(const std::vector<std::size_t>& axes) {

@@ -37,6 +37,8 @@ struct CauseSize {
     std::vector<std::string> values;
 };
 std::vector<CauseSize> cause_sizes(const Cause& cause);
+// For a line without room: its sizes to three digits.
+Cause without_uncertainty(Cause cause);
 
 // "x", "x and y", "x, y and z"; `axes` by number.
 std::string axes_text(const std::vector<std::size_t>& axes);

@@ -589,6 +589,12 @@ Result<std::string> read_model_text(const std::string& path, const std::string& 
         const auto piece = reader->read();
         if (!piece.ok()) { return in_context(reading, piece.error()); }
         if (piece->empty()) { return text; }
+        if (text.empty() && begins_as_capture(*piece)) {
+            return malformed(
+                fmt::format("{}: this is a capture, not a {}; `gyrolog analyze {} --model "
+                            "NEW.json` makes a model of one",
+                            reading, called, shell_word(path)));
+        }
         text.append(*piece);
         if (text.size() > input_limits.json_bytes_most) {
             return Error{ErrorCode::malformed, fmt::format("{}: longer than {} bytes: no {}", reading,

@@ -122,6 +122,8 @@ Status check_ratio(archive* file) {
 
 }  // namespace
 
+bool begins_as_capture(std::string_view bytes) { return bytes.starts_with("\x0A\x0D\x0D\x0A"); }
+
 void TextReader::Close::operator()(void* archive) const { archive_read_free(handle(archive)); }
 
 Result<TextReader> TextReader::open(const std::string& path) {

@@ -12,6 +12,9 @@
 
 namespace gyrolog {
 
+// As every pcapng file does: by its first four bytes.
+bool begins_as_capture(std::string_view bytes);
+
 class TextReader {
 public:
     // Error malformed where a file's name and its content disagree about its compression. A pipe and standard

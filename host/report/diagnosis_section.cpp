@@ -70,7 +70,7 @@ Html diagnosis_section(const ReportPage& page) {
     const Diagnosis& diagnosis = *page.diagnosis;
     const DiagnosisSentences sentences = diagnosis_sentences(diagnosis);
     Html section = element("h2", Html::text("Against the model " + diagnosis.model_name));
-    section += paragraph(verdict_sentence(diagnosis), "verdict");
+    section += paragraph(verdict_line(diagnosis), "verdict");
     section += paragraph(sentences.gap) + gaps_of(diagnosis);
     if (diagnosis.verdict != Verdict::none) { section += causes_of(sentences) + left_of(sentences); }
     section += figure(page.diagnosis_png,

@@ -2,22 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "host/base/program_name.hpp"
 #include "host/formats/diagnosis_text.hpp"
 #include "host/report/html.hpp"
-#include "host/report/page_style.hpp"
+#include "host/report/page_frame.hpp"
 #include "host/report/sections.hpp"
 
 namespace gyrolog {
 namespace {
-
-Html head_of(const ReportPage& page) {
-    return element(
-        "head", Html::markup("<meta charset=\"utf-8\">\n"
-                             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n") +
-                    element("title", Html::text(page.analysis.name + " - gyrolog report")) +
-                    element("style", Html::markup(page_style)));
-}
 
 std::vector<SensorPart> parts_of(const ReportPage& page) {
     const AnalysisReport& analysis = page.analysis;
@@ -37,7 +28,7 @@ Html body_of(const ReportPage& page) {
     Html body = element("h1", Html::text(page.analysis.name));
     if (page.diagnosis != nullptr) {
         body += paragraph(
-            fmt::format("Against {}: {}", page.diagnosis->model_name, verdict_sentence(*page.diagnosis)));
+            fmt::format("Against {}: {}", page.diagnosis->model_name, verdict_line(*page.diagnosis)));
     }
     body += recording_section(page);
     for (const SensorPart& part : parts_of(page)) {
@@ -46,15 +37,11 @@ Html body_of(const ReportPage& page) {
         body += bias_section(part);
     }
     body += diagnosis_section(page);
-    body += next_section(page);
-    return body + element("footer", Html::text("Written by " + program_name() + "."));
+    return body + next_section(page);
 }
 
 }  // namespace
 
-std::string report_html(const ReportPage& page) {
-    const Html content = head_of(page) + element("body", body_of(page));
-    return "<!DOCTYPE html>\n<html lang=\"en\">\n" + content.str() + "</html>\n";
-}
+std::string report_html(const ReportPage& page) { return whole_page(page.analysis.name, body_of(page)); }
 
 }  // namespace gyrolog

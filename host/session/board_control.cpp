@@ -1,11 +1,13 @@
 #include "host/session/board_control.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <optional>
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace gyrolog {
 namespace {
@@ -13,6 +15,43 @@ namespace {
 constexpr std::chrono::milliseconds reply_timeout(1000);
 constexpr std::chrono::milliseconds flush_time(
     150);  // for the partial frame that a board sends when it is stopped
+
+// The settings of an MPU-9250: a board says only that one of them is wrong.
+constexpr std::array<std::uint16_t, 4> full_scales_dps{250, 500, 1000, 2000};
+constexpr std::array<std::uint16_t, 8> dlpfs_hz{5, 10, 20, 41, 92, 184, 250, 3600};
+constexpr std::uint32_t base_rate_mHz = 1'000'000;
+constexpr std::uint32_t divisor_most = 250;
+constexpr std::uint32_t fast_rate_mHz = 8'000'000;
+
+template <typename Values, typename Value>
+bool has(const Values& values, Value value) {
+    return std::ranges::find(values, value) != values.end();
+}
+
+bool is_divided(std::uint32_t rate_mHz) {
+    return rate_mHz * divisor_most >= base_rate_mHz && base_rate_mHz % rate_mHz == 0;
+}
+
+// The first of the settings that such a sensor does not have, with those that it has.
+std::string refused_setting(const glp_configure& wanted) {
+    const std::uint16_t dps = wanted.gyro_full_scale_dps;
+    if (dps != 0 && !has(full_scales_dps, dps)) {
+        return fmt::format("--full-scale {}: an MPU-9250 has {} °/s", dps, fmt::join(full_scales_dps, ", "));
+    }
+    const std::uint16_t dlpf_hz = wanted.dlpf_hz;
+    if (dlpf_hz != 0 && dlpf_hz != GLP_DLPF_OFF && !has(dlpfs_hz, dlpf_hz)) {
+        return fmt::format("--dlpf {}: an MPU-9250 has {} Hz, and off", dlpf_hz, fmt::join(dlpfs_hz, ", "));
+    }
+    const double rate_hz = wanted.rate_mHz * 1e-3;
+    constexpr const char* rates = "1000 Hz over a whole number up to 250 (500, 200, 100, ... 4 Hz)";
+    if (wanted.rate_mHz != 0 && wanted.rate_mHz != fast_rate_mHz && !is_divided(wanted.rate_mHz)) {
+        return fmt::format("--rate {:g}: an MPU-9250 has {}, and 8000 Hz", rate_hz, rates);
+    }
+    return fmt::format(
+        "--rate {:g} together with this low-pass: an MPU-9250 has {}, or 8000 Hz with --dlpf 250, "
+        "3600 or off",
+        rate_hz, rates);
+}
 
 }  // namespace
 
@@ -39,6 +78,7 @@ Status BoardControl::configure(const glp_configure& wanted, const GoOn& go_on) {
             ErrorCode::invalid_argument,
             source_.identity().uri + " cannot be configured: leave --rate, --full-scale and --dlpf out"};
     }
+    wanted_ = wanted;
     std::array<std::uint8_t, GLP_FRAME_PAYLOAD_MAX> payload{};
     const std::size_t size = glp_configure_write(&wanted, payload.data(), payload.size());
     return command(glp_frame_configure, ByteView(payload).first(size), go_on);
@@ -99,13 +139,8 @@ Status BoardControl::refusal(std::uint8_t result) const {
         case glp_result_ok:
             return {};
         case glp_result_bad_value:
-            return Error{ErrorCode::invalid_argument,
-                         "the board on " + source_.identity().uri +
-                             " does not have this rate, full scale or "
-                             "low-pass (an MPU-9250 has 4 Hz to 1000 Hz in "
-                             "whole divisions of 1 kHz, or 8000 Hz with "
-                             "--dlpf 250, 3600 or off; 250, 500, 1000 or 2000 °/s; 5, 10, 20, 41, 92, "
-                             "184, 250 or 3600 Hz or off)"};
+            return Error{ErrorCode::invalid_argument, "the board on " + source_.identity().uri +
+                                                          " does not have " + refused_setting(wanted_)};
         case glp_result_sensor_fault:
             return Error{ErrorCode::failed,
                          "the board on " + source_.identity().uri + " cannot talk to its sensor"};

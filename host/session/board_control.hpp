@@ -46,6 +46,7 @@ private:
     bool start_asked_ = false;
     bool streaming_ = true;
     std::uint32_t sequence_ = 0;
+    glp_configure wanted_{};  // what was asked for last
 };
 
 }  // namespace gyrolog

@@ -52,9 +52,10 @@ Error open_error(const std::string& path, int error_number) {
             return {ErrorCode::not_found, doing + "not there" + hint_of_a_taken_port()};
         case EACCES:
         case EPERM:
-            return {ErrorCode::permission_denied, doing +
-                                                      "permission denied; install tools/60-gyrolog.rules, or "
-                                                      "join the group that owns the port"};
+            return {ErrorCode::permission_denied,
+                    doing +
+                        "permission denied; `gyrolog doctor` says what gives it, or "
+                        "join the group that owns the port"};
         case EBUSY:
             return {ErrorCode::busy, doing + "in use by another program"};
         default:

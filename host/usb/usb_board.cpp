@@ -109,11 +109,10 @@ bool try_access(UsbBoard& board, libusb_device* device) {
     const int code = libusb_open(device, &handle);
     if (code == LIBUSB_ERROR_NO_DEVICE) { return false; }
     if (code == LIBUSB_ERROR_ACCESS) {
-        refuse(board, BoardState::no_permission,
-               "no permission to open it; install tools/60-gyrolog.rules as "
-               "/usr/lib/udev/rules.d/60-gyrolog.rules, "
-               "run `udevadm control --reload`, and plug the board in again; over ssh also join the group "
-               "plugdev");
+        refuse(
+            board, BoardState::no_permission,
+            "no permission to open it; the udev rule 60-gyrolog.rules gives it (`gyrolog doctor` says how to "
+            "install it); then plug the board in again; over ssh also join the group plugdev");
         return true;
     }
     if (code != LIBUSB_SUCCESS) {

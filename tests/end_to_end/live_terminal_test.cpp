@@ -71,6 +71,34 @@ double stopped_s(const std::string& text) {
     return std::string(unit, 3) == " ms" ? number * 1e-3 : number;
 }
 
+// Red for an error, on a terminal that has not refused colour, and nowhere else.
+TEST(TerminalColours, AreForErrorsOnTerminalsThatTakeThem) {
+    const auto shown = [](const char* no_color) {
+        if (no_color == nullptr) {
+            unsetenv("NO_COLOR");
+        } else {
+            setenv("NO_COLOR", no_color, 1);
+        }
+        Terminal terminal({"analyze", "none.csv"});
+        EXPECT_EQ(terminal.wait(), 1);
+        return terminal.screen();
+    };
+    setenv("TERM", "xterm", 1);
+    EXPECT_NE(shown(nullptr).find("\x1b[31mgyrolog analyze: read 'none.csv': no such file\x1b[0m"),
+              std::string::npos);
+    EXPECT_NE(shown("").find("\x1b[31m"), std::string::npos) << "empty is not set (no-color.org)";
+    EXPECT_EQ(shown("1").find('\x1b'), std::string::npos);
+    unsetenv("NO_COLOR");
+    setenv("TERM", "dumb", 1);
+    EXPECT_EQ(shown(nullptr).find('\x1b'), std::string::npos);
+    setenv("TERM", "xterm", 1);
+    EXPECT_EQ(run_gyrolog({"analyze", "none.csv"}).err.find('\x1b'), std::string::npos);
+    // What comes from outside still commands nobody.
+    Terminal terminal({"analyze", "\x1b[2J.csv"});
+    EXPECT_EQ(terminal.wait(), 1);
+    EXPECT_EQ(terminal.screen().find("\x1b[2J"), std::string::npos);
+}
+
 TEST_F(LiveTerminal, AStopIsToldAlikeWhereverTheCaptureIsToldOf) {
     Terminal terminal(command());
     ASSERT_TRUE(terminal.shows("s stop the board")) << terminal.screen();

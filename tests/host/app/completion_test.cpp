@@ -182,6 +182,17 @@ TEST(Completion, BashOffersCommandsOptionsAndValues) {
     EXPECT_THAT(offered_by_bash(script, "gyrolog diagnose --mod", 2),
                 testing::ElementsAre("--model", "--model-out"));
     EXPECT_THAT(offered_by_bash(script, "gyrolog denoise --method w", 3), testing::ElementsAre("wavelet"));
+    // Also where the option's own check knows more than names.
+    EXPECT_THAT(offered_by_bash(script, "gyrolog export --for px4", 3),
+                testing::ElementsAre("px4-classic", "px4-ekf2"));
+    EXPECT_THAT(offered_by_bash(script, "gyrolog capture --full-scale \"\"", 3),
+                testing::ElementsAre("250", "500", "1000", "2000"));
+    EXPECT_THAT(offered_by_bash(script, "gyrolog analyze --unit d", 3),
+                testing::ElementsAre("deg/s", "deg/h"));
+    // And of words that are no files.
+    EXPECT_THAT(offered_by_bash(script, "gyrolog completion \"\"", 2),
+                testing::ElementsAre("bash", "zsh", "fish"));
+    EXPECT_EQ(offered_by_bash(script, "gyrolog manual diag", 2), std::vector<std::string>{"diagnose"});
     // A file: bash's own.
     EXPECT_THAT(offered_by_bash(script, "gyrolog diagnose --model \"\"", 3), testing::IsEmpty());
     EXPECT_THAT(offered_by_bash(script, "gyrolog check \"\"", 2), testing::IsEmpty());

@@ -2,12 +2,14 @@
 
 #include "host/doctor/doctor.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host/doctor/udev_rule.hpp"
 #include "host/formats/json.hpp"
 #include "tests/support/program.hpp"
 
@@ -16,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 class Doctor : public testing::Test {
 protected:
@@ -91,7 +94,15 @@ TEST_F(Doctor, FindsAContainerWithoutUsbDevices) {
 
 TEST_F(Doctor, FindsThatTheRuleIsNotInstalled) {
     take("/usr/lib/udev/rules.d/60-gyrolog.rules");
-    EXPECT_THAT(problem("udev rule").command, HasSubstr("sudo cp tools/60-gyrolog.rules /etc/udev/rules.d/"));
+    EXPECT_THAT(problem("udev rule").command,
+                StartsWith("gyrolog doctor --udev-rule | sudo tee /etc/udev/rules.d/60-gyrolog.rules "));
+}
+
+// The command that installs the rule needs no file of the source tree.
+TEST(UdevRule, OfTheProgramIsThatOfTheProject) {
+    const char* source = std::getenv("GYROLOG_SOURCE_DIR");
+    if (source == nullptr) { GTEST_SKIP() << "needs GYROLOG_SOURCE_DIR"; }
+    EXPECT_EQ(udev_rule_text, read_whole_file(fs::path(source) / "tools/60-gyrolog.rules"));
 }
 
 TEST_F(Doctor, FindsAnOlderRuleThatHidesTheNewOne) {

@@ -14,6 +14,7 @@ using nlohmann::json;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 ComparedCurve curve_with_gap(double at, double dB, bool stands_out) {
     ComparedCurve curve;
@@ -53,23 +54,46 @@ Comparison against_a_model() {
     return comparison;
 }
 
-// Of its text, after the heading and the warnings.
+// Its text up to the table.
 std::string sentences(const Comparison& comparison) {
-    const std::string text = comparison_text(comparison);
-    const std::size_t from = text.find("\n\n") + 2;
-    return text.substr(from, text.find("\n\n", from) + 1 - from);
+    const std::string text = comparison_text(comparison, Wording::brief);
+    return text.substr(0, text.find("\n\n") + 1);
 }
 
 TEST(ComparisonText, BeginsWithAPlainSentence) {
     Comparison comparison = against_a_model();
-    EXPECT_EQ(sentences(comparison), "x: the simulation is too quiet by 4.7 dB at 13 ms\n");
+    EXPECT_EQ(sentences(comparison),
+              "x: the simulation is too quiet by 4.7 dB at 13 ms (Allan deviation 2, simulated\n   1 dps)\n");
     comparison.axes[0].allan.gap.dB = -4.7;
-    EXPECT_EQ(sentences(comparison), "x: the simulation is too noisy by 4.7 dB at 13 ms\n");
+    EXPECT_THAT(sentences(comparison), StartsWith("x: the simulation is too noisy by 4.7 dB at 13 ms ("));
     comparison.axes[0].spectrum.gap.stands_out = true;
     comparison.axes[0].spectrum.gap.distance = 9.0;
-    EXPECT_EQ(sentences(comparison), "x: the simulation is too noisy by 1.2 dB at 0.1 Hz\n");
+    EXPECT_EQ(
+        sentences(comparison),
+        "x: the simulation is too noisy by 1.2 dB at 0.1 Hz (noise density 1, simulated 1\n   dps/√Hz)\n");
     comparison.axes[0].allan.gap.stands_out = comparison.axes[0].spectrum.gap.stands_out = false;
     EXPECT_THAT(sentences(comparison), HasSubstr("no more than simulations do"));
+}
+
+// What one acts on comes first; the places only where they are wanted.
+TEST(ComparisonText, SaysItInTheOrderInWhichOneAsks) {
+    const std::string text = comparison_text(against_a_model());
+    std::size_t before = 0;
+    for (const char* part : {"x: the simulation", "  std. deviation   dps             0.05\n",
+                             "     simulated                     0.039 to 0.041",
+                             "what to do next\n  - `gyrolog diagnose night.csv --model model.json` says",
+                             "compared: night.csv, 60 min, against", "model: a note", "band: ", "by chance",
+                             "warning: a warning"}) {
+        const std::size_t at = text.find(part, before);
+        ASSERT_NE(at, std::string::npos) << part << '\n' << text;
+        before = at;
+    }
+    const std::string brief = comparison_text(against_a_model(), Wording::brief);
+    EXPECT_THAT(brief, Not(HasSubstr("by chance")));
+    EXPECT_THAT(brief, HasSubstr("warning: a warning"));
+    Comparison alike = against_a_model();
+    alike.axes[0].allan.gap.stands_out = false;
+    EXPECT_THAT(comparison_text(alike), HasSubstr("  - use the model: it makes such recordings."));
 }
 
 TEST(ComparisonText, SaysTheDistributionWhereThatStandsOut) {
@@ -77,8 +101,8 @@ TEST(ComparisonText, SaysTheDistributionWhereThatStandsOut) {
     AxisComparison& axis = comparison.axes[0];
     axis.excess_kurtosis = {671.3, 0.0, -0.016, 0.019, 400.0, true};
     EXPECT_EQ(sentences(comparison),
-              "x: the simulation is too quiet by 4.7 dB at 13 ms; the samples' excess kurtosis\n"
-              "   is 671, of simulations -0.016 to 0.019\n");
+              "x: the simulation is too quiet by 4.7 dB at 13 ms (Allan deviation 2, simulated\n"
+              "   1 dps); the samples' excess kurtosis is 671, of simulations -0.016 to 0.019\n");
     axis.allan.gap.stands_out = false;
     EXPECT_EQ(sentences(comparison),
               "x: the samples' excess kurtosis is 671, of simulations -0.016 to 0.019\n");
@@ -89,12 +113,12 @@ TEST(ComparisonText, SaysTheDistributionWhereThatStandsOut) {
     EXPECT_EQ(sentences(comparison),
               "x: the samples' standard deviation is 0.05 dps, of simulations 0.039 to 0.041\n   dps\n");
     axis.allan.gap.stands_out = true;
-    EXPECT_EQ(sentences(comparison), "x: the simulation is too quiet by 4.7 dB at 13 ms\n");
+    EXPECT_THAT(sentences(comparison), Not(HasSubstr("standard deviation is")));
 }
 
 TEST(ComparisonText, SaysWhatTheBandIsAndWhatChanceWouldGive) {
     const std::string text = comparison_text(against_a_model());
-    EXPECT_THAT(text, HasSubstr("night.csv against 40 simulations of model.json (seed 1)"));
+    EXPECT_THAT(text, HasSubstr("night.csv, 60 min, against 40 simulations of model.json (seed 1)"));
     EXPECT_THAT(text, HasSubstr("from the smallest to the largest"));
     EXPECT_THAT(text, HasSubstr("probability 95.12 %"));
     EXPECT_THAT(text, HasSubstr("Allan deviation    2 of 3          0.1        1 of 40\n"));
@@ -138,6 +162,7 @@ TEST(ComparisonText, OfTwoRecordingsSpeaksOfTheFirst) {
     Comparison comparison = against_a_model();
     comparison.simulations = 0;
     comparison.other_name = "day.csv";
+    comparison.other_duration_s = 7200.0;
     for (ComparedNumber* number : {&comparison.axes[0].standard_deviation, &comparison.axes[0].skewness,
                                    &comparison.axes[0].excess_kurtosis}) {
         number->lo.reset();
@@ -145,8 +170,10 @@ TEST(ComparisonText, OfTwoRecordingsSpeaksOfTheFirst) {
     }
     comparison.less_reference = true;
     const std::string text = comparison_text(comparison);
-    EXPECT_EQ(sentences(comparison), "x: the first recording is noisier by 4.7 dB at 13 ms\n");
-    EXPECT_THAT(text, HasSubstr("night.csv against day.csv"));
+    EXPECT_THAT(sentences(comparison),
+                StartsWith("x: the first recording is noisier by 4.7 dB at 13 ms (Allan "));
+    EXPECT_THAT(text, HasSubstr("`gyrolog analyze` of each says which noise term differs."));
+    EXPECT_THAT(text, HasSubstr("night.csv, 60 min, against day.csv, 2 h"));
     EXPECT_THAT(text, HasSubstr("intervals of the two do not meet"));
     EXPECT_THAT(text, HasSubstr("less the reference"));
 }
@@ -167,7 +194,8 @@ TEST(ComparisonJson, HasTheCurvesInDegreesWithTheirBand) {
     EXPECT_FALSE(allan.contains("recording_lo"));
     EXPECT_TRUE(answer["axes"]["x"]["spectrum"].contains("f_hz"));
     EXPECT_DOUBLE_EQ(answer["axes"]["x"]["standard_deviation"]["hi"], 0.041);
-    EXPECT_EQ(answer["axes"]["x"]["sentence"], "x: the simulation is too quiet by 4.7 dB at 13 ms");
+    EXPECT_EQ(answer["axes"]["x"]["sentence"],
+              "x: the simulation is too quiet by 4.7 dB at 13 ms (Allan deviation 2, simulated 1 dps)");
     EXPECT_EQ(answer["warnings"][0], "a warning");
 }
 

@@ -192,7 +192,7 @@ TEST(CurveDiagnosisReport, SaysWhatIsLeftAndWhere) {
     EXPECT_GT(left["where"]["tau_s"][1].get<double>(), 1.0);
     EXPECT_GT(left["size"].get<double>(), curve_floors_closed);
     const std::string text = curve_diagnosis_text(report);
-    EXPECT_THAT(text, StartsWith("partly: rrw_missing on x explains "));
+    EXPECT_THAT(text, StartsWith("partly: rrw_missing on x (0.000277 deg/s*sqrt(Hz)) explains "));
     EXPECT_THAT(text, HasSubstr("    left: "));
 }
 

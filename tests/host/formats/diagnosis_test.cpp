@@ -28,7 +28,8 @@ using testing::Not;
 using testing::StartsWith;
 
 TEST(DiagnosisText, SaysTheVerdictInItsFirstLine) {
-    EXPECT_THAT(diagnosis_text(known()), StartsWith("known: temp_lag on x explains the gap\n"));
+    EXPECT_THAT(diagnosis_text(known()),
+                StartsWith("known: temp_lag on x (0.021 deg/s per degC, 6.83 min) explains the gap\n"));
     EXPECT_THAT(diagnosis_text(none()), StartsWith("no gap: the recording could have come from the model\n"));
     Diagnosis two = known();
     two.causes.push_back(two.causes[0]);
@@ -64,6 +65,41 @@ TEST(DiagnosisText, OfManyCausesNamesTheFirstInItsFirstLine) {
     EXPECT_EQ(verdict_sentence(many), "known: temp_lag on x, tone on y and z and 2 more explain the gap");
 }
 
+// Also where nothing is open.
+TEST(DiagnosisText, SaysWhatToDoNextWithEveryVerdict) {
+    Diagnosis diagnosis = known();
+    diagnosis.next_recordings.clear();
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)),
+                HasSubstr("what to do next - `--model-out FILE` writes the model with the cause in it, which "
+                          "`gyrolog simulate` takes."));
+    EXPECT_THAT(joined(diagnosis_text(partly())), HasSubstr("`--unnamed` adds what has no name."));
+    EXPECT_THAT(joined(diagnosis_text(none())), HasSubstr("use the model: it makes such recordings."));
+    Diagnosis unexplained = partly();
+    unexplained.verdict = Verdict::unexplained;
+    unexplained.causes.clear();
+    EXPECT_THAT(joined(diagnosis_text(unexplained)), HasSubstr("`--model-out FILE --unnamed` writes"));
+}
+
+// A size that `analyze` has only a limit for is no contradiction.
+TEST(DiagnosisText, JoinsItsSlowNoiseWithTheLimitsOfAnAnalysis) {
+    Diagnosis diagnosis = known();
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)), Not(HasSubstr("upper limit")));
+    diagnosis.causes[0].finding.effect = "flicker_missing";
+    diagnosis.causes[0].finding.entries = {{"flicker_missing", {"x"}, {{"B_dps", 0.002}}, ""}};
+    diagnosis.causes[0].finding.sd = {{{"B_dps", 0.0004}}};
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)),
+                HasSubstr("where `analyze` gives B as an upper limit (\"<\") only, the model that it writes "
+                          "has B = 0. This says that 0 is too little; a size below that limit contradicts "
+                          "nothing."));
+}
+
+TEST(DiagnosisText, HasSizesInItsFirstLineWhereTheyFit) {
+    Diagnosis diagnosis = with_line_of_model();
+    EXPECT_EQ(verdict_line(diagnosis), verdict_sentence(diagnosis)) << "two causes are too long with sizes";
+    diagnosis.causes.erase(diagnosis.causes.begin());
+    EXPECT_EQ(verdict_line(diagnosis), "partly: line_absent on z (31 Hz) explains 83 % of the gap");
+}
+
 // What one asks first comes first.
 TEST(DiagnosisText, SaysItInTheOrderInWhichOneAsks) {
     Diagnosis diagnosis = partly();
@@ -72,7 +108,7 @@ TEST(DiagnosisText, SaysItInTheOrderInWhichOneAsks) {
     std::size_t before = 0;
     for (const char* part :
          {"partly: ", "\ngap: ", "\nexplained: ", "cause     axes  size", "\n  1. temp_lag  x     ",
-          "\nleft: ", "\nwhat to record next\n", "\nwhat the causes are\n  1. The output follows",
+          "\nleft: ", "\nwhat to do next\n", "\nwhat the causes are\n  1. The output follows",
           "\ncompared: night.csv", "\nparameters of the causes\n", "\nwhere (1 is the floor",
           "\nnot tested\n", "\nwarnings\n"}) {
         const std::size_t at = text.find(part, before);

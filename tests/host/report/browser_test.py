@@ -124,7 +124,7 @@ def complaints_about(browser, path):
     return found
 
 
-def look_at(browser, path, titles, keep):
+def look_at(browser, path, titles, keep, pictures_least=3):
     browser.open(path)
     found = complaints_about(browser, path)
     pictures = browser.value("""Promise.all([...document.images].map(image => image.decode().then(
@@ -132,7 +132,7 @@ def look_at(browser, path, titles, keep):
     found += [f"picture not decoded: {alt}" for natural, shown, alt in pictures if natural == 0 or shown == 0]
     found += [f"picture without words for those who do not see it: {index}"
               for index, picture in enumerate(pictures) if not picture[2]]
-    if len(pictures) < 3:
+    if len(pictures) < pictures_least:
         found.append(f"{len(pictures)} pictures only")
     text = browser.value("document.body.innerText")
     found += [f"no '{title}'" for title in titles if title not in text]
@@ -189,6 +189,9 @@ def main():
         run(program, "report", folder / "board.pcapng", "-o", folder / "plain.html")
         run(program, "report", folder / "board.pcapng", "--model", folder / "model.json", "--simulations", "20", "-o",
             folder / "diagnosed.html")
+        run(program, "simulate", folder / "model.json", "-o", folder / "text.csv", "--duration", "2m")
+        run(program, "analyze", folder / "board.pcapng", folder / "text.csv", "--jsonl", folder / "lines.jsonl")
+        run(program, "report", folder / "lines.jsonl", "-o", folder / "many.html")
         titles = ["What was recorded", "Allan deviation and spectrum", "Noise coefficients", "Bias",
                   "What to record next"]
         problems = []
@@ -198,10 +201,13 @@ def main():
             for page, more in (("plain", []), ("diagnosed", ["Against the model"])):
                 shutil.copy(folder / f"{page}.html", keep / f"{page}.html")
                 problems += [f"{page}: {one}" for one in look_at(browser, keep / f"{page}.html", titles + more, keep)]
+            shutil.copy(folder / "many.html", keep / "many.html")
+            problems += [f"many: {one}" for one in look_at(
+                browser, keep / "many.html", ["What stands out", "How far the units lie apart", "Recordings"], keep, 0)]
         finally:
             browser.end()
     assert not problems, "\n".join(problems)
-    print("both pages: as they should be")
+    print("all pages: as they should be")
 
 
 if __name__ == "__main__":

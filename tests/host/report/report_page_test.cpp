@@ -82,7 +82,9 @@ TEST(ReportPage, SaysOfADiagnosisWhatTheTextSays) {
     EXPECT_THAT(report_html(page), Not(HasSubstr("Against")));
     page.diagnosis = &diagnosis;
     const std::string html = report_html(page);
-    EXPECT_THAT(html, HasSubstr("partly: temp_lag on x explains 83 % of the gap</p>"));
+    EXPECT_THAT(
+        html,
+        HasSubstr("partly: temp_lag on x (0.021 deg/s per degC, 6.83 min) explains 83 % of the gap</p>"));
     EXPECT_THAT(html, HasSubstr("the model as it is</th><td>7.9 (7.1 to 8.8)</td>"));
     EXPECT_THAT(html, HasSubstr("with the causes in it</th><td>3.4 (3 to 3.9)</td>"));
     EXPECT_THAT(html, HasSubstr("and what has no name</th><td>1.1 (0.9 to 1.4)</td>"));
