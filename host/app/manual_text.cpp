@@ -39,8 +39,8 @@ of a model.)"},
         "list",
         R"(The program recognises a board by its id 1209:6779 together with a product name that begins with
 `gyrolog`. A device with only one of the two, or one that sends no HELLO, is left to its driver;
-`gyrolog list` says what it lacks. The id is applied for and not granted yet
-(firmware_protocol/USB_ID.md); boards that still have 1fc9:0083 work, with a warning.
+`gyrolog list` says what it lacks. The id is not granted yet: the application
+has not been sent (firmware_protocol/USB_ID.md); boards that still have 1fc9:0083 work, with a warning.
 
 Unplug a board that was there before the rule, and plug it in again: the rule acts when a device
 appears. It lets whoever sits at the machine use the board, and the group plugdev also over ssh (its
@@ -113,7 +113,11 @@ validity.
         R"(The page shows what was recorded and what is missing, the Allan deviation and the spectrum, each
 coefficient in every common unit with its meaning for a filter, the bias over time and temperature,
 the diagnosis against `--model`, and how long the next recording has to be. It is one HTML file with
-its figures inside. It has no scripts and fetches nothing.)"},
+its figures inside. It has no scripts and fetches nothing.
+
+From results of many recordings (`.jsonl`, what `table` reads) it makes a page on the units: how far
+they lie apart in each coefficient, which stand out, the causes that the diagnoses name with the
+range of their shares, and which recordings have an error or, with `--expected`, no answer.)"},
     ManualText{
         "compare",
         R"(With a model, the recording is simulated 40 times (`--simulations`, `--seed`): at its instants, with
@@ -280,7 +284,8 @@ lines.
 `table` joins the lines about each recording, a row for each axis (`host/fleet/fleet_table.hpp` has
 the columns), as `.csv` or `.sqlite`. A recording that `--expected` lists and no line is about is a
 row, too. `outlier` names the parameters in which a unit differs from the others, by the robust z of
-the median absolute deviation. `--population` writes how the units differ, by axis and parameter:
+the median absolute deviation: beyond what 1 in 2150 of Gaussian values has by chance, 3.5 of many
+units, 5.2 of 20, 8 of 10 and 36 of 5. `--population` writes how the units differ, by axis and parameter:
 median, robust standard deviation between units with its interval, and their number; `simulate`
 draws units from it as from a data sheet. tools/fleet/README.md spreads a list over hosts with GNU
 parallel, or over a Slurm cluster. A line is the answer of its command with `file`, `exit`, `error`

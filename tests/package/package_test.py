@@ -38,10 +38,16 @@ FILES = {
         "analyze", "calibrate", "capture", "check", "compare", "completion", "conform", "denoise", "diagnose", "doctor",
         "export", "extcap", "info", "list", "manual", "recover", "report", "simulate", "table")},
     "usr/share/doc/gyrolog/README.md": "-rw-r--r--",
-    "usr/share/doc/gyrolog/analysis/METHODS.md": "-rw-r--r--",
-    "usr/share/doc/gyrolog/firmware_protocol/SPEC.md": "-rw-r--r--",
-    "usr/share/doc/gyrolog/firmware_protocol/USB_ID.md": "-rw-r--r--",
-    "usr/share/doc/gyrolog/host/capture/FORMAT.md": "-rw-r--r--",
+    "usr/share/doc/gyrolog/tools/readme.png": "-rw-r--r--",
+    **{f"usr/share/doc/gyrolog/{name}.md": "-rw-r--r--" for name in (
+        "analysis/METHODS", "firmware_protocol/DESIGN", "firmware_protocol/README", "firmware_protocol/SPEC",
+        "firmware_protocol/USB_ID", "host/DESIGN", "host/capture/FORMAT", "host/formats/MODEL", "tools/fleet/README")},
+    "usr/share/doc/gyrolog/host/formats/schemas": "lrwxrwxrwx",
+    "usr/share/doc/gyrolog/host/sensor/examples": "lrwxrwxrwx",
+    "usr/share/doc/gyrolog/tools/fleet/gyrolog.condor": "-rw-r--r--",
+    "usr/share/doc/gyrolog/tools/fleet/kubernetes_job.yaml": "-rw-r--r--",
+    **{f"usr/share/doc/gyrolog/tools/fleet/{name}": "-rwxr-xr-x" for name in (
+        "cost", "over_hosts", "prepare", "slurm_collect", "slurm_submit", "slurm_task")},
     "usr/share/doc/gyrolog/examples/README.md": "-rw-r--r--",
     "usr/share/doc/gyrolog/examples/gyro_world.sdf": "-rw-r--r--",
     "usr/share/doc/gyrolog/examples/imu.model.json": "-rw-r--r--",
@@ -100,6 +106,12 @@ def main():
         manual = gzip.decompress((tree / "usr/share/man/man1/gyrolog.1.gz").read_bytes()).decode()
         described = re.findall(r"^\.TP\n\.B ([a-z]+)$", manual, re.MULTILINE)
         assert described == names, f"the manual page has {described}, the program {names}"
+
+        documents = tree / "usr/share/doc/gyrolog"
+        linked = re.findall(r"\]\(([^)#:]+)[^)]*\)", (documents / "README.md").read_text())
+        assert len(linked) > 8, linked
+        lacking = sorted({one for one in linked if not (documents / one).exists()})
+        assert not lacking, f"README.md refers to {lacking}, which are not beside it"
 
         # That they do there what they are for: wireshark_test.py.
         folders = output_of("tshark", "-G", "folders")
