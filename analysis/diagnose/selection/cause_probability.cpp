@@ -22,7 +22,7 @@ namespace {
 // A rival that is as good as the cause would ask for a recording without end.
 constexpr double least_behind_nats = 0.5;
 
-// In the unit in which it has one or two digits, rounded up: "40 s", "1 h", "30 h", "5 days".
+// In the largest unit of which there are two, rounded up: "40 s", "80 min", "30 h", "5 days".
 std::string length_text(double length_s) {
     struct Unit {
         double length_s;
@@ -30,9 +30,8 @@ std::string length_text(double length_s) {
     };
     constexpr std::array units{Unit{86400.0, " days"}, Unit{3600.0, " h"}, Unit{60.0, " min"},
                                Unit{1.0, " s"}};
-    const auto* unit = std::ranges::find_if(units, [&](const Unit& one) {
-        return length_s >= (one.length_s > 3600.0 ? 2.0 : 1.0) * one.length_s;
-    });
+    const auto* unit =
+        std::ranges::find_if(units, [&](const Unit& one) { return length_s >= 2.0 * one.length_s; });
     if (unit == units.end()) { --unit; }
     return std::to_string(static_cast<long>(std::ceil(length_s / unit->length_s - 1e-9))) + unit->name;
 }

@@ -53,7 +53,7 @@ TEST_F(CompareCommand, WithAModelWritesTextJsonAndFigure) {
                        folder.path("c.json")}),
               ExitCode::ok)
         << err.str();
-    EXPECT_THAT(out.str(), HasSubstr("night.csv against 12 simulations of model.json"));
+    EXPECT_THAT(out.str(), HasSubstr("night.csv, 30 s, against 12 simulations of model.json"));
     EXPECT_EQ(read_whole_file(folder.path("c.png")).substr(1, 3), "PNG");
     const json answer = json::parse(read_whole_file(folder.path("c.json")));
     EXPECT_EQ(answer["schema"], "gyrolog-compare/1");

@@ -51,7 +51,7 @@ TEST(CauseProbability, AsksForALengthThatFollowsFromTheEvidence) {
     const int times = static_cast<int>(std::ceil(decisions.certain_nats()));
     EXPECT_EQ(proposal("flicker_missing", 1.0, 600.0),
               "a still recording of " + std::to_string(10 * times) + " min or more at a steady temperature");
-    EXPECT_THAT(proposal("flicker_missing", 1.0, 6.0 * 3600.0), HasSubstr(" h or more"));
+    EXPECT_THAT(proposal("flicker_missing", 1.0, 3.0 * 3600.0), HasSubstr(" of 24 h or more"));
     EXPECT_THAT(proposal("rtn", 0.0, 86400.0), HasSubstr(" days or more: two levels then"));
     EXPECT_EQ(proposal("temp_lag", 1.0, 600.0), "one sweep of the temperature up and down by 5 degC or more");
 }
