@@ -125,6 +125,14 @@ std::string row(std::string_view what, std::uint64_t count, std::string_view rem
     return fmt::format("  {:<22}{:>16}{}{}\n", what, format_count(count), remark.empty() ? "" : "  ", remark);
 }
 
+std::string behind_close_text(const std::string& path, const BlockAccounts& file) {
+    return fmt::format(
+        "{} {} behind its end, where its writer had closed it. Run `gyrolog recover {} -o NEW` to leave them "
+        "out",
+        counted(file.bytes_behind_close, "byte"), file.bytes_behind_close == 1 ? "stands" : "stand",
+        shell_word(path));
+}
+
 std::string end_text(const std::string& path, const LoadedCapture& capture) {
     const BlockAccounts& file = capture.file.blocks;
     switch (file.end) {
@@ -133,18 +141,13 @@ std::string end_text(const std::string& path, const LoadedCapture& capture) {
                                               : "clean, but the writer did not close it: it was stopped "
                                                 "short, by a full disk or a kill";
         case FileEnd::torn_tail:
+            if (file.only_behind_close()) { return behind_close_text(path, file); }
             return fmt::format(
                 "torn tail: the writer died there. {} at the end {} in no whole block; all "
                 "before is intact",
                 counted(file.bytes_in_tail, "byte"), file.bytes_in_tail == 1 ? "is" : "are");
         case FileEnd::damaged:
-            if (file.only_behind_close()) {
-                return fmt::format(
-                    "damaged: {} {} behind its end, where its writer had closed it. Run `gyrolog recover {} "
-                    "-o NEW` to leave them out",
-                    counted(file.bytes_behind_close, "byte"),
-                    file.bytes_behind_close == 1 ? "stands" : "stand", shell_word(path));
-            }
+            if (file.only_behind_close()) { return "damaged: " + behind_close_text(path, file); }
             return fmt::format(
                 "damaged: {} bytes in {} {} are no intact blocks. Run `gyrolog recover {} -o NEW` to keep "
                 "the intact part",

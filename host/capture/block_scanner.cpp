@@ -369,11 +369,10 @@ bool BlockScanner::closes_capture(const CaptureBlock& block) const {
     return checkpoint && checkpoint->last;
 }
 
-// A writer that has closed its file was writing nothing, so it tore nothing.
 void BlockScanner::enter_tail(bool torn) {
     accounts_.bytes_in_tail = accounts_.bytes_total - offset_;
     if (closed_) { accounts_.bytes_behind_close = accounts_.bytes_in_tail; }
-    if (closed_ || !torn) { ++accounts_.damaged_ranges; }
+    if (!torn) { ++accounts_.damaged_ranges; }
     offset_ = accounts_.bytes_total;
 }
 

@@ -50,8 +50,7 @@ struct DamagedRange {
 enum class FileEnd {
     clean,      // the last block ends where the file ends
     torn_tail,  // the file ends inside the block that was being written, in zeros, or both: the writer died
-    damaged,    // anything else that is no intact block, and anything behind the block that closes a capture:
-                // the medium or an editor did that
+    damaged,    // anything else that is no intact block: the medium or an editor did that
 };
 
 struct BlockAccounts {
