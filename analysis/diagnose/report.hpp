@@ -224,12 +224,12 @@ struct BetterShape {
 // A long recording is seen in two passes (multiscale/long_diagnosis.hpp), as is one that moves against an
 // orientation (multiscale/motion_diagnosis.hpp).
 struct Pass {
-    bool is_at_rest = false;  // else the beginning, in single samples, or all, in means
     double duration_s = 0.0;
     std::size_t rows = 0;
     std::size_t samples_per_row = 1;
     Verdict verdict = Verdict::none;
     double p_none = 1.0;
+    bool is_at_rest = false;  // the longest rest; else the beginning, in single samples, or all, in means
 };
 
 struct Diagnosis {

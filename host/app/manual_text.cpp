@@ -184,6 +184,10 @@ A recording of more than nine million samples, 25 h at 100 Hz, is diagnosed in t
 at rest: its first 900 000 samples one by one for what is fast, and all of it in means of some 0.1 s
 for what is slow. One report says what both found. 24 h at 1 kHz take less than 1 GB. Of a recording
 in motion the beginning is diagnosed. `--average 10` looks at means of ten samples only.
+
+If the reference is an orientation (`ref_qw` ... `ref_qz`), its rates are far noisier than the
+sensor. The sensor's noise is then judged at its longest rest, and how it answers to the motion in
+means of 50 ms. The report states the reference's error, delay and bandwidth first.
 analysis/METHODS.md has how often the answer is right on recordings whose effect the program is not
 told.
 

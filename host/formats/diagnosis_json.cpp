@@ -177,6 +177,20 @@ Json noise_refits_json(const Diagnosis& diagnosis) {
     return json;
 }
 
+Json reference_json(const Diagnosis& diagnosis) {
+    const ReferenceQuality& reference = *diagnosis.reference;
+    Json json{{"samples_per_row", reference.samples_per_row}};
+    for (const std::size_t axis : diagnosis.axes) {
+        const Span& error_rad_s = reference.error_rad_s.at(axis);
+        json["error_dps"][axis_names.at(axis)] = {error_rad_s.from * deg_per_rad,
+                                                  error_rad_s.to * deg_per_rad};
+    }
+    json["latency_s"] = reference.latency_s;
+    json["latency_sd_s"] = reference.latency_sd_s;
+    json["bandwidth_hz"] = reference.bandwidth_hz;
+    return json;
+}
+
 void put_circumstances(Json& json, const Diagnosis& diagnosis) {
     json["recording"] = diagnosis.recording_name;
     json["model"] = diagnosis.model_name;
@@ -190,7 +204,9 @@ void put_circumstances(Json& json, const Diagnosis& diagnosis) {
                                  {"samples_per_row", pass.samples_per_row},
                                  {"verdict", name_of(pass.verdict)},
                                  {"p_none", pass.p_none}});
+        if (pass.is_at_rest) { json["looks"].back()["at_rest"] = true; }
     }
+    if (diagnosis.reference) { json["reference"] = reference_json(diagnosis); }
     json["simulations"] = diagnosis.simulations;
     json["band_probability"] = diagnosis.band_probability;
     json["seed"] = diagnosis.seed;

@@ -248,6 +248,27 @@ std::vector<std::string> left_items(const Diagnosis& diagnosis) {
     return items;
 }
 
+// What the sensor is judged by. Empty where a model states it.
+std::string reference_sentence(const Diagnosis& diagnosis) {
+    if (!diagnosis.reference) { return {}; }
+    const ReferenceQuality& reference = *diagnosis.reference;
+    std::vector<std::string> errors;
+    for (const std::size_t axis : diagnosis.axes) {
+        const Span& error_rad_s = reference.error_rad_s.at(axis);
+        errors.push_back(fmt::format("{:.2g} to {:.2g} deg/s on {}", error_rad_s.from * deg_per_rad,
+                                     error_rad_s.to * deg_per_rad, axis_names.at(axis)));
+    }
+    return fmt::format(
+        "The rates of the orientation are off by {} (one sigma of a mean of {} samples), and follow the "
+        "sensor "
+        "up to {:.2g} Hz. The sensor is {} ms {} them: which of the two is late nobody can tell. What is "
+        "noise "
+        "of the sensor shows at rest only.",
+        listed(errors), reference.samples_per_row, reference.bandwidth_hz,
+        with_uncertainty(1e3 * std::fabs(reference.latency_s), 1e3 * reference.latency_sd_s),
+        reference.latency_s < 0.0 ? "ahead of" : "behind");
+}
+
 std::string heading_text(const Diagnosis& diagnosis) {
     std::string text = fmt::format("{}{} against {} simulations of {} (seed {}): {} samples at {:.6g} Hz, {}",
                                    diagnosis.recording_name,
@@ -439,6 +460,9 @@ std::string diagnosis_text(const Diagnosis& gyro, const Diagnosis& accelerometer
 std::string diagnosis_text(const Diagnosis& diagnosis, Wording wording) {
     const DiagnosisSentences sentences = diagnosis_sentences(diagnosis);
     std::string text = wrapped_text("", verdict_line(diagnosis)) + unnamed_sentence(diagnosis);
+    if (const std::string reference = reference_sentence(diagnosis); !reference.empty()) {
+        text += "\n" + wrapped_text("", "reference: " + reference);
+    }
     text += "\n" + wrapped_text("", "gap: " + sentences.gap);
     if (diagnosis.verdict != Verdict::none) {
         text += explained_section(sentences);

@@ -13,17 +13,28 @@
 #include "analysis/diagnose/likelihood/observation.hpp"
 #include "analysis/simulate/chain.hpp"
 
-namespace gyrolog {
-namespace {
+namespace gyrolog::resolution {
 
 // Of the time: what is called the least and the most of an error that changes.
 constexpr double quiet_share = 0.1;
 constexpr int likelihood_steps = 200;
+// Gains and delays that a fault of neither the sensor nor the reference may have: one sigma, so wide that the
+// recording alone tells them. Sensors are off by 3 % and 2 % (PS-MPU-9250A-01 rev. 1.1, table 1), mountings
+// by more; drivers and optical systems are late by some ms.
+constexpr double open_gain_sd = 0.1;
+constexpr double open_latency_sd_s = 0.05;
+// Over which the error's level is read: it changes as the motion does.
+constexpr double level_s = 2.0;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+namespace {
 
 // Its gains and its latency are as the recording has them.
-SensorModel with_open_motion(SensorModel model, const ReferenceErrorOptions& options) {
-    model.sd_abs["M"] = options.gain_sd;
-    model.sd_abs["latency_s"] = options.latency_sd_s;
+SensorModel with_open_motion(SensorModel model) {
+    model.sd_abs["M"] = resolution::open_gain_sd;
+    model.sd_abs["latency_s"] = resolution::open_latency_sd_s;
     return model;
 }
 
@@ -49,7 +60,7 @@ AngleAndWhite angle_and_white(const Prediction& prediction, const AxisObservatio
     const double rate_hz = prediction.rate_hz();
     const double white = 0.5 * mean_density(prediction, seen);
     AngleAndWhite noise{white / (2.0 * rate_hz), white};
-    for (int step = 0; step < likelihood_steps; ++step) {
+    for (int step = 0; step < resolution::likelihood_steps; ++step) {
         AngleAndWhite more{0.0, 0.0};
         AngleAndWhite less{0.0, 0.0};
         for (std::size_t b = 0; b < prediction.bins().size(); ++b) {
@@ -149,12 +160,14 @@ void put_latency(const Observation& left, ReferenceQuality& quality) {
         weights += weight;
         sum += weight * left.axis(axis).uncertain_fit[latency];
     }
-    quality.latency_s = prediction.model().latency_s + sum / weights;
+    // The response is to the sensor being sooner.
+    quality.latency_s = prediction.model().latency_s - sum / weights;
     quality.latency_sd_s = 1.0 / std::sqrt(weights);
 }
 
-// `half`: the share of the power that counts as explained.
-double bandwidth_hz(const Observation& left, double half) {
+// Of what the sensor shows the reference explains all but what is left. The reference's own error is in its
+// rate and, the other way, in what is left: the sensor does not show it.
+double bandwidth_hz(const Observation& left) {
     const Prediction& prediction = left.prediction();
     double bandwidth_hz = 0.0;
     for (const std::size_t axis : prediction.axes()) {
@@ -164,7 +177,8 @@ double bandwidth_hz(const Observation& left, double half) {
         for (std::size_t b = 0; b < prediction.bins().size(); ++b) {
             const SpectralBin& bin = prediction.bins()[b];
             const double unexplained = bin.count() * left.axis(axis).power[b] * prediction.rate_hz();
-            if (moved[b] * (1.0 - half) < half * unexplained) { continue; }
+            const double shown = moved[b] + 2.0 * left.axis(axis).uncertain_products[own][b] + unexplained;
+            if (unexplained > definition::majority * shown) { continue; }
             bandwidth_hz = std::max(bandwidth_hz, 0.5 * prediction.rate_hz() * static_cast<double>(bin.end) /
                                                       static_cast<double>(prediction.length()));
         }
@@ -175,17 +189,15 @@ double bandwidth_hz(const Observation& left, double half) {
 // Reads the error from what is left of the rows.
 class ErrorReader {
 public:
-    ErrorReader(std::shared_ptr<const Recording> rows, std::uint64_t seed,
-                const ReferenceErrorOptions& options)
+    ErrorReader(std::shared_ptr<const Recording> rows, std::uint64_t seed)
         : rows_(std::move(rows)),
           seed_(seed),
-          options_(options),
-          slots_(static_cast<std::size_t>(std::max(2.0, std::round(options.level_s * rows_->rate_hz)))) {}
+          slots_(static_cast<std::size_t>(std::max(2.0, std::round(resolution::level_s * rows_->rate_hz)))) {}
 
     // What is left with this model, its gains and its latency as the recording has them.
     Observation left_by(const SensorModel& model) const {
         const auto world = std::make_shared<const RecordedWorld>(rows_);
-        return {std::make_shared<const Prediction>(world, with_open_motion(model, options_),
+        return {std::make_shared<const Prediction>(world, with_open_motion(model),
                                                    Prediction::NoiseOf::reference_too),
                 rows_, seed_};
     }
@@ -228,18 +240,17 @@ public:
             const std::vector<double> levels = levels_of(left, axis, slots_).level;
             const double sd_rad_s =
                 std::sqrt(mean_density(left.prediction(), left.axis(axis)) * rows_->rate_hz);
-            quality.error_rad_s[axis] = {sd_rad_s * quantile(levels, quiet_share),
-                                         sd_rad_s * quantile(levels, 1.0 - quiet_share)};
+            quality.error_rad_s[axis] = {sd_rad_s * quantile(levels, resolution::quiet_share),
+                                         sd_rad_s * quantile(levels, 1.0 - resolution::quiet_share)};
         }
         put_latency(left, quality);
-        quality.bandwidth_hz = bandwidth_hz(left, definition::majority);
+        quality.bandwidth_hz = bandwidth_hz(left);
         return quality;
     }
 
 private:
     std::shared_ptr<const Recording> rows_;
     std::uint64_t seed_;
-    ReferenceErrorOptions options_;
     std::size_t slots_;
 };
 
@@ -256,8 +267,8 @@ double most_error_rad_s(const ReferenceQuality& quality) {
 }  // namespace
 
 WithReferenceError with_reference_error(SensorModel model, const std::shared_ptr<const Recording>& rows,
-                                        std::uint64_t seed, const ReferenceErrorOptions& options) {
-    const ErrorReader reader(rows, seed, options);
+                                        std::uint64_t seed) {
+    const ErrorReader reader(rows, seed);
     const ReferenceQuality quality =
         reader.quality(reader.left_by(reader.with_density(model, AngleNoise::as_seen)));
     // A sensor does not follow the error of its reference: what acts on it is the rate without, as far as

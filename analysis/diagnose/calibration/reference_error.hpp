@@ -11,16 +11,6 @@
 
 namespace gyrolog {
 
-struct ReferenceErrorOptions {
-    // What a sensor may be off by against its reference without a fault of the reference: its gains, one
-    // sigma (3 % and 2 % are the MPU-9250's limits of scale and cross-axis sensitivity, PS-MPU-9250A-01
-    // rev. 1.1, table 1, and mountings are off by more), and the delay (any that a driver or an optical
-    // system may have).
-    double gain_sd = 0.1;
-    double latency_sd_s = 0.05;
-    double level_s = 2.0;  // over which the error's level is read: it changes as the motion does
-};
-
 // The model whose noise is that of the samples about the reference, by axis: white noise with a density and a
 // course over time of its own, read from what is left of the rows when any gains and one latency are taken
 // off, by generalised least squares. So it holds the sensor's noise as well, and nothing is known of either
@@ -32,6 +22,6 @@ struct WithReferenceError {
 
 // `rows` has a reference rate, and no diagnosis_refusal().
 WithReferenceError with_reference_error(SensorModel model, const std::shared_ptr<const Recording>& rows,
-                                        std::uint64_t seed, const ReferenceErrorOptions& options = {});
+                                        std::uint64_t seed);
 
 }  // namespace gyrolog

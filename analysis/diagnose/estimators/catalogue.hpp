@@ -27,7 +27,8 @@ struct EstimatorTraits {
     std::string_view twin = {};
     // The effect changes the mean answer to the world.
     bool is_response = false;
-    // It shows in the mean answer to the world or in the stamps, whatever the noise is.
+    // It shows in the mean answer to the world or in the stamps, whatever the noise is. A jump does not:
+    // noise that is slower than the model has it makes jumps.
     bool is_beside_noise = false;
     // The effect is noise, which takes up whatever is there. What tells it grows with the length of the
     // recording.

@@ -63,7 +63,8 @@ const Measure measures::allan{.name = "Allan deviation",
                               .locate = locate_averaging_times,
                               .log_x = true,
                               .log_y = true,
-                              .in_halves = false};
+                              .in_halves = false,
+                              .is_of_noise = true};
 
 void add_allan_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     curves.push_back(allan_curve(observation, axis));

@@ -43,7 +43,8 @@ struct Measure {
     // False: a count that takes samples for independent. Far out it says less than a normal deviate: in a sum
     // with other measures Student's tail bounds it.
     bool is_normal_far_out = true;
-    // True: it tells of the noise and nothing of the mean answer to the motion.
+    // True: it tells how much noise there is. What it tells of the mean answer to the motion others tell
+    // better.
     bool is_of_noise = false;
 };
 

@@ -38,7 +38,8 @@ const Measure measures::spectrum{.name = "spectrum",
                                  .shown_x = as_it_is,
                                  .shown_y = power_dB,
                                  .locate = locate_frequencies,
-                                 .log_x = true};
+                                 .log_x = true,
+                                 .is_of_noise = true};
 
 void add_spectrum_curve(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
     curves.push_back(spectrum_curve(observation, axis));

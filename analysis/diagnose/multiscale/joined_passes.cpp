@@ -63,7 +63,7 @@ private:
 
     void describe() {
         const auto pass_of = [](const Diagnosis& seen, std::size_t samples_per_row) {
-            return Pass{false, seen.duration_s, seen.samples, samples_per_row, seen.verdict, seen.p_none};
+            return Pass{seen.duration_s, seen.samples, samples_per_row, seen.verdict, seen.p_none};
         };
         whole_.passes = {pass_of(beginning_, 1), pass_of(means_, samples_per_row_)};
         whole_.rate_hz = beginning_.rate_hz;

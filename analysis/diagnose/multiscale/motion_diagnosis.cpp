@@ -14,6 +14,14 @@
 #include "analysis/recording/still_part.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
 
+namespace gyrolog::resolution {
+
+// Of a mean against an orientation: what people and vehicles do is slower, and the error of an orientation
+// that is differentiated grows with the frequency.
+constexpr double row_against_orientation_s = 0.05;
+
+}  // namespace gyrolog::resolution
+
 namespace gyrolog {
 namespace {
 
@@ -79,19 +87,17 @@ void put_causes_in(const SensorModel& model, Diagnosis& pass, std::size_t sample
     pass.corrected = corrected_model(model, pass, pass.corrected);
 }
 
-std::shared_ptr<const Recording> shared_means(const Recording& recording,
-                                              const MotionDiagnosisOptions& options) {
-    return std::make_shared<const Recording>(means_against_orientation(recording, options));
+std::shared_ptr<const Recording> shared_means(const Recording& recording) {
+    return std::make_shared<const Recording>(means_against_orientation(recording));
 }
 
 std::optional<Diagnosis> diagnose_motion(const Recording& recording, const SensorModel& model,
-                                         const std::string& model_name, DiagnosisOptions options,
-                                         const MotionDiagnosisOptions& motion) {
-    const auto rows = shared_means(recording, motion);
+                                         const std::string& model_name, DiagnosisOptions options) {
+    const auto rows = shared_means(recording);
     WithReferenceError error = with_reference_error(
         model_of_means(model, rows->samples_per_row, recording.rate_hz), rows, options.seed);
     options.noise_of = Prediction::NoiseOf::reference_too;
-    if (options.holdout) { options.holdout = shared_means(*options.holdout, motion); }
+    if (options.holdout) { options.holdout = shared_means(*options.holdout); }
     std::optional<Diagnosis> pass = diagnose(rows, error.model, model_name, options);
     if (!pass) { return std::nullopt; }
     put_causes_in(model, *pass, rows->samples_per_row, recording.rate_hz);
@@ -109,24 +115,24 @@ bool moves_against_orientation(const Recording& recording) {
            });
 }
 
-Recording means_against_orientation(const Recording& recording, const MotionDiagnosisOptions& options) {
-    const double samples = std::max(1.0, std::round(options.row_s * recording.rate_hz));
+Recording means_against_orientation(const Recording& recording) {
+    const double samples =
+        std::max(1.0, std::round(resolution::row_against_orientation_s * recording.rate_hz));
     return means_of(with_turn_rates(recording), static_cast<std::size_t>(samples));
 }
 
 std::optional<Diagnosis> diagnose_against_orientation(std::shared_ptr<const Recording> recording,
                                                       const SensorModel& model, const std::string& model_name,
-                                                      const DiagnosisOptions& options,
-                                                      const MotionDiagnosisOptions& motion) {
+                                                      const DiagnosisOptions& options) {
     DiagnosisOptions of_pass = options;
     const std::shared_ptr<const Recording> rest = longest_rest(*recording);
     if (rest) { of_pass.false_alarms_most *= 0.5; }
-    std::optional<Diagnosis> moving = diagnose_motion(*recording, model, model_name, of_pass, motion);
+    std::optional<Diagnosis> moving = diagnose_motion(*recording, model, model_name, of_pass);
     if (!moving || !rest) { return moving; }
     of_pass.holdout = nullptr;
     std::optional<Diagnosis> resting = diagnose(rest, model, model_name, of_pass);
     if (!resting) { return std::nullopt; }
-    const std::size_t samples = shared_means(*recording, motion)->samples_per_row;
+    const std::size_t samples = shared_means(*recording)->samples_per_row;
     Diagnosis whole = joined_passes(model, *resting, *moving, samples);
     whole.passes.front().is_at_rest = true;
     whole.reference = moving->reference;

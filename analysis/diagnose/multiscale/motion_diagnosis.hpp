@@ -13,24 +13,17 @@
 
 namespace gyrolog {
 
-struct MotionDiagnosisOptions {
-    // Of a mean: what people and vehicles do is slower, and an orientation's error, which is differentiated,
-    // grows with the frequency.
-    double row_s = 0.05;
-};
-
 // The recording has an orientation for its reference, and no rates.
 bool moves_against_orientation(const Recording& recording);
 
 // The means that the second pass judges: those of the samples, and ref_x ref_y ref_z, of the angle turned, in
 // place of the orientation.
-Recording means_against_orientation(const Recording& recording, const MotionDiagnosisOptions& options = {});
+Recording means_against_orientation(const Recording& recording);
 
 // Like diagnose(); `recording` moves_against_orientation() and its means have no diagnosis_refusal(). The
 // model's noise is judged at rest alone.
 std::optional<Diagnosis> diagnose_against_orientation(std::shared_ptr<const Recording> recording,
                                                       const SensorModel& model, const std::string& model_name,
-                                                      const DiagnosisOptions& options,
-                                                      const MotionDiagnosisOptions& motion = {});
+                                                      const DiagnosisOptions& options);
 
 }  // namespace gyrolog

@@ -195,6 +195,52 @@ TEST(OrientationRate, IsUnknownOnlyWhereTheOrientationIsForLongerThanTheFitsHalf
     }
 }
 
+TEST(TurnRate, OfASwingIsItsRateToTheFourthOrder) {
+    for (const double f_hz : {1.0, 5.0, 10.0}) {
+        std::vector<Quaternion> orientation;
+        const double pulsation_rad_s = 2.0 * pi * f_hz;
+        for (int k = 0; k < 400; ++k) {
+            orientation.push_back(turned({0.0, 1.0, 0.0}, 0.1 * std::sin(pulsation_rad_s * k * 0.005)));
+        }
+        const auto rates = turn_rate(orientation, 200.0);
+        const double w = pulsation_rad_s / 200.0;
+        // The series' next term is w^6/140.
+        const double off = 0.1 * pulsation_rad_s * (w * w * w * w / 30.0);
+        for (int k = 2; k < 398; ++k) {
+            const double rate_rad_s = 0.1 * pulsation_rad_s * std::cos(pulsation_rad_s * k * 0.005);
+            EXPECT_NEAR(rates[static_cast<std::size_t>(k)][1], rate_rad_s, 1.1 * off + 1e-12) << f_hz;
+        }
+    }
+}
+
+// Whatever the orientation's errors, their sum is that of the ends.
+TEST(TurnRate, OfErrorsSumsUpToThoseOfTheEnds) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> error_rad(0.0, 1e-3);
+    std::vector<Quaternion> orientation;
+    for (int k = 0; k < 1000; ++k) { orientation.push_back(turned({0.0, 0.0, 1.0}, error_rad(random))); }
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const auto& rate : turn_rate(orientation, 100.0)) {
+        sum += rate[2];
+        squares += rate[2] * rate[2];
+    }
+    EXPECT_LT(std::fabs(sum), 100.0 * 6e-3);
+    EXPECT_GT(std::sqrt(squares / 1000.0), 0.05);
+}
+
+TEST(TurnRate, TurnsEvenlyWhereTheOrientationIsNotKnown) {
+    std::vector<Quaternion> orientation;
+    for (int k = 0; k < 40; ++k) { orientation.push_back(turned({0.0, 0.0, 1.0}, k * 0.01)); }
+    for (int k : {0, 1, 10, 11, 12, 39}) { orientation[static_cast<std::size_t>(k)][1] = nan; }
+    const auto rates = turn_rate(orientation, 100.0);
+    for (std::size_t k = 0; k < rates.size(); ++k) {
+        const bool is_known = k >= 2 && k < 39;
+        EXPECT_EQ(std::isnan(rates[k][2]), !is_known) << k;
+        if (is_known) { EXPECT_NEAR(rates[k][2], 1.0, 1e-9) << k; }
+    }
+}
+
 TEST(OrientationRate, OfASwingIsLessByTheGainOfACubic) {
     for (const double f_hz : {2.0, 4.8, 12.5}) {
         const double pulsation_rad_s = 2.0 * 3.14159265358979 * f_hz;

@@ -128,6 +128,27 @@ TEST(DensityTable, MayBeNextToNothingInHalfOfTheBand) {
                 0.05 * 0.02 * 0.02 * rate_hz);
 }
 
+TEST(LevelTable, IsTheWhiteNoiseTimesItsCourse) {
+    const SensorModel model =
+        with_table(white_model(0.02),
+                   table_entry("level_table", {{"t_s", {100.0, 200.0}}, {"factor", {1.0, 3.0}}}, {"y"}));
+    const Simulated out = simulate(model, rate_hz, 3, 300);
+    const auto mean_square = [&](std::size_t axis, double from_s, double to_s) {
+        const auto from = static_cast<std::size_t>(from_s * rate_hz);
+        const auto to = static_cast<std::size_t>(to_s * rate_hz);
+        double sum = 0.0;
+        for (std::size_t i = from; i < to; ++i) { sum += out.rate_rad_s[axis][i] * out.rate_rad_s[axis][i]; }
+        return sum / static_cast<double>(to - from) / (0.02 * 0.02 * rate_hz);
+    };
+    // Of 10 000 samples, four standard deviations.
+    const double chance = 4.0 * std::sqrt(2.0 / 1e4);
+    EXPECT_NEAR(mean_square(1, 0.0, 100.0), 1.0, chance);
+    EXPECT_NEAR(mean_square(1, 200.0, 300.0) / 9.0, 1.0, chance);
+    // The mean of (1 + 2 u)^2 over 0 to 1.
+    EXPECT_NEAR(mean_square(1, 100.0, 200.0) / (13.0 / 3.0), 1.0, 2.0 * chance);
+    EXPECT_NEAR(mean_square(0, 200.0, 300.0), 1.0, chance);
+}
+
 TEST(TimeTable, IsStraightBetweenItsPointsAndLevelBeyondThem) {
     const SensorModel model = with_table(
         ideal_model(),

@@ -338,6 +338,30 @@ TEST(DiagnosisText, SaysHowALongRecordingWasLookedAt) {
     EXPECT_EQ(looks.at(1).at("samples_per_row"), 100);
 }
 
+TEST(DiagnosisText, StatesTheReferenceBeforeTheSensorIsJudged) {
+    EXPECT_THAT(diagnosis_text(known()), Not(HasSubstr("reference:")));
+    EXPECT_FALSE(json::parse(diagnosis_json(known())).contains("reference"));
+    Diagnosis diagnosis = known();
+    diagnosis.axes = {0};
+    diagnosis.passes = {{30.0, 8'571, 1, Verdict::none, 0.4, true}, {200.0, 4'000, 14, Verdict::known, 1e-9}};
+    diagnosis.reference = {14, {Span{0.5 * rad_per_deg, 2.0 * rad_per_deg}}, 4.5e-3, 0.1e-3, 7.3};
+    const std::string text = joined(diagnosis_text(diagnosis));
+    const std::size_t at = text.find(
+        "reference: The rates of the orientation are off by 0.5 to 2 deg/s on x (one sigma of a mean of 14 "
+        "samples), and follow the sensor up to 7.3 Hz. The sensor is 4.50 ± 0.10 ms behind them: which of "
+        "the "
+        "two is late nobody can tell. What is noise of the sensor shows at rest only.");
+    ASSERT_NE(at, std::string::npos) << text;
+    EXPECT_LT(at, text.find("gap:"));
+    EXPECT_THAT(text, HasSubstr("looked at 30.0 s of rest sample by sample and at all of it in means of 14"));
+    const json told = json::parse(diagnosis_json(diagnosis));
+    EXPECT_EQ(told.at("reference").at("samples_per_row"), 14);
+    EXPECT_NEAR(told.at("reference").at("error_dps").at("x").at(1).get<double>(), 2.0, 1e-9);
+    EXPECT_EQ(told.at("reference").at("latency_s"), 4.5e-3);
+    EXPECT_EQ(told.at("looks").at(0).at("at_rest"), true);
+    EXPECT_FALSE(told.at("looks").at(1).contains("at_rest"));
+}
+
 TEST(DiagnosisText, OfManyPlacesListsThoseThatStandOut) {
     Diagnosis diagnosis = known();
     diagnosis.domains.assign(9, allan_domain());

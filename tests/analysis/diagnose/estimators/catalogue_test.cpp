@@ -39,7 +39,7 @@ TEST(Catalogue, HasNoneForAnEffectThatNothingLooksFor) {
         EXPECT_FALSE(traits_of(effect).is_line) << effect;
     }
     // A person may ask for these.
-    for (const char* effect : {"biquad", "time_table"}) {
+    for (const char* effect : {"biquad", "level_table", "time_table"}) {
         ASSERT_EQ(find_effect(effect)->signature->method, EvidenceMethod::described) << effect;
         EXPECT_EQ(traits_of(effect).make, nullptr) << effect;
     }
@@ -48,6 +48,11 @@ TEST(Catalogue, HasNoneForAnEffectThatNothingLooksFor) {
 TEST(Catalogue, KnowsWhatEachEffectIs) {
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_in_stamps; }),
                 ElementsAre("clock_jitter", "clock_rate", "dropped"));
+    EXPECT_THAT(effects_with([](const auto& t) { return t.is_beside_noise && !t.is_response; }),
+                ElementsAre("clock_jitter", "clock_rate", "dropped", "rate_table", "saturation",
+                            "temperature_table"));
+    EXPECT_THAT(effects_with([](const auto& t) { return t.is_response && !t.is_beside_noise; }),
+                ElementsAre());
     EXPECT_THAT(effects_with([](const auto& t) { return t.is_line; }), ElementsAre("tone"));
     EXPECT_THAT(effects_with([](const auto& t) { return t.recurs; }),
                 ElementsAre("bias_step", "narrowband", "tone"));
