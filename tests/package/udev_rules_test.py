@@ -126,7 +126,7 @@ def main():
     assert re.findall(r"0x([0-9a-f]{8})\b", re.search(r"in ipairs\(\{ (0x\w+, 0x\w+) \}\)", lua).group(1)) == [
         "".join(own), "".join(former)]
     application = (source / "firmware_protocol/USB_ID.md").read_text()
-    assert f"`{'/'.join(own)}/index.md`" in application and f"**{own[1]} is asked for" in application
+    assert f"`{'/'.join(own)}/index.md`" in application and f"**{own[1]} is not granted yet" in application
     gadget = (source / "tests/usb_kernel/guest/boards.sh").read_text()
     assert f"0x{own[0]} > $gadget/idVendor" in gadget and f"0x{own[1]} > $gadget/idProduct" in gadget
 

@@ -125,9 +125,7 @@ TEST(CaptureFile, WhatStandsBehindItsCloseIsNoPartOfIt) {
         const auto read = with(behind);
         ASSERT_TRUE(read.ok());
         EXPECT_EQ(read->transfers.size(), made.transfers.size());
-        const bool is_zeros_or_half_a_block = behind.size() != 7;
-        EXPECT_EQ(read->accounts.blocks.end,
-                  is_zeros_or_half_a_block ? FileEnd::torn_tail : FileEnd::damaged);
+        EXPECT_EQ(read->accounts.blocks.end, FileEnd::torn_tail);
         EXPECT_EQ(read->accounts.blocks.bytes_behind_close, behind.size());
         EXPECT_TRUE(read->accounts.blocks.only_behind_close());
         EXPECT_TRUE(read->accounts.blocks.balanced());

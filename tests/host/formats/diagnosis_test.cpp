@@ -353,7 +353,7 @@ TEST(DiagnosisText, StatesTheReferenceBeforeTheSensorIsJudged) {
         "two is late nobody can tell. What is noise of the sensor shows at rest only.");
     ASSERT_NE(at, std::string::npos) << text;
     EXPECT_LT(at, text.find("gap:"));
-    EXPECT_THAT(text, HasSubstr("looked at 30.0 s of rest sample by sample and at all of it in means of 14"));
+    EXPECT_THAT(text, HasSubstr("looked at 30 s of rest sample by sample and at all of it in means of 14"));
     const json told = json::parse(diagnosis_json(diagnosis));
     EXPECT_EQ(told.at("reference").at("samples_per_row"), 14);
     EXPECT_NEAR(told.at("reference").at("error_dps").at("x").at(1).get<double>(), 2.0, 1e-9);
