@@ -267,9 +267,9 @@ TEST(Simulate, ListsEveryEffect) {
 TEST(Simulate, CtrlCLeavesAWholeFileAndSaysSo) {
     const TemporaryFolder folder;
     const std::string path = folder.path("long.csv");
-    const ProgramResult stopped = run_gyrolog_and_signal(
-        {"simulate", write(typical_mpu9250(), folder), "-o", path, "--duration", "5d"},
-        std::chrono::milliseconds(300), SIGINT, path);
+    const ProgramResult stopped =
+        run_gyrolog_and_signal({"simulate", write(typical_mpu9250(), folder), "-o", path, "--duration", "5d"},
+                               std::chrono::milliseconds(300), SIGINT, path);
     ASSERT_EQ(stopped.exit_code, 128 + SIGINT) << stopped.err;
     EXPECT_THAT(stopped.err, HasSubstr("stopped early, whole up to there"));
     const Recording recording = read(path);
