@@ -79,10 +79,20 @@ AngleAndWhite angle_and_white(const Prediction& prediction, const AxisObservatio
     return noise;
 }
 
+bool changes_noise_alone(const EffectModel& entry) {
+    const EffectDefinition& effect = *find_effect(entry.effect);
+    if (effect.noise_only || effect.signature == nullptr) { return effect.noise_only; }
+    const EffectSignature& signature = *effect.signature;
+    const bool changes_noise = signature.spectrum != nullptr || signature.white_gain != nullptr ||
+                               signature.degrees_of_freedom != nullptr;
+    return changes_noise && !signature.changes_mean;
+}
+
 enum class AngleNoise { none, as_seen };
 
-// Noise as large as all that is left.
+// Noise as large as all that is left, and no other.
 SensorModel with_noise_of(const Observation& left, SensorModel model, AngleNoise angle) {
+    std::erase_if(model.effects, changes_noise_alone);
     for (const std::size_t axis : left.prediction().axes()) {
         AxisModel& of_axis = model.axes[axis];
         const double ramp_rad_s2 = of_axis.noise.R_rad_per_s2;
@@ -203,7 +213,8 @@ public:
     }
 
     SensorModel with_density(SensorModel model, AngleNoise angle) const {
-        model = with_noise_of(left_by(model), std::move(model), angle);
+        const Observation all = left_by(model);
+        model = with_noise_of(all, std::move(model), angle);
         const Observation left = left_by(model);
         const auto prediction = std::make_shared<const Prediction>(left.prediction());
         const auto density =

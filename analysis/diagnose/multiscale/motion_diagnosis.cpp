@@ -12,6 +12,7 @@
 #include "analysis/diagnose/multiscale/means_model.hpp"
 #include "analysis/recording/recording_part.hpp"
 #include "analysis/recording/still_part.hpp"
+#include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
 
 namespace gyrolog::resolution {

@@ -175,6 +175,24 @@ TEST(ReferenceError, ChangesWithTheMotion) {
     EXPECT_LT(quality.latency_sd_s, 0.5e-3);
 }
 
+// The error holds all noise, of whatever effect the model has it, and the model's other effects stay.
+TEST(ReferenceError, TakesThePlaceOfAllNoiseOfTheModelAndOfNothingElse) {
+    const auto rows = std::make_shared<const Recording>(means_against_orientation(*recorded(6, {})));
+    SensorModel model = sensor();
+    model.effects.push_back({"scale_factor", {}, {{"eps", 0.01}}, ""});
+    model.effects.push_back({"arw_scale", {}, {{"factor", 3.0}}, ""});
+    const WithReferenceError plain = with_reference_error(sensor(), rows, 1);
+    const WithReferenceError other = with_reference_error(model, rows, 1);
+    ASSERT_FALSE(other.model.effects.empty());
+    EXPECT_EQ(other.model.effects.front().effect, "scale_factor");
+    for (const EffectModel& entry : other.model.effects) { EXPECT_NE(entry.effect, "arw_scale"); }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Span& expected_rad_s = plain.quality.error_rad_s.at(axis);
+        EXPECT_NEAR(other.quality.error_rad_s.at(axis).to / expected_rad_s.to, 1.0, 0.05);
+        EXPECT_NEAR(other.model.axes.at(axis).noise.Q_rad / plain.model.axes.at(axis).noise.Q_rad, 1.0, 0.05);
+    }
+}
+
 TEST(MotionDiagnosis, FindsHowTheSensorAnswersAndNoFaultOfItsNoise) {
     const Fault fault{.scale = 0.01, .z_from_y = 0.006, .latency_s = 4e-3};
     for (const OrientationError& error : {OrientationError{}, OrientationError{0.2e-3, 2e-3}}) {
