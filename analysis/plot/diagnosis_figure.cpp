@@ -33,7 +33,6 @@ const Stroke before_edge{mixed(before_colour, colours::ink, 0.25), 1.3, {6.0, 4.
 const Stroke after_edge{mixed(after_colour, colours::ink, 0.2), 2.0, {}};
 const Stroke measured_line{measured_colour, 2.2, {}};
 constexpr double before_opacity = 0.40;
-constexpr double after_opacity = 0.0;
 
 constexpr double least_decibels = 1.0;
 
@@ -103,9 +102,9 @@ public:
         panel.caption = caption();
         panel.x = {x_name_, domain_.log_x ? ScaleKind::logarithmic : ScaleKind::linear, {}};
         panel.y = {domain_.log_y ? "over the model (dB)" : domain_.y_name, ScaleKind::linear, range()};
-        const Band before{domain_.before_lo, domain_.before_hi, before_edge, before_opacity,
-                          before_half_width};
-        const Band after{domain_.after_lo, domain_.after_hi, after_edge, after_opacity, after_half_width};
+        const Band before{domain_.before_lo, domain_.before_hi, before_edge, before_half_width,
+                          before_opacity};
+        const Band after{domain_.after_lo, domain_.after_hi, after_edge, after_half_width, {}};
         add_band(panel, before);
         if (has(Part::after)) { add_band(panel, after); }
         panel.curves.push_back(recording());
@@ -181,8 +180,8 @@ private:
         const std::vector<double>& lo;
         const std::vector<double>& hi;
         const Stroke& edge;
-        double opacity;
         double half_width;  // of things side by side, each of which has a box of its own
+        std::optional<double> opacity;
     };
 
     std::vector<double> along_x(double half_width) const {
@@ -213,10 +212,10 @@ private:
         lower.x = upper.x;
         lower.y = along_y(band.lo);
         lower.stroke = band.edge;
-        if (band.opacity > 0.0) {
+        if (band.opacity) {
             upper.lo = lower.y;
             upper.hi = upper.y;
-            upper.band_opacity = band.opacity;
+            upper.band_opacity = *band.opacity;
         }
         panel.curves.push_back(std::move(upper));
         panel.curves.push_back(std::move(lower));

@@ -3,13 +3,26 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "host/app/option_check.hpp"
 #include "host/app/quantity.hpp"
+#include "host/session/board_control.hpp"
 
 namespace gyrolog {
+namespace {
+
+template <std::size_t count>
+std::vector<std::string> texts_of(const std::array<std::uint16_t, count>& values) {
+    std::vector<std::string> texts;
+    for (const std::uint16_t value : values) { texts.push_back(std::to_string(value)); }
+    return texts;
+}
+
+}  // namespace
 namespace {
 
 Result<std::uint16_t> parse_dlpf(const std::string& text) {
@@ -32,11 +45,13 @@ void CaptureOptions::declare_settings(CLI::App& app) {
     app.add_option("--full-scale", full_scale_dps, "Range of the gyroscope: 250, 500, 1000 or 2000")
         ->type_name("DPS")
         ->check(whole_number(1, std::numeric_limits<std::uint16_t>::max()))
-        ->check(offered({"250", "500", "1000", "2000"}));
+        ->check(offered(texts_of(mpu9250_full_scales_dps)));
+    std::vector<std::string> dlpfs = texts_of(mpu9250_dlpfs_hz);
+    dlpfs.emplace_back("off");
     app.add_option("--dlpf", dlpf,
                    "The sensor's low-pass filter: 5, 10, 20, 41, 92, 184, 250 or 3600 Hz, or off")
         ->type_name("HZ|off")
-        ->check(offered({"5", "10", "20", "41", "92", "184", "250", "3600", "off"}));
+        ->check(offered(dlpfs));
 }
 
 void CaptureOptions::declare(CLI::App& app) {

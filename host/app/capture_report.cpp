@@ -410,8 +410,10 @@ std::string info_text(const std::string& path, const LoadedCapture& capture) {
     std::string text = printable(path) + "\n";
     for (const LabelledLine& line : info_lines(path, capture)) {
         // A note of the user keeps its spaces where it fits.
-        const std::string whole = fmt::format("  {:<10} {}\n", line.label, line.text);
-        text += width_of(whole) <= 81 ? whole : wrapped_text(fmt::format("  {:<10} ", line.label), line.text);
+        const std::string whole = fmt::format("  {:<10} {}", line.label, line.text);
+        text += width_of(whole) <= terminal_width
+                    ? whole + "\n"
+                    : wrapped_text(fmt::format("  {:<10} ", line.label), line.text);
     }
     return text;
 }

@@ -11,6 +11,7 @@
 #include "host/formats/effect_words.hpp"
 #include "host/formats/place_text.hpp"
 #include "host/formats/text_table.hpp"
+#include "host/formats/text_width.hpp"
 #include "host/formats/wrapped_text.hpp"
 
 namespace gyrolog {
@@ -91,8 +92,6 @@ std::string outside_text(const std::vector<bool>& outside, std::size_t points) {
 
 // Of many places only those with something to see are listed.
 constexpr std::size_t listed_whole_most = 6;
-
-constexpr std::size_t terminal_width = 80;
 
 bool is_listed(const Diagnosis& diagnosis, const GapDomain& domain) {
     return diagnosis.domains.size() <= listed_whole_most || domain.stands_out;

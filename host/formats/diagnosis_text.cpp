@@ -20,7 +20,6 @@ namespace {
 
 // The verdict is one line.
 constexpr std::size_t causes_in_verdict_most = 3;
-constexpr std::size_t verdict_width_max = 80;
 
 // "a", "a and b", "a, b and c"
 std::string listed(const std::vector<std::string>& items) {
@@ -424,7 +423,7 @@ std::string verdict_line(const Diagnosis& diagnosis, std::string_view of) {
     std::vector<std::string> causes;
     for (const Cause& cause : diagnosis.causes) { causes.push_back(cause_with_size(cause)); }
     std::string line = verdict_on(listed(causes), diagnosis, of);
-    return width_of(line) <= verdict_width_max ? line : verdict_sentence(diagnosis, of);
+    return width_of(line) <= terminal_width ? line : verdict_sentence(diagnosis, of);
 }
 
 std::vector<std::string> next_sentences(const Diagnosis& diagnosis, std::string_view of) {

@@ -7,6 +7,8 @@
 
 namespace gyrolog {
 
+inline constexpr std::size_t terminal_width = 80;
+
 // Characters of UTF-8: every byte but the continuation bytes.
 inline std::size_t width_of(std::string_view text) {
     return static_cast<std::size_t>(std::ranges::count_if(

@@ -16,9 +16,7 @@ constexpr std::chrono::milliseconds reply_timeout(1000);
 constexpr std::chrono::milliseconds flush_time(
     150);  // for the partial frame that a board sends when it is stopped
 
-// The settings of an MPU-9250: a board says only that one of them is wrong.
-constexpr std::array<std::uint16_t, 4> full_scales_dps{250, 500, 1000, 2000};
-constexpr std::array<std::uint16_t, 8> dlpfs_hz{5, 10, 20, 41, 92, 184, 250, 3600};
+// Of an MPU-9250: a board says only that one of its settings is wrong.
 constexpr std::uint32_t base_rate_mHz = 1'000'000;
 constexpr std::uint32_t divisor_most = 250;
 constexpr std::uint32_t fast_rate_mHz = 8'000'000;
@@ -35,12 +33,14 @@ bool is_divided(std::uint32_t rate_mHz) {
 // The first of the settings that such a sensor does not have, with those that it has.
 std::string refused_setting(const glp_configure& wanted) {
     const std::uint16_t dps = wanted.gyro_full_scale_dps;
-    if (dps != 0 && !has(full_scales_dps, dps)) {
-        return fmt::format("--full-scale {}: an MPU-9250 has {} °/s", dps, fmt::join(full_scales_dps, ", "));
+    if (dps != 0 && !has(mpu9250_full_scales_dps, dps)) {
+        return fmt::format("--full-scale {}: an MPU-9250 has {} °/s", dps,
+                           fmt::join(mpu9250_full_scales_dps, ", "));
     }
     const std::uint16_t dlpf_hz = wanted.dlpf_hz;
-    if (dlpf_hz != 0 && dlpf_hz != GLP_DLPF_OFF && !has(dlpfs_hz, dlpf_hz)) {
-        return fmt::format("--dlpf {}: an MPU-9250 has {} Hz, and off", dlpf_hz, fmt::join(dlpfs_hz, ", "));
+    if (dlpf_hz != 0 && dlpf_hz != GLP_DLPF_OFF && !has(mpu9250_dlpfs_hz, dlpf_hz)) {
+        return fmt::format("--dlpf {}: an MPU-9250 has {} Hz, and off", dlpf_hz,
+                           fmt::join(mpu9250_dlpfs_hz, ", "));
     }
     const double rate_hz = wanted.rate_mHz * 1e-3;
     constexpr const char* rates = "1000 Hz over a whole number up to 250 (500, 200, 100, ... 4 Hz)";

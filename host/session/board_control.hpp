@@ -1,6 +1,7 @@
 // What a capture asks of its board.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 
@@ -9,6 +10,10 @@
 #include "host/transport/byte_source.hpp"
 
 namespace gyrolog {
+
+// What an MPU-9250 can be set to, "off" beside the filters.
+inline constexpr std::array<std::uint16_t, 4> mpu9250_full_scales_dps{250, 500, 1000, 2000};
+inline constexpr std::array<std::uint16_t, 8> mpu9250_dlpfs_hz{5, 10, 20, 41, 92, 184, 250, 3600};
 
 // The conversation with the board: quiet, configured, started; and stopped again at the end. A line without
 // control signals (a pty, a bare UART) is started and stopped by commands instead. A source that takes

@@ -38,16 +38,6 @@ SensorModel with_open_motion(SensorModel model) {
     return model;
 }
 
-double mean_density(const Prediction& prediction, const AxisObservation& seen) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (std::size_t b = 0; b < prediction.bins().size(); ++b) {
-        sum += prediction.bins()[b].count() * seen.power[b];
-        count += prediction.bins()[b].count();
-    }
-    return sum / count;
-}
-
 // White noise and the noise of an angle that is differentiated, as large as all that is left of an axis: the
 // most likely two, by steps that raise Whittle's likelihood (C. Fevotte, N. Bertin, J.-L. Durrieu, Neural
 // Computation 21 (2009) 793, equation 3.5 with two known spectra).
@@ -58,7 +48,7 @@ struct AngleAndWhite {
 
 AngleAndWhite angle_and_white(const Prediction& prediction, const AxisObservation& seen) {
     const double rate_hz = prediction.rate_hz();
-    const double white = 0.5 * mean_density(prediction, seen);
+    const double white = 0.5 * mean_density(prediction.bins(), seen.power);
     AngleAndWhite noise{white / (2.0 * rate_hz), white};
     for (int step = 0; step < resolution::likelihood_steps; ++step) {
         AngleAndWhite more{0.0, 0.0};
@@ -79,13 +69,14 @@ AngleAndWhite angle_and_white(const Prediction& prediction, const AxisObservatio
     return noise;
 }
 
+// A filter that a person describes has a spectrum and changes the motion, too.
 bool changes_noise_alone(const EffectModel& entry) {
     const EffectDefinition& effect = *find_effect(entry.effect);
     if (effect.noise_only || effect.signature == nullptr) { return effect.noise_only; }
     const EffectSignature& signature = *effect.signature;
-    const bool changes_noise = signature.spectrum != nullptr || signature.white_gain != nullptr ||
-                               signature.degrees_of_freedom != nullptr;
-    return changes_noise && !signature.changes_mean;
+    const bool is_filter = signature.changes_mean || signature.method == EvidenceMethod::described;
+    return signature.white_gain != nullptr || signature.degrees_of_freedom != nullptr ||
+           (signature.spectrum != nullptr && !is_filter);
 }
 
 enum class AngleNoise { none, as_seen };
@@ -102,7 +93,7 @@ SensorModel with_noise_of(const Observation& left, SensorModel model, AngleNoise
         const AngleAndWhite seen = angle_and_white(left.prediction(), left.axis(axis));
         const bool is_white = angle == AngleNoise::none;
         const double white_rad2_per_s =
-            is_white ? mean_density(left.prediction(), left.axis(axis)) : seen.white_rad2_per_s;
+            is_white ? mean_density(left.prediction().bins(), left.axis(axis).power) : seen.white_rad2_per_s;
         of_axis.noise.N_rad_per_sqrt_s = std::sqrt(white_rad2_per_s);
         if (!is_white) { of_axis.noise.Q_rad = std::sqrt(seen.angle_rad2); }
     }
@@ -250,7 +241,7 @@ public:
         for (const std::size_t axis : left.prediction().axes()) {
             const std::vector<double> levels = levels_of(left, axis, slots_).level;
             const double sd_rad_s =
-                std::sqrt(mean_density(left.prediction(), left.axis(axis)) * rows_->rate_hz);
+                std::sqrt(mean_density(left.prediction().bins(), left.axis(axis).power) * rows_->rate_hz);
             quality.error_rad_s[axis] = {sd_rad_s * quantile(levels, resolution::quiet_share),
                                          sd_rad_s * quantile(levels, 1.0 - resolution::quiet_share)};
         }

@@ -400,13 +400,9 @@ double Prediction::stated_noise_rad_s(const SensorModel& model, std::size_t axis
 
 double Prediction::rate_sd_rad_s(std::size_t axis) const {
     if (noise_is_sensors()) { return reference_noise_rad_s(axis); }
-    double square = 0.0;
-    double count = 0.0;
-    for (std::size_t b = 0; b < bins_.size(); ++b) {
-        square += bins_[b].count() * parts_[axis][b].sum() * rate_hz_;
-        count += bins_[b].count();
-    }
-    return std::sqrt(square / count);
+    std::vector<double> density;
+    for (const SpectralParts& parts : parts_[axis]) { density.push_back(parts.sum()); }
+    return std::sqrt(mean_density(bins_, density) * rate_hz_);
 }
 
 std::shared_ptr<const Prediction> Prediction::with(const SensorModel& model) const {

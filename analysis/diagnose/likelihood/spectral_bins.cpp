@@ -49,4 +49,14 @@ SpectralBins spectral_bins(std::size_t length, double rate_hz, Half half, std::s
     return bins;
 }
 
+double mean_density(const SpectralBins& bins, std::span<const double> density) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        sum += bins[i].count() * density[i];
+        count += bins[i].count();
+    }
+    return sum / count;
+}
+
 }  // namespace gyrolog

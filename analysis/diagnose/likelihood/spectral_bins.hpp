@@ -29,4 +29,7 @@ using SpectralBins = std::vector<SpectralBin>;
 SpectralBins spectral_bins(std::size_t length, double rate_hz, Half half = Half::both,
                            std::span<const std::size_t> cuts = {});
 
+// The mean over the bins' coefficients of a density by bin.
+double mean_density(const SpectralBins& bins, std::span<const double> density);
+
 }  // namespace gyrolog

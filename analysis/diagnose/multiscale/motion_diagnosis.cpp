@@ -133,8 +133,7 @@ std::optional<Diagnosis> diagnose_against_orientation(std::shared_ptr<const Reco
     of_pass.holdout = nullptr;
     std::optional<Diagnosis> resting = diagnose(rest, model, model_name, of_pass);
     if (!resting) { return std::nullopt; }
-    const std::size_t samples = shared_means(*recording)->samples_per_row;
-    Diagnosis whole = joined_passes(model, *resting, *moving, samples);
+    Diagnosis whole = joined_passes(model, *resting, *moving, moving->reference->samples_per_row);
     whole.passes.front().is_at_rest = true;
     whole.reference = moving->reference;
     return whole;

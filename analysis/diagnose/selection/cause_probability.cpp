@@ -13,14 +13,13 @@ namespace gyrolog::resolution {
 
 // So many rivals are told of.
 constexpr std::size_t ties_most = 4;
+// A rival that is as good as the cause would ask for a recording without end.
+constexpr double least_behind_nats = 0.5;
 
 }  // namespace gyrolog::resolution
 
 namespace gyrolog {
 namespace {
-
-// A rival that is as good as the cause would ask for a recording without end.
-constexpr double least_behind_nats = 0.5;
 
 // In the largest unit of which there are two, rounded up: "40 s", "80 min", "30 h", "5 days".
 std::string length_text(double length_s) {
@@ -87,7 +86,7 @@ void state_deciding_length(Cause& cause, double duration_s) {
     constexpr std::string_view place = "{length}";
     const std::size_t at = cause.decided_by.find(place);
     if (at == std::string::npos || cause.tie_group.size() < 2) { return; }
-    const double behind_nats = std::max(cause.tie_group[1].evidence_below_best_nats, least_behind_nats);
+    const double behind_nats = std::max(cause.tie_group[1].evidence_below_best_nats, resolution::least_behind_nats);
     const double times = std::max(2.0, std::ceil(decisions.certain_nats() / behind_nats));
     cause.decided_by.replace(at, place.size(), length_text(times * duration_s) + " or more");
 }
