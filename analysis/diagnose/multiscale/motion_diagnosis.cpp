@@ -84,7 +84,6 @@ void put_causes_in(const SensorModel& model, Diagnosis& pass, std::size_t sample
     for (Cause& cause : pass.causes) {
         cause.finding = finding_of_samples(std::move(cause.finding), samples, rate_hz);
     }
-    pass.noise_refits.clear();
     pass.corrected = corrected_model(model, pass, pass.corrected);
 }
 

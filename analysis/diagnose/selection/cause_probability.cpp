@@ -86,7 +86,8 @@ void state_deciding_length(Cause& cause, double duration_s) {
     constexpr std::string_view place = "{length}";
     const std::size_t at = cause.decided_by.find(place);
     if (at == std::string::npos || cause.tie_group.size() < 2) { return; }
-    const double behind_nats = std::max(cause.tie_group[1].evidence_below_best_nats, resolution::least_behind_nats);
+    const double behind_nats =
+        std::max(cause.tie_group[1].evidence_below_best_nats, resolution::least_behind_nats);
     const double times = std::max(2.0, std::ceil(decisions.certain_nats() / behind_nats));
     cause.decided_by.replace(at, place.size(), length_text(times * duration_s) + " or more");
 }

@@ -429,10 +429,7 @@ private:
     // such noise.
     bool free_noise_of_model(const Observation& with_causes) {
         // A coarse step leaves less noise than its spectrum has, too.
-        if (!with_causes.prediction().noise_is_sensors() || set_.causes.empty() ||
-            CauseSet::is_of_codes(set_.causes.front().finding)) {
-            return false;
-        }
+        if (set_.causes.empty() || CauseSet::is_of_codes(set_.causes.front().finding)) { return false; }
         bool more = false;
         for (const std::size_t axis : axes_to_refit(with_causes)) {
             if (std::ranges::count(free_axes_, axis) != 0) { continue; }

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/diagnose/calibration/reference_error.hpp"
+#include "analysis/diagnose/calibration/replicates.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
 
 namespace gyrolog {
@@ -196,6 +197,23 @@ TEST(ReferenceError, TakesThePlaceOfAllNoiseOfTheModelAndOfNothingElse) {
     }
 }
 
+// Within its error the reference tells no rate, such as one below a dead zone's edge; and nobody draws the
+// error anew that the model's noise holds already.
+TEST(ReferenceError, IsAllNoiseAboutTheReference) {
+    const auto rows = std::make_shared<const Recording>(means_against_orientation(*recorded(7, {})));
+    const auto world = std::make_shared<const RecordedWorld>(rows);
+    SensorModel model = sensor();
+    model.ref_noise_rad_s = 1e-3;
+    const Prediction stated(world, model);
+    const Prediction error(world, model, Prediction::NoiseOf::reference_too);
+    EXPECT_TRUE(can_be_measured_anew(stated));
+    EXPECT_FALSE(can_be_measured_anew(error));
+    EXPECT_DOUBLE_EQ(stated.reference_noise_rad_s(1), 1e-3);
+    EXPECT_DOUBLE_EQ(stated.rate_sd_rad_s(1), 1e-3);
+    EXPECT_EQ(error.reference_noise_rad_s(1), 0.0);
+    EXPECT_NEAR(error.rate_sd_rad_s(1), noise_rad_per_sqrt_s * std::sqrt(rows->rate_hz), 1e-9);
+}
+
 TEST(MotionDiagnosis, FindsHowTheSensorAnswersAndNoFaultOfItsNoise) {
     const Fault fault{.scale = 0.01, .z_from_y = 0.006, .latency_s = 4e-3};
     for (const OrientationError& error : {OrientationError{}, OrientationError{0.2e-3, 2e-3}}) {
@@ -216,6 +234,7 @@ TEST(MotionDiagnosis, FindsHowTheSensorAnswersAndNoFaultOfItsNoise) {
                 }
             }
         }
+        EXPECT_TRUE(diagnosis->noise_refits.empty());
         // In the model that was given, whose noise the reference's error is no part of.
         EXPECT_EQ(diagnosis->corrected.axes[0].noise.N_rad_per_sqrt_s, noise_rad_per_sqrt_s);
         EXPECT_EQ(diagnosis->corrected.effects.size(), [&] {
