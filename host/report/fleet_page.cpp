@@ -178,7 +178,7 @@ Html causes_of(const FleetPage& page) {
 }
 
 Html errors_of(const FleetPage& page) {
-    HtmlTable list{cells_of({"recording", "exit code", "error"}), {}};
+    HtmlTable list{cells_of({"recording", "exit code", "error"}), {}, "errors"};
     for (const FleetLine& line : page.read.recordings) {
         if (line.error.empty()) { continue; }
         list.rows.push_back(

@@ -27,7 +27,7 @@ thead th { border-bottom: 2px solid var(--ink); }
 tbody th { font-weight: normal; color: var(--muted); }
 tr.group th { background: var(--head); color: var(--ink); padding: 0.4rem 0.5rem; }
 table.numbers td { white-space: nowrap; }
-table:not(.numbers) td:first-child { overflow-wrap: anywhere; }
+table:not(.numbers) tbody th, table.errors td { overflow-wrap: anywhere; }
 table.facts th { width: 9rem; }
 ul { margin: 0.4rem 0; padding-left: 1.3rem; }
 figure { margin: 1rem 0; }

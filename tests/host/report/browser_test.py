@@ -23,6 +23,7 @@ from schemas import KeptFolder  # noqa: E402
 SOON_S = 120
 MODEL = {"schema": "gyrolog-model/1", "rate_hz": 100, "axes": {axis: {"N": 0.01, "B": 0.001} for axis in "xyz"}}
 WIDE, NARROW = 1100, 420  # of a window of a screen and of a telephone
+LONG_NAME = "recordings_of_the_second_turntable_" * 5
 A4_TEXT = 680  # 180 mm at 96 pixels an inch
 
 
@@ -111,9 +112,9 @@ class Browser:
         return base64.b64decode(self.call("Page.captureScreenshot", captureBeyondViewport=True)["data"])
 
 
-def run(*command):
+def run(*command, returns=0):
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
-    assert done.returncode == 0, f"{command}: {done.returncode}\n{done.stdout}{done.stderr}"
+    assert done.returncode == returns, f"{command}: {done.returncode}\n{done.stdout}{done.stderr}"
 
 
 def complaints_about(browser, path):
@@ -190,7 +191,15 @@ def main():
         run(program, "report", folder / "board.pcapng", "--model", folder / "model.json", "--simulations", "20", "-o",
             folder / "diagnosed.html")
         run(program, "simulate", folder / "model.json", "-o", folder / "text.csv", "--duration", "2m")
-        run(program, "analyze", folder / "board.pcapng", folder / "text.csv", "--jsonl", folder / "lines.jsonl")
+        # A page is as wide as it is wherever its recordings lie: a path is one word to a browser.
+        far = folder / LONG_NAME
+        far.mkdir()
+        shutil.copy(folder / "board.pcapng", far / "board.pcapng")
+        (far / "text.csv").write_text("no table\n")
+        run(program, "analyze", far / "board.pcapng", folder / "text.csv", "--jsonl", folder / "lines.jsonl")
+        run(program, "analyze", far / "text.csv", "--jsonl", folder / "bad.jsonl", returns=1)
+        with open(folder / "lines.jsonl", "a") as lines:
+            lines.write((folder / "bad.jsonl").read_text())
         run(program, "report", folder / "lines.jsonl", "-o", folder / "many.html")
         titles = ["What was recorded", "Allan deviation and spectrum", "Noise coefficients", "Bias",
                   "What to record next"]
