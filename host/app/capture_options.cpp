@@ -18,6 +18,7 @@ namespace {
 template <std::size_t count>
 std::vector<std::string> texts_of(const std::array<std::uint16_t, count>& values) {
     std::vector<std::string> texts;
+    texts.reserve(count);
     for (const std::uint16_t value : values) { texts.push_back(std::to_string(value)); }
     return texts;
 }

@@ -137,7 +137,7 @@ Result<Comparison> with_recording(const CompareRequest& request) {
 
 // Of two recordings each has its own: what differs at long averaging times may be the length.
 std::string length_text(const Comparison& comparison) {
-    const std::string length = format_duration(comparison.duration_s);
+    std::string length = format_duration(comparison.duration_s);
     const std::string other = format_duration(comparison.other_duration_s);
     if (comparison.simulations > 0 || other == length) { return length; }
     return length + " (the other " + other + ")";
