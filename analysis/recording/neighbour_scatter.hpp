@@ -1,14 +1,17 @@
 // White noise of an instrument that is read beside the gyro.
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "analysis/recording/recording.hpp"
 
 namespace gyrolog {
 
-// One sigma of white noise, the root of half the mean square of the differences of neighbours: what is slow
-// drops out of them. 0 where no two neighbours are known. Unit: the column's.
-double neighbour_scatter(const Column& column, std::span<const Segment> segments);
+// One sigma of white noise: the root of the mean square of the differences of neighbours, of this order k,
+// over the sum of their squared coefficients, which is (2k)! / (k!)^2. A polynomial of a lower degree drops
+// out of them, and what is slow nearly does. Of n differences the square is known to 3/n, 4.6/n for k = 3, of
+// its square. 0 where no k + 1 neighbours are known. Unit: the column's.
+double neighbour_scatter(const Column& column, std::span<const Segment> segments, std::size_t order = 1);
 
 }  // namespace gyrolog

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "analysis/allan/allan_deviation.hpp"
-#include "analysis/recording/neighbour_scatter.hpp"
 #include "analysis/simulate/recorded_converter.hpp"
 
 namespace gyrolog {
@@ -22,20 +21,6 @@ double mean_within(const Column& column, const std::vector<Segment>& parts) {
         count += static_cast<double>(part.count);
     }
     return sum / count;
-}
-
-// Of a reference, the root mean square over its axes.
-double reference_noise_rad_s(const Recording& recording, const std::vector<Segment>& parts) {
-    double sum = 0.0;
-    double axes = 0.0;
-    for (const char* axis : axis_names) {
-        const Column* column = recording.find(std::string("ref_") + axis);
-        if (column == nullptr || column->unit != "rad/s") { continue; }
-        const double scatter = neighbour_scatter(*column, parts);
-        sum += scatter * scatter;
-        axes += 1.0;
-    }
-    return axes > 0.0 ? std::sqrt(sum / axes) : 0.0;
 }
 
 AxisModel plain_axis(const Column& column, const std::vector<Segment>& parts, double rate_hz,
@@ -76,7 +61,6 @@ std::optional<PlainModel> plain_model(const Recording& recording, const PlainMod
         plain.model.full_scale_rad_s = converter->full_scale_rad_s;
         plain.model.saturation_rad_s = converter->saturation_rad_s;
     }
-    plain.model.ref_noise_rad_s = reference_noise_rad_s(recording, parts);
     const std::int64_t m = std::max<std::int64_t>(1, std::llround(options.read_at_s * recording.rate_hz));
     plain.tau_s = static_cast<double>(m) / recording.rate_hz;
     for (const auto& [axis, column] : gyros) {

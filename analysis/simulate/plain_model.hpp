@@ -22,9 +22,8 @@ struct PlainModel {
 // Of the longest part of the recording in which nothing turns: N is the Allan deviation at `read_at_s` (the
 // nearest whole number of rows) times the root of that time, IEEE Std 952-1997 annex C, known as well as its
 // equivalent degrees of freedom say; the bias is the mean. Rate, step and range are the recording's
-// (recorded_converter.hpp), the reference's noise is that of its samples there (neighbour_scatter.hpp).
-// Nothing else is in it; of means, the model is of their samples. No value where there is no part of four
-// seconds (still_part.hpp) or no gyro gx, gy or gz in rad/s.
+// (recorded_converter.hpp). Nothing else is in it; of means, the model is of their samples. No value where
+// there is no part of four seconds (still_part.hpp) or no gyro gx, gy or gz in rad/s.
 std::optional<PlainModel> plain_model(const Recording& recording, const PlainModelOptions& options = {});
 
 }  // namespace gyrolog

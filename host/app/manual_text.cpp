@@ -187,7 +187,9 @@ in motion the beginning is diagnosed. `--average 10` looks at means of ten sampl
 
 If the reference is an orientation (`ref_qw` ... `ref_qz`), its rates are far noisier than the
 sensor. The sensor's noise is then judged at its longest rest, and how it answers to the motion in
-means of 50 ms. The report states the reference's error, delay and bandwidth first.
+means of 50 ms. If it is a rate (`ref_x_dps` ...) and the model has no `ref_noise_dps`, its noise is
+that of its samples where the sensor rests. The report states the reference's error, delay and
+bandwidth first.
 analysis/METHODS.md has how often the answer is right on recordings whose effect the program is not
 told.
 

@@ -54,9 +54,10 @@ void append_warnings(std::vector<std::string>& to, const DiagnosisInput& of) {
     }
 }
 
-// Where its means are long enough.
-bool is_judged_in_motion(const Recording& recording) {
-    return moves_against_orientation(recording) && !diagnosis_refusal(means_against_orientation(recording));
+// An orientation is one to judge by where its means are long enough.
+bool is_judged_in_motion(const Recording& recording, SensorKind sensor) {
+    if (sensor != SensorKind::gyro) { return false; }
+    return !moves_against_orientation(recording) || !diagnosis_refusal(means_against_orientation(recording));
 }
 
 // In means that were asked for.
@@ -65,7 +66,7 @@ std::optional<Diagnosis> diagnose_means(const DiagnosisInput& read, const Sensor
     const std::size_t samples = read.samples->samples_per_row;
     const double rate_hz = read.samples->rate_hz * static_cast<double>(samples);
     const SensorModel of_means = model_of_means(model, samples, rate_hz);
-    std::optional<Diagnosis> diagnosis = diagnose(read.samples, of_means, name, options);
+    std::optional<Diagnosis> diagnosis = diagnose_in_motion(read.samples, of_means, name, options);
     if (!diagnosis) { return std::nullopt; }
     for (Cause& cause : diagnosis->causes) {
         cause.finding = finding_of_samples(std::move(cause.finding), samples, rate_hz);
@@ -233,8 +234,8 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
     auto diagnosis = read.means != nullptr
                          ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
                      : request.average > 1 ? diagnose_means(read, file.model, name, options)
-                     : is_judged_in_motion(*read.samples)
-                         ? diagnose_against_orientation(read.samples, file.model, name, options)
+                     : is_judged_in_motion(*read.samples, sensor)
+                         ? diagnose_in_motion(read.samples, file.model, name, options)
                          : diagnose(read.samples, file.model, name, options);
     progress.reset();
     append_warnings(diagnosis->warnings, read);

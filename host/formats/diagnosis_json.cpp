@@ -179,7 +179,8 @@ Json noise_refits_json(const Diagnosis& diagnosis) {
 
 Json reference_json(const Diagnosis& diagnosis) {
     const ReferenceQuality& reference = *diagnosis.reference;
-    Json json{{"samples_per_row", reference.samples_per_row}};
+    Json json{{"of", reference.is_orientation ? "orientation" : "rates"},
+              {"samples_per_row", reference.samples_per_row}};
     for (const std::size_t axis : diagnosis.axes) {
         const Span& error_rad_s = reference.error_rad_s.at(axis);
         json["error_dps"][axis_names.at(axis)] = {error_rad_s.from * deg_per_rad,

@@ -254,18 +254,23 @@ std::string reference_sentence(const Diagnosis& diagnosis) {
     std::vector<std::string> errors;
     for (const std::size_t axis : diagnosis.axes) {
         const Span& error_rad_s = reference.error_rad_s.at(axis);
-        errors.push_back(fmt::format("{:.2g} to {:.2g} deg/s on {}", error_rad_s.from * deg_per_rad,
-                                     error_rad_s.to * deg_per_rad, axis_names.at(axis)));
+        if (!(error_rad_s.to > 0.0)) { continue; }
+        const std::string least =
+            reference.is_known_at_rest ? "" : fmt::format("{:.2g} to ", error_rad_s.from * deg_per_rad);
+        errors.push_back(
+            fmt::format("{}{:.2g} deg/s on {}", least, error_rad_s.to * deg_per_rad, axis_names.at(axis)));
     }
+    const std::string row = reference.samples_per_row == 1
+                                ? "a sample"
+                                : fmt::format("a mean of {} samples", reference.samples_per_row);
     return fmt::format(
-        "The rates of the orientation are off by {} (one sigma of a mean of {} samples), and follow the "
-        "sensor "
-        "up to {:.2g} Hz. The sensor is {} ms {} them: which of the two is late nobody can tell. What is "
-        "noise "
-        "of the sensor shows at rest only.",
-        listed(errors), reference.samples_per_row, reference.bandwidth_hz,
+        "The {} off by {} (one sigma of {}{}), and follow the sensor up to {:.2g} Hz. The sensor is {} ms {} "
+        "them: which of the two is late nobody can tell.{}",
+        reference.is_orientation ? "rates of the orientation are" : "reference rates are", listed(errors),
+        row, reference.is_known_at_rest ? ", where the sensor rests" : "", reference.bandwidth_hz,
         with_uncertainty(1e3 * std::fabs(reference.latency_s), 1e3 * reference.latency_sd_s),
-        reference.latency_s < 0.0 ? "ahead of" : "behind");
+        reference.latency_s < 0.0 ? "ahead of" : "behind",
+        reference.is_known_at_rest ? "" : " What is noise of the sensor shows at rest only.");
 }
 
 std::string heading_text(const Diagnosis& diagnosis) {

@@ -279,4 +279,16 @@ WithReferenceError with_reference_error(SensorModel model, const std::shared_ptr
     return {reader.with_noise(std::move(model)), quality};
 }
 
+ReferenceQuality quality_of_rates(const SensorModel& model, const std::shared_ptr<const Recording>& rows,
+                                  const std::array<double, 3>& noise_rad_s, std::uint64_t seed) {
+    const ErrorReader reader(rows, seed);
+    ReferenceQuality quality =
+        reader.quality(reader.left_by(reader.with_density(model, AngleNoise::as_seen)));
+    quality.is_known_at_rest = true;
+    for (std::size_t axis = 0; axis < noise_rad_s.size(); ++axis) {
+        quality.error_rad_s.at(axis) = {noise_rad_s.at(axis), noise_rad_s.at(axis)};
+    }
+    return quality;
+}
+
 }  // namespace gyrolog

@@ -1,7 +1,8 @@
-// The reference error is what a reference says wrongly about the motion. No model states it for rates that
-// come from an orientation: it is read from the recording that is to be judged by them.
+// The reference error is what a reference says wrongly about the motion. Where no model states it, it is read
+// from the recording that is to be judged by the reference.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -23,5 +24,9 @@ struct WithReferenceError {
 // `rows` has a reference rate, and no diagnosis_refusal().
 WithReferenceError with_reference_error(SensorModel model, const std::shared_ptr<const Recording>& rows,
                                         std::uint64_t seed);
+
+// What the rows tell of a reference rate whose noise is known by axis, and is the model's.
+ReferenceQuality quality_of_rates(const SensorModel& model, const std::shared_ptr<const Recording>& rows,
+                                  const std::array<double, 3>& noise_rad_s, std::uint64_t seed);
 
 }  // namespace gyrolog

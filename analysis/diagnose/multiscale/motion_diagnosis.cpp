@@ -11,9 +11,9 @@
 #include "analysis/diagnose/multiscale/joined_passes.hpp"
 #include "analysis/diagnose/multiscale/means_model.hpp"
 #include "analysis/recording/recording_part.hpp"
-#include "analysis/recording/still_part.hpp"
-#include "analysis/simulate/effect_axes.hpp"
+#include "analysis/simulate/gyro_rest.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
+#include "analysis/simulate/reference_noise.hpp"
 
 namespace gyrolog::resolution {
 
@@ -67,11 +67,7 @@ Recording with_turn_rates(Recording recording) {
 
 // Null where the sensor does not rest for long enough to be judged.
 std::shared_ptr<const Recording> longest_rest(const Recording& recording) {
-    std::vector<std::vector<double>> gyros;
-    for (const char* name : gyro_columns) {
-        if (const Column* column = recording.find(name)) { gyros.push_back(column->values()); }
-    }
-    const TimeSpan still = still_part(recording, gyros);
+    const TimeSpan still = gyro_rest(recording);
     if (!(still.to_s > still.from_s)) { return nullptr; }
     Recording rest = part_of(recording, still);
     std::erase_if(rest.columns, is_of_reference);
@@ -91,18 +87,59 @@ std::shared_ptr<const Recording> shared_means(const Recording& recording) {
     return std::make_shared<const Recording>(means_against_orientation(recording));
 }
 
-std::optional<Diagnosis> diagnose_motion(const Recording& recording, const SensorModel& model,
-                                         const std::string& model_name, DiagnosisOptions options) {
-    const auto rows = shared_means(recording);
-    WithReferenceError error = with_reference_error(
-        model_of_means(model, rows->samples_per_row, recording.rate_hz), rows, options.seed);
+// `model`: of the recording's rows; `rows`: those, or means of them against the angle turned.
+std::optional<Diagnosis> diagnose_answer(const Recording& recording,
+                                         const std::shared_ptr<const Recording>& rows,
+                                         const SensorModel& model, const std::string& model_name,
+                                         DiagnosisOptions options) {
+    const std::size_t samples = rows->samples_per_row / recording.samples_per_row;
+    WithReferenceError error =
+        with_reference_error(model_of_means(model, samples, recording.rate_hz), rows, options.seed);
     options.noise_of = Prediction::NoiseOf::reference_too;
-    if (options.holdout) { options.holdout = shared_means(*options.holdout); }
     std::optional<Diagnosis> pass = diagnose(rows, error.model, model_name, options);
     if (!pass) { return std::nullopt; }
-    put_causes_in(model, *pass, rows->samples_per_row, recording.rate_hz);
+    put_causes_in(model, *pass, samples, recording.rate_hz);
     pass->reference = error.quality;
     return pass;
+}
+
+std::optional<Diagnosis> diagnose_in_two_passes(const std::shared_ptr<const Recording>& recording,
+                                                const std::shared_ptr<const Recording>& rows,
+                                                const SensorModel& model, const std::string& model_name,
+                                                const DiagnosisOptions& options) {
+    DiagnosisOptions of_pass = options;
+    const std::shared_ptr<const Recording> rest = longest_rest(*recording);
+    if (rest) { of_pass.false_alarms_most *= 0.5; }
+    std::optional<Diagnosis> moving = diagnose_answer(*recording, rows, model, model_name, of_pass);
+    if (!moving || !rest) { return moving; }
+    of_pass.holdout = nullptr;
+    std::optional<Diagnosis> resting = diagnose(rest, model, model_name, of_pass);
+    if (!resting) { return std::nullopt; }
+    Diagnosis whole = joined_passes(model, *resting, *moving, moving->reference->samples_per_row);
+    whole.passes.front().is_at_rest = true;
+    whole.reference = moving->reference;
+    return whole;
+}
+
+std::optional<Diagnosis> diagnose_against_orientation(const std::shared_ptr<const Recording>& recording,
+                                                      const SensorModel& model, const std::string& model_name,
+                                                      DiagnosisOptions options) {
+    if (options.holdout) { options.holdout = shared_means(*options.holdout); }
+    auto diagnosis = diagnose_in_two_passes(recording, shared_means(*recording), model, model_name, options);
+    if (diagnosis) { diagnosis->reference->is_orientation = true; }
+    return diagnosis;
+}
+
+std::optional<Diagnosis> diagnose_against_rates(const std::shared_ptr<const Recording>& recording,
+                                                SensorModel model, const ReferenceNoise& noise,
+                                                const std::string& model_name,
+                                                const DiagnosisOptions& options) {
+    model.ref_noise_rad_s = noise.of_all_rad_s();
+    auto diagnosis = diagnose(recording, model, model_name, options);
+    if (diagnosis) {
+        diagnosis->reference = quality_of_rates(model, recording, noise.sd_rad_s, options.seed);
+    }
+    return diagnosis;
 }
 
 }  // namespace
@@ -121,21 +158,17 @@ Recording means_against_orientation(const Recording& recording) {
     return means_of(with_turn_rates(recording), static_cast<std::size_t>(samples));
 }
 
-std::optional<Diagnosis> diagnose_against_orientation(std::shared_ptr<const Recording> recording,
-                                                      const SensorModel& model, const std::string& model_name,
-                                                      const DiagnosisOptions& options) {
-    DiagnosisOptions of_pass = options;
-    const std::shared_ptr<const Recording> rest = longest_rest(*recording);
-    if (rest) { of_pass.false_alarms_most *= 0.5; }
-    std::optional<Diagnosis> moving = diagnose_motion(*recording, model, model_name, of_pass);
-    if (!moving || !rest) { return moving; }
-    of_pass.holdout = nullptr;
-    std::optional<Diagnosis> resting = diagnose(rest, model, model_name, of_pass);
-    if (!resting) { return std::nullopt; }
-    Diagnosis whole = joined_passes(model, *resting, *moving, moving->reference->samples_per_row);
-    whole.passes.front().is_at_rest = true;
-    whole.reference = moving->reference;
-    return whole;
+std::optional<Diagnosis> diagnose_in_motion(const std::shared_ptr<const Recording>& recording,
+                                            const SensorModel& model, const std::string& model_name,
+                                            const DiagnosisOptions& options) {
+    if (moves_against_orientation(*recording)) {
+        return diagnose_against_orientation(recording, model, model_name, options);
+    }
+    const ReferenceNoise noise =
+        model.ref_noise_rad_s > 0.0 ? ReferenceNoise{} : reference_noise_at_rest(*recording);
+    if (!(noise.of_all_rad_s() > 0.0)) { return diagnose(recording, model, model_name, options); }
+    return noise.is_known_well ? diagnose_against_rates(recording, model, noise, model_name, options)
+                               : diagnose_in_two_passes(recording, recording, model, model_name, options);
 }
 
 }  // namespace gyrolog

@@ -1,8 +1,11 @@
-// A sensor that moves against an orientation (ref_qw ... ref_qz) is judged in two passes, if it rests for
-// long enough: sample by sample at its longest rest, where its noise shows; and in means of the whole
-// recording, each against the angle turned meanwhile. An orientation's rates are far noisier than the sensor.
-// Their error is read from the recording first (calibration/reference_error.hpp), and what is judged in means
-// is how the sensor answers to the motion.
+// A sensor that moves against a reference of which no model says how good it is.
+//
+// Rates whose noise is known well from a rest (reference_noise.hpp) are a reference that is known. Against
+// any other the sensor is judged in two passes, if it rests for long enough: at its longest rest, where its
+// noise shows; and over the whole recording, in rows, where how it answers to the motion does. The error of
+// the reference is read from the rows first (calibration/reference_error.hpp). Against an orientation (ref_qw
+// ... ref_qz), whose rates are far noisier than the sensor, a row is a mean, against the angle turned
+// meanwhile.
 #pragma once
 
 #include <memory>
@@ -20,10 +23,11 @@ bool moves_against_orientation(const Recording& recording);
 // place of the orientation.
 Recording means_against_orientation(const Recording& recording);
 
-// Like diagnose(); `recording` moves_against_orientation() and its means have no diagnosis_refusal(). The
-// model's noise is judged at rest alone.
-std::optional<Diagnosis> diagnose_against_orientation(std::shared_ptr<const Recording> recording,
-                                                      const SensorModel& model, const std::string& model_name,
-                                                      const DiagnosisOptions& options);
+// Like diagnose(), which it is where the sensor does not move against a reference, the model states the noise
+// of the reference's rates, or they have none. Of what moves_against_orientation() the means have no
+// diagnosis_refusal().
+std::optional<Diagnosis> diagnose_in_motion(const std::shared_ptr<const Recording>& recording,
+                                            const SensorModel& model, const std::string& model_name,
+                                            const DiagnosisOptions& options);
 
 }  // namespace gyrolog

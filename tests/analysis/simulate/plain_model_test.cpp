@@ -71,17 +71,6 @@ TEST(PlainModel, IsOfThePartThatIsAtRest) {
                 4.0 * plain->model.axes[0].sd_rel.at("N") + 0.01);
 }
 
-TEST(PlainModel, HasTheReferencesNoise) {
-    SensorModel measured = sensor();
-    measured.ref_noise_rad_s = 0.02 * rad_per_deg;
-    const auto plain = plain_model(made(measured, 24'000, world_turning([](double t_s) {
-                                            return Vector3{t_s > 60.0 ? std::sin(2.0 * t_s) : 0.0, 0.0, 0.0};
-                                        })));
-    ASSERT_TRUE(plain);
-    EXPECT_NEAR(plain->model.ref_noise_rad_s / measured.ref_noise_rad_s, 1.0, 0.02);
-    EXPECT_EQ(plain_model(made(sensor(), 24'000))->model.ref_noise_rad_s, 0.0);
-}
-
 TEST(PlainModel, IsNoneOfWhatNeverRestsOrIsNoRate) {
     const auto turning = world_turning([](double t_s) { return Vector3{std::sin(2.0 * t_s), 0.0, 0.0}; });
     EXPECT_FALSE(plain_model(made(sensor(), 12'000, turning)));

@@ -344,7 +344,8 @@ TEST(DiagnosisText, StatesTheReferenceBeforeTheSensorIsJudged) {
     Diagnosis diagnosis = known();
     diagnosis.axes = {0};
     diagnosis.passes = {{30.0, 8'571, 1, Verdict::none, 0.4, true}, {200.0, 4'000, 14, Verdict::known, 1e-9}};
-    diagnosis.reference = {14, {Span{0.5 * rad_per_deg, 2.0 * rad_per_deg}}, 4.5e-3, 0.1e-3, 7.3};
+    diagnosis.reference = {true,   false,  14, {Span{0.5 * rad_per_deg, 2.0 * rad_per_deg}},
+                           4.5e-3, 0.1e-3, 7.3};
     const std::string text = joined(diagnosis_text(diagnosis));
     const std::size_t at = text.find(
         "reference: The rates of the orientation are off by 0.5 to 2 deg/s on x (one sigma of a mean of 14 "
@@ -360,6 +361,19 @@ TEST(DiagnosisText, StatesTheReferenceBeforeTheSensorIsJudged) {
     EXPECT_EQ(told.at("reference").at("latency_s"), 4.5e-3);
     EXPECT_EQ(told.at("looks").at(0).at("at_rest"), true);
     EXPECT_FALSE(told.at("looks").at(1).contains("at_rest"));
+    EXPECT_EQ(told.at("reference").at("of"), "orientation");
+}
+
+TEST(DiagnosisText, StatesTheNoiseOfReferenceRates) {
+    Diagnosis diagnosis = known();
+    diagnosis.axes = {0, 1};
+    const Span noise_rad_s{0.05 * rad_per_deg, 0.05 * rad_per_deg};
+    diagnosis.reference = {false, true, 1, {noise_rad_s, Span{}}, -2.0e-3, 0.1e-3, 12.0};
+    EXPECT_THAT(joined(diagnosis_text(diagnosis)),
+                HasSubstr("reference: The reference rates are off by 0.05 deg/s on x (one sigma of a sample, "
+                          "where the sensor rests), and follow the sensor up to 12 Hz. The sensor is 2.00 ± "
+                          "0.10 ms ahead of them: which of the two is late nobody can tell."));
+    EXPECT_EQ(json::parse(diagnosis_json(diagnosis)).at("reference").at("of"), "rates");
 }
 
 TEST(DiagnosisText, OfManyPlacesListsThoseThatStandOut) {

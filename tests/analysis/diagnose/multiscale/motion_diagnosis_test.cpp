@@ -130,6 +130,33 @@ std::shared_ptr<const Recording> recorded(std::uint64_t seed, const Fault& fault
     return recording;
 }
 
+// The same motion against an instrument that measures rates.
+std::shared_ptr<const Recording> recorded_against_rates(std::uint64_t seed, const Fault& fault,
+                                                        double noise_rad_s) {
+    const Motion motion(seed);
+    std::mt19937_64 random(seed + 2000);
+    std::normal_distribution<double> normal;
+    auto recording = std::make_shared<Recording>(*recorded(seed, fault));
+    std::erase_if(recording->columns, [](const Column& column) { return column.name.starts_with("ref_"); });
+    std::array<std::vector<double>, 3> rates;
+    for (std::size_t i = 0; i < samples; ++i) {
+        const std::array<double, 3> rate_rad_s = motion.rate_rad_s(static_cast<double>(i) / rate_hz);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            rates.at(axis).push_back(rate_rad_s.at(axis) + noise_rad_s * normal(random));
+        }
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        recording->columns.push_back({std::string("ref_") + axis_names.at(axis),
+                                      "rad/s",
+                                      std::move(rates.at(axis)),
+                                      1.0,
+                                      0.0,
+                                      "",
+                                      {}});
+    }
+    return recording;
+}
+
 SensorModel sensor() {
     SensorModel model;
     model.rate_hz = rate_hz;
@@ -141,7 +168,7 @@ SensorModel sensor() {
 std::optional<Diagnosis> diagnosed(const std::shared_ptr<const Recording>& recording) {
     DiagnosisOptions options;
     options.simulations = 40;
-    return diagnose_against_orientation(recording, sensor(), "sensor", options);
+    return diagnose_in_motion(recording, sensor(), "sensor", options);
 }
 
 std::vector<std::string> effects_of(const Diagnosis& diagnosis) {
@@ -269,6 +296,60 @@ TEST(MotionDiagnosis, FindsNothingWhereTheOrientationAloneIsWrong) {
     }
     EXPECT_LE(called, 1) << told;
     std::cout << told;
+}
+
+constexpr double strong_noise_rad_s = 0.2 * rad_per_deg;  // four times the sensor's
+constexpr double weak_noise_rad_s = 0.01 * rad_per_deg;
+
+TEST(ReferenceRates, OfLittleNoiseHaveThatOfTheirSamplesAtRest) {
+    const auto recording = recorded_against_rates(5, {.latency_s = 3e-3}, weak_noise_rad_s);
+    const auto diagnosis = diagnosed(recording);
+    ASSERT_TRUE(diagnosis && diagnosis->reference);
+    const ReferenceQuality& quality = *diagnosis->reference;
+    EXPECT_TRUE(quality.is_known_at_rest);
+    EXPECT_FALSE(quality.is_orientation);
+    for (const Span& seen_rad_s : quality.error_rad_s) {
+        EXPECT_NEAR(seen_rad_s.from / weak_noise_rad_s, 1.0, 0.05);
+        EXPECT_EQ(seen_rad_s.from, seen_rad_s.to);
+    }
+    EXPECT_NEAR(quality.latency_s, 3e-3, 5.0 * quality.latency_sd_s);
+    EXPECT_LT(quality.latency_sd_s, 0.1e-3);
+    EXPECT_GT(quality.bandwidth_hz, 1.5);
+    EXPECT_TRUE(diagnosis->passes.empty());
+    EXPECT_THAT(effects_of(*diagnosis), UnorderedElementsAre("latency"));
+}
+
+TEST(ReferenceRates, ThatAreExactOrStatedSayNothing) {
+    DiagnosisOptions options;
+    options.simulations = 20;
+    EXPECT_FALSE(diagnose_in_motion(recorded_against_rates(5, {}, 0.0), sensor(), "", options)->reference);
+    SensorModel stating = sensor();
+    stating.ref_noise_rad_s = weak_noise_rad_s;
+    EXPECT_FALSE(
+        diagnose_in_motion(recorded_against_rates(5, {}, weak_noise_rad_s), stating, "", options)->reference);
+}
+
+TEST(ReferenceRates, NoisierThanTheSensorMakeNoCause) {
+    const auto diagnosis = diagnosed(recorded_against_rates(7, {.scale = 0.01}, strong_noise_rad_s));
+    ASSERT_TRUE(diagnosis && diagnosis->reference);
+    EXPECT_FALSE(diagnosis->reference->is_known_at_rest);
+    EXPECT_NEAR(diagnosis->reference->error_rad_s[0].to / strong_noise_rad_s, 1.0, 0.2);
+    ASSERT_EQ(diagnosis->passes.size(), 2U);
+    EXPECT_TRUE(diagnosis->passes.front().is_at_rest);
+    EXPECT_THAT(effects_of(*diagnosis), UnorderedElementsAre("scale_factor"));
+    EXPECT_EQ(diagnosis->verdict, Verdict::known);
+}
+
+// Where the sensor moves no one can tell it from the reference's.
+TEST(ReferenceRates, NoisierThanTheSensorLeaveItsNoiseToTheRest) {
+    SensorModel quieter = sensor();
+    for (AxisModel& axis : quieter.axes) { axis.noise.N_rad_per_sqrt_s /= 1.5; }
+    DiagnosisOptions options;
+    options.simulations = 40;
+    const auto diagnosis =
+        diagnose_in_motion(recorded_against_rates(8, {}, strong_noise_rad_s), quieter, "quieter", options);
+    ASSERT_TRUE(diagnosis);
+    EXPECT_THAT(effects_of(*diagnosis), UnorderedElementsAre("arw_scale"));
 }
 
 }  // namespace
