@@ -36,6 +36,7 @@ struct Curve {
     Stroke stroke;
     Marker marker = Marker::none;
     double marker_size_px = 9.0;
+    double marker_outline_px = 1.0;  // of paper
     double markers_apart_px = 26.0;  // closer ones are left out
     double band_opacity = 0.18;
     bool sets_range = true;  // false: drawn where it crosses what the others show, such as a slope line

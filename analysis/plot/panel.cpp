@@ -284,7 +284,7 @@ void PanelDrawing::draw_traces(Canvas& canvas, const std::vector<Trace>& traces)
     for (const Trace& trace : traces) {
         for (const Point& p : trace.markers) {
             canvas.marker(p, trace.curve->marker, trace.curve->marker_size_px * scale_,
-                          trace.curve->stroke.colour, scale_);
+                          trace.curve->stroke.colour, trace.curve->marker_outline_px * scale_);
         }
     }
 }

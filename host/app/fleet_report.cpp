@@ -6,6 +6,7 @@
 #include "host/app/command.hpp"
 #include "host/app/fleet_input.hpp"
 #include "host/app/output_paths.hpp"
+#include "host/app/report_figures.hpp"
 #include "host/app/result_output.hpp"
 #include "host/base/counted.hpp"
 #include "host/report/fleet_page.hpp"
@@ -41,8 +42,12 @@ ExitCode fleet_report_to_file(Console& console, const FleetReportRequest& reques
     const Result<FleetRecordings> read = read_fleet(request.lines_paths, request.expected_path);
     if (!read.ok()) { return fail(read.error()); }
     const UnitPopulation population = population_of(read->recordings);
+    const Result<Png> spread = draw_spread(population);
+    if (!spread.ok()) { return fail(spread.error()); }
     ResultOutput results(console);
-    results.text(request.page_path, [&] { return fleet_html({name_of(request), *read, population}); });
+    results.text(request.page_path, [&] {
+        return fleet_html({name_of(request), *read, population, *spread});
+    });
     const Status written = results.finish();
     return written.ok() ? ExitCode::ok : fail(written.error());
 }

@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "analysis/plot/course_figure.hpp"
+#include "analysis/plot/unit_spread_figure.hpp"
 #include "analysis/recording/course.hpp"
 #include "host/app/analysis_plot.hpp"
 #include "host/app/diagnosis_output.hpp"
 #include "host/app/recording_diagnosis_run.hpp"
 #include "host/base/counted.hpp"
 #include "host/formats/uncertain_number.hpp"
+#include "host/report/fleet_page.hpp"
 
 namespace gyrolog {
 namespace {
@@ -110,7 +115,34 @@ Status draw_sensor(const AnalysisReport& analysis, const Recording& recording, S
     return {};
 }
 
+AxisUnits plotted_units(const UnitsOfParameter& of) {
+    AxisUnits axis{of.axis.empty() ? "all" : of.axis, {}, {}};
+    for (const UnitValue& unit : of.units) {
+        axis.units.push_back({std::filesystem::path(unit.unit).filename().string(), unit.value,
+                              unit.uncertainty, unit.stands_out});
+    }
+    if (of.spread) { axis.spread = PlottedSpread{of.spread->median, of.spread->sd}; }
+    return axis;
+}
+
 }  // namespace
+
+Result<Png> draw_spread(const UnitPopulation& population) {
+    constexpr std::size_t units_least = 2;
+    UnitSpreadFigure spread;
+    spread.paper = page_column;
+    for (const PopulationParameter& parameter : population_parameters) {
+        const char* title = parameter.name == std::string_view("rate_hz") ? parameter.title : parameter.name;
+        UnitParameter plotted{fmt::format("{} ({})", title, parameter.unit), {}};
+        for (const UnitsOfParameter& of : population.parameters) {
+            const bool is_shown = of.name == parameter.name && of.units.size() >= units_least;
+            if (is_shown) { plotted.axes.push_back(plotted_units(of)); }
+        }
+        if (!plotted.axes.empty()) { spread.parameters.push_back(std::move(plotted)); }
+    }
+    if (spread.parameters.empty()) { return Png(); }
+    return drawn("spread between units", figure_of(spread));
+}
 
 Status draw_figures(ReportPage& page, const Recording& recording) {
     const AnalysisReport& analysis = page.analysis;

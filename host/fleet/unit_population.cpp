@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/simulate/sensor_model.hpp"
@@ -82,9 +83,10 @@ private:
     std::size_t in_counts_ = 0;
 };
 
-std::string unit_of(std::span<const FleetLine> recordings, std::size_t recording) {
-    const FleetLine& line = recordings[recording];
-    return line.board.empty() ? "file " + line.file : "board " + line.board;
+// A board's number may be a file's name.
+using UnitKey = std::pair<bool, std::string>;
+UnitKey unit_of(const FleetLine& line) {
+    return line.board.empty() ? UnitKey{false, line.file} : UnitKey{true, line.board};
 }
 
 struct UnitValues {
@@ -92,43 +94,94 @@ struct UnitValues {
     std::vector<double> uncertainties;
 };
 
-UnitValues by_unit(std::span<const FleetLine> recordings, const Measurements& of) {
-    std::map<std::string, UnitValues> units;
+std::vector<UnitValue> by_unit(std::span<const FleetLine> recordings, const Measurements& of) {
+    std::map<UnitKey, UnitValues> units;
     for (const Value& one : of.values) {
-        UnitValues& unit = units[unit_of(recordings, one.recording)];
+        UnitValues& unit = units[unit_of(recordings[one.recording])];
         unit.values.push_back(one.value);
         unit.uncertainties.push_back(one.uncertainty);
     }
-    UnitValues medians;
-    for (const auto& [name, unit] : units) {
-        medians.values.push_back(median_of(unit.values));
-        medians.uncertainties.push_back(median_of(unit.uncertainties));
+    std::vector<UnitValue> medians;
+    medians.reserve(units.size());
+    for (const auto& [key, unit] : units) {
+        medians.push_back({key.second, median_of(unit.values), median_of(unit.uncertainties)});
     }
     return medians;
 }
 
-std::string name_of(const Measurements& of) { return of.axis.empty() ? of.name : of.name + " of " + of.axis; }
+RobustSpread spread_of(const std::vector<UnitValue>& units, double probability) {
+    UnitValues all;
+    all.values.reserve(units.size());
+    all.uncertainties.reserve(units.size());
+    for (const UnitValue& unit : units) {
+        all.values.push_back(unit.value);
+        all.uncertainties.push_back(unit.uncertainty);
+    }
+    return robust_spread(all.values, all.uncertainties, {probability});
+}
+
+bool is_fair_sample(const Measurements& of, const PopulationOptions& options) {
+    const auto asked = static_cast<double>(of.values.size() + of.not_identified);
+    return static_cast<double>(of.values.size()) >= options.identified_share_least * asked;
+}
 
 // Empty: there are enough.
 std::string why_not(const Measurements& of, std::size_t units, const PopulationOptions& options) {
-    const std::size_t asked = of.values.size() + of.not_identified;
-    if (static_cast<double>(of.values.size()) < options.identified_share_least * static_cast<double>(asked)) {
-        return fmt::format("{}: identified in {} of {} recordings only: no spread is given", name_of(of),
-                           of.values.size(), asked);
+    if (!is_fair_sample(of, options)) {
+        return fmt::format("identified in {} of {} recordings only: no spread is given", of.values.size(),
+                           of.values.size() + of.not_identified);
     }
     if (units >= options.units_least) { return {}; }
-    return fmt::format("{}: {} only, and a spread needs {}", name_of(of), counted(units, "unit"),
-                       options.units_least);
+    return fmt::format("{} only, and a spread needs {}", counted(units, "unit"), options.units_least);
+}
+
+// "Q of x, y, z: identified in 0 of 12 recordings only": axes for which the same holds share a note.
+class ParameterNotes {
+public:
+    void add(const Measurements& of, const std::string& why) {
+        const auto same = std::ranges::find_if(
+            notes_, [&](const Note& note) { return note.name == of.name && note.why == why; });
+        Note& note = same != notes_.end() ? *same : notes_.emplace_back(Note{of.name, why, {}});
+        if (!of.axis.empty()) { note.axes.push_back(of.axis); }
+    }
+    std::vector<std::string> texts() const {
+        std::vector<std::string> texts;
+        for (const Note& note : notes_) {
+            const std::string axes =
+                note.axes.empty() ? "" : fmt::format(" of {}", fmt::join(note.axes, ", "));
+            texts.push_back(note.name + axes + ": " + note.why);
+        }
+        return texts;
+    }
+
+private:
+    struct Note {
+        std::string name;
+        std::string why;
+        std::vector<std::string> axes;
+    };
+    std::vector<Note> notes_;
+};
+
+// 0 where there is no spread.
+double robust_z(double value, double uncertainty, const RobustSpread& spread) {
+    if (spread.observed_sd <= 0.0) { return 0.0; }
+    return (value - spread.median) / std::max(spread.observed_sd, std::hypot(spread.sd, uncertainty));
 }
 
 void find_outliers(const Measurements& of, const RobustSpread& spread,
                    std::vector<OutlyingParameter>& outliers) {
-    if (spread.observed_sd <= 0.0) { return; }
     const double bound = outlier_bound(spread.count);
     for (const Value& one : of.values) {
-        const double scale = std::max(spread.observed_sd, std::hypot(spread.sd, one.uncertainty));
-        const double z = (one.value - spread.median) / scale;
+        const double z = robust_z(one.value, one.uncertainty, spread);
         if (std::abs(z) > bound) { outliers.push_back({one.recording, of.axis, of.name, one.value, z}); }
+    }
+}
+
+void mark_outliers(UnitsOfParameter& of) {
+    for (UnitValue& unit : of.units) {
+        unit.stands_out =
+            std::abs(robust_z(unit.value, unit.uncertainty, *of.spread)) > outlier_bound(of.spread->count);
     }
 }
 
@@ -156,17 +209,22 @@ UnitPopulation population_of(std::span<const FleetLine> recordings, const Popula
     UnitPopulation population;
     MeasuredPopulation& measured = population.measured;
     measured.probability = options.probability;
+    ParameterNotes notes;
     for (const Measurements& of : collector.all()) {
-        const UnitValues units = by_unit(recordings, of);
-        measured.units = std::max(measured.units, units.values.size());
-        if (std::string why = why_not(of, units.values.size(), options); !why.empty()) {
-            measured.notes.push_back(std::move(why));
-            continue;
+        UnitsOfParameter parameter{of.axis, of.name, by_unit(recordings, of), {}};
+        measured.units = std::max(measured.units, parameter.units.size());
+        const std::string why = why_not(of, parameter.units.size(), options);
+        if (why.empty()) {
+            parameter.spread = spread_of(parameter.units, options.probability);
+            measured.parameters.push_back({of.axis, of.name, *parameter.spread});
+            find_outliers(of, *parameter.spread, population.outliers);
+            mark_outliers(parameter);
+        } else {
+            notes.add(of, why);
         }
-        const RobustSpread spread = robust_spread(units.values, units.uncertainties, {options.probability});
-        measured.parameters.push_back({of.axis, of.name, spread});
-        find_outliers(of, spread, population.outliers);
+        if (is_fair_sample(of, options)) { population.parameters.push_back(std::move(parameter)); }
     }
+    measured.notes = notes.texts();
     if (collector.in_counts() > 0) {
         measured.notes.push_back(fmt::format(
             "rates in counts without a scale are left out, {} of them: analyze takes one with --lsb-dps",

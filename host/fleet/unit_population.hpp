@@ -36,9 +36,26 @@ struct OutlyingParameter {
     double z = 0.0;
 };
 
+// What was measured of one unit; of several recordings the medians.
+struct UnitValue {
+    std::string unit;          // board or file
+    double value = 0.0;        // in the unit of the population
+    double uncertainty = 0.0;  // standard uncertainty
+    bool stands_out = false;   // by the rule below; its recordings may do so one by one
+};
+
+// The units one by one.
+struct UnitsOfParameter {
+    std::string axis;  // "" for rate_hz
+    std::string name;
+    std::vector<UnitValue> units;
+    std::optional<RobustSpread> spread;  // absent: of too few units
+};
+
 struct UnitPopulation {
     MeasuredPopulation measured;
     std::vector<OutlyingParameter> outliers;
+    std::vector<UnitsOfParameter> parameters;  // without those that too few of the units have
 };
 
 // Of each parameter (bias, Q, N, B, K by axis x, y, z of the gyro, and rate_hz) with enough units: a unit is

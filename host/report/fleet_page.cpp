@@ -1,7 +1,6 @@
 #include "host/report/fleet_page.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <utility>
@@ -20,24 +19,10 @@ namespace {
 
 using Recordings = std::vector<FleetLine>;
 
-struct NamedParameter {
-    const char* name;
-    const char* title;
-    const char* unit;  // the population's (unit_population.hpp), as people write it
-};
-constexpr std::array parameters{
-    NamedParameter{"bias", "bias", "°/s"},
-    NamedParameter{"N", "N, angle random walk", "°/s/√Hz"},
-    NamedParameter{"B", "B, bias instability", "°/s"},
-    NamedParameter{"K", "K, rate random walk", "°/s·√Hz"},
-    NamedParameter{"Q", "Q, quantization noise", "°/s·s"},
-    NamedParameter{"rate_hz", "sampling rate", "Hz"},
-};
-
 const char* unit_of(const std::string& parameter) {
-    const auto found =
-        std::ranges::find_if(parameters, [&](const NamedParameter& one) { return parameter == one.name; });
-    return found == parameters.end() ? "" : found->unit;
+    const auto found = std::ranges::find_if(
+        population_parameters, [&](const PopulationParameter& one) { return parameter == one.name; });
+    return found == population_parameters.end() ? "" : found->unit;
 }
 
 template <typename Wanted>
@@ -86,7 +71,8 @@ Html outliers_of(const FleetPage& page) {
     const auto& outliers = page.population.outliers;
     Html section = element("h2", Html::text("What stands out"));
     if (outliers.empty()) { return section + paragraph("No recording stands out from the others."); }
-    HtmlTable list{cells_of({"recording", "board", "axis", "parameter", "value", "unit", "robust z"}), {}};
+    HtmlTable list{
+        cells_of({"recording", "board", "axis", "parameter", "value", "unit", "robust z"}), {}, "names"};
     for (const OutlyingParameter& one : outliers) {
         const FleetLine& line = page.read.recordings[one.recording];
         list.rows.push_back(cells_of({line.file, line.board, one.axis, one.name, in_digits(one.value, 4),
@@ -99,18 +85,13 @@ Html outliers_of(const FleetPage& page) {
                "muted");
 }
 
-Html spread_of(const FleetPage& page) {
-    const MeasuredPopulation& measured = page.population.measured;
-    Html section = element("h2", Html::text("How far the units lie apart"));
-    if (measured.parameters.empty()) {
-        return section + paragraph("No spread between units can be told.") + bullet_list(measured.notes);
-    }
+Html spread_table(const MeasuredPopulation& measured) {
     HtmlTable list{
         cells_of({"axis", "units", "median", "standard deviation between units",
                   fmt::format("its {:.3g} % interval", 100.0 * measured.probability), "of the values"}),
         {},
         "numbers"};
-    for (const NamedParameter& parameter : parameters) {
+    for (const PopulationParameter& parameter : population_parameters) {
         std::vector<HtmlRow> rows;
         for (const MeasuredParameter& one : measured.parameters) {
             if (one.name != parameter.name) { continue; }
@@ -126,12 +107,26 @@ Html spread_of(const FleetPage& page) {
             {element("b", Html::text(fmt::format("{}, {}", parameter.title, parameter.unit)))});
         std::ranges::move(rows, std::back_inserter(list.rows));
     }
-    return section + table(list) +
+    return table(list) +
            paragraph(
                "Of the values: their standard deviation as measured. Between units: without what the "
                "uncertainty of each measurement adds.",
-               "muted") +
-           bullet_list(measured.notes);
+               "muted");
+}
+
+Html spread_of(const FleetPage& page) {
+    const MeasuredPopulation& measured = page.population.measured;
+    return element("h2", Html::text("How far the units lie apart")) +
+           (measured.parameters.empty() ? paragraph("No spread between units can be told.")
+                                        : spread_table(measured)) +
+           bullet_list(measured.notes) +
+           figure(
+               page.spread_png,
+               "Values of the units, for each parameter and axis, over their median and the standard "
+               "deviation between units",
+               "Each unit with its standard uncertainty, of several recordings the median; those of an axis "
+               "in the order of their values. The grey band is one standard deviation between units about "
+               "the median.");
 }
 
 struct CauseTally {
@@ -189,7 +184,8 @@ Html errors_of(const FleetPage& page) {
 }
 
 Html recordings_of(const FleetPage& page) {
-    HtmlTable list{cells_of({"recording", "board", "length", "missing", "verdict", "gap before, left"}), {}};
+    HtmlTable list{
+        cells_of({"recording", "board", "length", "missing", "verdict", "gap before, left"}), {}, "names"};
     for (const FleetLine& line : page.read.recordings) {
         if (!line.error.empty()) { continue; }
         const auto gap = [](const std::optional<double>& value) {

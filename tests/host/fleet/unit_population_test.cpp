@@ -65,7 +65,8 @@ TEST(UnitPopulation, OfTwoHundredUnitsIsGivenBackWithinItsInterval) {
     EXPECT_LT(N->spread.sd_lo, 0.04 * 0.005);
     EXPECT_GT(N->spread.sd_hi, 0.04 * 0.005);
     EXPECT_EQ(find(population, "x", "K"), nullptr) << "identified in no unit";
-    EXPECT_THAT(population.measured.notes, testing::Contains(HasSubstr("K of x: identified in 0 of 200")));
+    EXPECT_THAT(population.measured.notes,
+                testing::Contains(HasSubstr("K of x, y, z: identified in 0 of 200")));
 }
 
 // Measured, written, drawn from again, and measured: the same spread.
@@ -170,6 +171,37 @@ TEST(UnitPopulation, RatesInRadiansAreTheSameRates) {
         for (FleetAxis& axis : line.axes) { axis.unit = "lsb"; }
     }
     EXPECT_EQ(find(population_of(lines), "x", "bias"), nullptr);
+}
+
+TEST(UnitPopulation, HasTheUnitsOneByOne) {
+    std::vector<FleetLine> lines = fleet(12, 0.01, 0.02, 0.001);
+    lines.push_back(parsed(analysis_of({"again.csv", "S3", 0.9, 0.003})));
+    lines.push_back(parsed(analysis_of({"again.csv", "S3", 0.9, 0.003})));
+    const UnitPopulation population = population_of(lines);
+    const auto bias = std::ranges::find_if(population.parameters,
+                                           [](const UnitsOfParameter& one) { return one.name == "bias"; });
+    ASSERT_NE(bias, population.parameters.end());
+    ASSERT_TRUE(bias->spread);
+    EXPECT_THAT(bias->units, SizeIs(12));
+    for (const UnitValue& unit : bias->units) {
+        const bool is_odd = unit.unit == "S3";
+        EXPECT_EQ(unit.stands_out, is_odd) << unit.unit;
+        if (is_odd) {
+            EXPECT_DOUBLE_EQ(unit.value, 0.9);  // the median of its recordings
+            EXPECT_DOUBLE_EQ(unit.uncertainty, 0.003);
+        }
+    }
+}
+
+TEST(UnitPopulation, OfThreeUnitsHasThemWithoutASpread) {
+    const UnitPopulation population = population_of(fleet(3, 0.1, 0.1, 0.01));
+    EXPECT_THAT(population.measured.parameters, SizeIs(0));
+    ASSERT_THAT(population.parameters, testing::Not(testing::IsEmpty()));
+    for (const UnitsOfParameter& one : population.parameters) {
+        EXPECT_THAT(one.units, SizeIs(3));
+        EXPECT_FALSE(one.spread);
+        EXPECT_NE(one.name, "K") << "identified in none";
+    }
 }
 
 }  // namespace

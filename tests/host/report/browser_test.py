@@ -190,13 +190,15 @@ def main():
         run(program, "report", folder / "board.pcapng", "-o", folder / "plain.html")
         run(program, "report", folder / "board.pcapng", "--model", folder / "model.json", "--simulations", "20", "-o",
             folder / "diagnosed.html")
-        run(program, "simulate", folder / "model.json", "-o", folder / "text.csv", "--duration", "2m")
+        texts = [folder / f"text{seed}.csv" for seed in range(4)]
+        for seed, text in enumerate(texts):
+            run(program, "simulate", folder / "model.json", "-o", text, "--duration", "2m", "--seed", seed)
         # A page is as wide as it is wherever its recordings lie: a path is one word to a browser.
         far = folder / LONG_NAME
         far.mkdir()
         shutil.copy(folder / "board.pcapng", far / "board.pcapng")
         (far / "text.csv").write_text("no table\n")
-        run(program, "analyze", far / "board.pcapng", folder / "text.csv", "--jsonl", folder / "lines.jsonl")
+        run(program, "analyze", far / "board.pcapng", *texts, "--jsonl", folder / "lines.jsonl")
         run(program, "analyze", far / "text.csv", "--jsonl", folder / "bad.jsonl", returns=1)
         with open(folder / "lines.jsonl", "a") as lines:
             lines.write((folder / "bad.jsonl").read_text())
@@ -212,7 +214,7 @@ def main():
                 problems += [f"{page}: {one}" for one in look_at(browser, keep / f"{page}.html", titles + more, keep)]
             shutil.copy(folder / "many.html", keep / "many.html")
             problems += [f"many: {one}" for one in look_at(
-                browser, keep / "many.html", ["What stands out", "How far the units lie apart", "Recordings"], keep, 0)]
+                browser, keep / "many.html", ["What stands out", "How far the units lie apart", "Recordings"], keep, 1)]
         finally:
             browser.end()
     assert not problems, "\n".join(problems)

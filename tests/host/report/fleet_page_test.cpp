@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <opencv2/imgcodecs.hpp>
+
 #include "host/app/command_line.hpp"
 #include "tests/host/fleet/made_lines.hpp"
 #include "tests/host/report/page_reading.hpp"
@@ -72,7 +74,20 @@ TEST_F(FleetPageCommand, TellsSpreadOutliersCausesAndErrors) {
     EXPECT_THAT(page, HasSubstr("rtn</th><td>x, z</td>"));
     EXPECT_THAT(page, AllOf(HasSubstr("&lt;b&gt;bad.csv</th><td>1</td>\n<td>no such &lt;i&gt;file</td>"),
                             HasSubstr("absent.csv</th><td></td>\n<td>no answer</td>")));
-    EXPECT_THAT(page, AllOf(Not(HasSubstr("<b>bad")), Not(HasSubstr("src=")), Not(HasSubstr("href="))));
+    EXPECT_THAT(page, AllOf(Not(HasSubstr("<b>bad")), Not(HasSubstr("href="))));
+}
+
+TEST_F(FleetPageCommand, ShowsTheSpreadInItsSection) {
+    ASSERT_EQ(run({"report", lines_, "-o", page_}).exit_code, ExitCode::ok);
+    const std::string page = read_whole_file(page_);
+    const auto sections = test::all_between(page, "How far the units lie apart", "<h2");
+    ASSERT_EQ(sections.size(), 1U);
+    const auto pictures = test::all_between(sections[0], "base64,", "\"");
+    ASSERT_EQ(pictures.size(), 1U);
+    EXPECT_EQ(test::all_between(page, "src=", ">").size(), 1U);
+    const cv::Mat picture = cv::imdecode(test::from_base64(pictures[0]), cv::IMREAD_COLOR);
+    ASSERT_FALSE(picture.empty());
+    EXPECT_EQ(picture.cols, 1600);
 }
 
 TEST_F(FleetPageCommand, OfFewUnitsSaysWhatIsMissing) {
@@ -81,7 +96,8 @@ TEST_F(FleetPageCommand, OfFewUnitsSaysWhatIsMissing) {
     ASSERT_EQ(outcome.exit_code, ExitCode::ok) << outcome.err;
     const std::string page = read_whole_file(page_);
     EXPECT_THAT(page, AllOf(HasSubstr("No spread between units can be told."), HasSubstr("1 unit only"),
-                            HasSubstr("Every recording has its answer."), Not(HasSubstr("Causes</h2>"))));
+                            HasSubstr("Every recording has its answer."), Not(HasSubstr("Causes</h2>")),
+                            Not(HasSubstr("<img"))));
 }
 
 TEST_F(FleetPageCommand, RefusesWhatMakesNoSense) {
