@@ -26,6 +26,12 @@ namespace {
 constexpr PaperSize page_column{176.0, 230.9};
 constexpr double deviation_height_mm = 126.5;
 constexpr double spectrum_height_mm = 99.0;
+// Two of them and the time panels of the course fill a page.
+constexpr double samples_height_mm = 58.0;
+constexpr double course_over_time_mm = 100.0;  // with the temperature
+constexpr double course_panel_mm = 60.0;
+// Of a diagnosis, without its heading: with the verdict above it fills a page.
+constexpr double diagnosis_height_share = 0.84;
 constexpr std::size_t course_parts_most = 100;
 constexpr std::size_t samples_of_part_least = 10;
 
@@ -51,6 +57,19 @@ Figure panel_alone(const Figure& of, std::size_t panel, double height_mm) {
     figure.panels = {of.panels.at(panel)};
     figure.height_px = page_column.pixels(height_mm);
     return figure;
+}
+
+// So that a page may end between two; a figure whose panels share a key stays whole.
+Result<std::vector<Png>> drawn_one_by_one(const char* what, const Figure& figure, double height_mm) {
+    std::vector<Png> pngs;
+    const std::size_t panels = figure.key.empty() ? figure.panels.size() : 1;
+    for (std::size_t i = 0; i < panels; ++i) {
+        Figure one = figure;
+        if (figure.key.empty()) { one = panel_alone(figure, i, height_mm); }
+        GYROLOG_TRY(Png png, drawn(what, one));
+        pngs.push_back(std::move(png));
+    }
+    return pngs;
 }
 
 Status draw_analysis(const AnalysisReport& analysis, SensorKind sensor, SensorFigures& drawn_ones) {
@@ -104,15 +123,30 @@ CourseFigure course_figure(const AnalysisReport& analysis, const Recording& reco
     return course;
 }
 
+// What goes over time keeps one time axis.
+Status draw_course(const Figure& course, SensorFigures& drawn_ones) {
+    const char* what = "course of the bias";
+    const bool has_temperature = course.panels.size() > 1;
+    Figure over_time = course;
+    if (has_temperature) { over_time.panels.pop_back(); }
+    over_time.height_px = page_column.pixels(has_temperature ? course_over_time_mm : course_panel_mm);
+    GYROLOG_TRY(Png time_png, drawn(what, over_time));
+    drawn_ones.course_pngs.push_back(std::move(time_png));
+    if (!has_temperature) { return {}; }
+    GYROLOG_TRY(Png temperature_png,
+                drawn(what, panel_alone(course, course.panels.size() - 1, course_panel_mm)));
+    drawn_ones.course_pngs.push_back(std::move(temperature_png));
+    return {};
+}
+
 Status draw_sensor(const AnalysisReport& analysis, const Recording& recording, SensorKind sensor,
                    SensorFigures& drawn_ones) {
     GYROLOG_CHECK(draw_analysis(analysis, sensor, drawn_ones));
     HistogramFigure samples = samples_figure(analysis, recording, sensor);
     samples.paper = page_column;
-    GYROLOG_TRY(drawn_ones.samples_png, drawn("histogram", on_page(figure_of(samples))));
-    GYROLOG_TRY(drawn_ones.course_png,
-                drawn("course of the bias", on_page(figure_of(course_figure(analysis, recording, sensor)))));
-    return {};
+    GYROLOG_TRY(drawn_ones.samples_pngs,
+                drawn_one_by_one("histogram", on_page(figure_of(samples)), samples_height_mm));
+    return draw_course(on_page(figure_of(course_figure(analysis, recording, sensor))), drawn_ones);
 }
 
 AxisUnits plotted_units(const UnitsOfParameter& of) {
@@ -155,7 +189,9 @@ Status draw_figures(ReportPage& page, const Recording& recording) {
     if (page.diagnosis == nullptr) { return {}; }
     DiagnosisFigure diagnosis = titled_figure(*page.diagnosis, "recording", diagnosis_facts(*page.diagnosis));
     diagnosis.paper = page_column;
-    GYROLOG_TRY(page.diagnosis_png, drawn("diagnosis", on_page(figure_of(diagnosis))));
+    Figure figure = on_page(figure_of(diagnosis));
+    figure.height_px = static_cast<int>(figure.height_px * diagnosis_height_share);
+    GYROLOG_TRY(page.diagnosis_png, drawn("diagnosis", figure));
     return {};
 }
 

@@ -83,14 +83,15 @@ Html course_of(const SensorPart& part) {
     const bool has_temperature = part.page.temperature.has_value();
     const std::string signal = part.is_gyro() ? "rate" : "specific force";
     const std::string mean = part.is_gyro() ? "bias" : "mean";
-    Html course = figure(part.figures.course_png,
-                         has_temperature ? "Mean " + signal + " over time, temperature over time, mean " +
-                                               signal + " over temperature"
-                                         : "Mean " + signal + " over time",
-                         "Means over equal parts of the record, about the " + mean + "." +
-                             (has_temperature ? " A drift that merely happened while the temperature changed "
-                                                "looks the same here as one that the temperature caused."
-                                              : ""));
+    Html course = figure_in_parts(
+        part.figures.course_pngs,
+        has_temperature
+            ? "Mean " + signal + " over time, temperature over time, mean " + signal + " over temperature"
+            : "Mean " + signal + " over time",
+        "Means over equal parts of the record, about the " + mean + "." +
+            (has_temperature ? " A drift that merely happened while the temperature changed "
+                               "looks the same here as one that the temperature caused."
+                             : ""));
     if (!has_temperature) {
         course += paragraph("The recording has no temperature (temp_C): what the bias does with it is open.",
                             "muted");
@@ -104,9 +105,10 @@ Html bias_section(const SensorPart& part) {
     const std::string mean = part.is_gyro() ? "bias" : "mean";
     return element("h2", Html::text((part.is_gyro() ? "Bias" : "Mean and gravity") + part.of)) +
            bias_itself(part) + samples_of(part) +
-           figure(part.figures.samples_png, "Histogram of the samples of each axis about the " + mean,
-                  "The samples about the " + mean +
-                      ", beside the Gaussian of equal standard deviation (dashed).") +
+           figure_in_parts(part.figures.samples_pngs,
+                           "Histogram of the samples of each axis about the " + mean,
+                           "The samples about the " + mean +
+                               ", beside the Gaussian of equal standard deviation (dashed).") +
            course_of(part);
 }
 

@@ -110,4 +110,14 @@ Html figure(std::span<const std::uint8_t> png, std::string_view seen, std::strin
     return element("figure", png_image(png, seen) + element("figcaption", Html::text(caption)));
 }
 
+Html figure_in_parts(std::span<const std::vector<std::uint8_t>> pngs, std::string_view seen,
+                     std::string_view caption) {
+    if (pngs.empty()) { return {}; }
+    Html pictures;
+    for (std::size_t i = 0; i < pngs.size(); ++i) {
+        pictures += png_image(pngs[i], fmt::format("{}, {} of {}", seen, i + 1, pngs.size()));
+    }
+    return element("figure", pictures + element("figcaption", Html::text(caption)));
+}
+
 }  // namespace gyrolog

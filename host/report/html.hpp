@@ -58,5 +58,8 @@ Html table(const HtmlTable& table);
 Html png_image(std::span<const std::uint8_t> png, std::string_view seen);
 // Nothing without a picture.
 Html figure(std::span<const std::uint8_t> png, std::string_view seen, std::string_view caption);
+// In several pictures, between which a page may end.
+Html figure_in_parts(std::span<const std::vector<std::uint8_t>> pngs, std::string_view seen,
+                     std::string_view caption);
 
 }  // namespace gyrolog

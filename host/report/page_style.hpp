@@ -27,7 +27,7 @@ thead th { border-bottom: 2px solid var(--ink); }
 tbody th { font-weight: normal; color: var(--muted); }
 tr.group th { background: var(--head); color: var(--ink); padding: 0.4rem 0.5rem; }
 table.numbers td { white-space: nowrap; }
-table:not(.numbers) tbody th, table.errors td { overflow-wrap: anywhere; }
+table.names tbody th, table.names td:nth-child(2), table.errors tbody th, table.errors td:last-child { overflow-wrap: anywhere; }
 table.facts th { width: 9rem; }
 ul { margin: 0.4rem 0; padding-left: 1.3rem; }
 figure { margin: 1rem 0; }
@@ -38,8 +38,10 @@ footer { margin-top: 2.5rem; border-top: 1px solid var(--line); padding-top: 0.5
 @media print {
   :root { color-scheme: light; }
   body { max-width: none; margin: 0; padding: 0; font-size: 10pt; }
-  h2, h3, tr.group { break-after: avoid; }
-  figure, tr, .warning { break-inside: avoid; }
+  h2, h3, h2 + p, tr.group, tbody tr:first-child, tr:nth-last-child(2) { break-after: avoid; }
+  img, tr, li, .warning, table:not(:has(tr:nth-child(9))) { break-inside: avoid; }
+  figcaption, footer { break-before: avoid; }
+  footer { margin-top: 1rem; }
   img { width: auto; max-width: 100%; max-height: 240mm; margin: 0 auto; }
   tr.group th { print-color-adjust: exact; }
 }

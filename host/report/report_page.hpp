@@ -26,8 +26,8 @@ using Png = std::vector<std::uint8_t>;
 struct SensorFigures {
     Png deviation_png{};
     Png spectrum_png{};
-    Png samples_png{};
-    Png course_png{};
+    std::vector<Png> samples_pngs{};  // one after the other
+    std::vector<Png> course_pngs{};
 };
 
 struct ReportPage {

@@ -25,6 +25,7 @@ MODEL = {"schema": "gyrolog-model/1", "rate_hz": 100, "axes": {axis: {"N": 0.01,
 WIDE, NARROW = 1100, 420  # of a window of a screen and of a telephone
 LONG_NAME = "recordings_of_the_second_turntable_" * 5
 A4_TEXT = 680  # 180 mm at 96 pixels an inch
+HIGH = 700  # of 1000 of a page: with a heading and its text above, a higher picture leaves most of two pages empty
 
 
 class Browser:
@@ -149,6 +150,9 @@ def look_at(browser, path, titles, keep, pictures_least=3):
         one => one.getBoundingClientRect().right > document.documentElement.clientWidth + 1).map(
         one => one.tagName + ' ' + one.innerText.slice(0, 60))""")
     found += [f"cut on A4: {one}" for one in wide]
+    high = browser.value(f"""[...document.images].filter(
+        one => one.getBoundingClientRect().height > {HIGH}).map(one => one.alt)""")
+    found += [f"leaves pages half empty: {one}" for one in high]
     browser.call("Emulation.setEmulatedMedia", media="")
     # Last, for the pictures leave the window as large as they are.
     for width in (WIDE, NARROW):
@@ -168,10 +172,11 @@ def notices_what_is_wrong(browser, folder, keep):
     """The test itself: a page that does all that a report must not."""
     bad = folder / "bad.html"
     bad.write_text('<body><img alt="x" src="data:image/png;base64,AAAA"><img src="http://gyrolog.invalid/a.png">'
-                   '<script>console.error("no")</script><div style="width:3000px">wide</div>')
+                   '<script>console.error("no")</script><div style="width:3000px">wide</div>'
+                   f'<img alt="high" src="data:," style="height:{HIGH + 1}px">')
     found = "\n".join(look_at(browser, bad, ["Bias"], keep))
     for expected in ("asks for http://gyrolog.invalid", "console:", "not decoded", "no 'Bias'", "wide in a window of 1100",
-                     "does not print"):
+                     "does not print", "half empty: high"):
         assert expected in found, f"not noticed: {expected}\n{found}"
 
 

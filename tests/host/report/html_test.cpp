@@ -1,5 +1,6 @@
 #include "host/report/html.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "host/report/base64.hpp"
@@ -35,6 +36,15 @@ TEST(Html, OfAPictureTakesNoMarkupFromItsDescription) {
     EXPECT_EQ(png_image(png, R"(x" onload="y)").str(),
               R"(<img alt="x&quot; onload=&quot;y" src="data:image/png;base64,Zm9v">)");
     EXPECT_TRUE(figure({}, "nothing", "no picture").empty());
+}
+
+TEST(Html, FigureInPartsHasOneCaption) {
+    const std::vector<std::vector<std::uint8_t>> pngs{{'f', 'o', 'o'}, {'b', 'a', 'r'}};
+    const std::string parts = figure_in_parts(pngs, "samples", "The samples.").str();
+    EXPECT_THAT(parts, testing::HasSubstr(R"(alt="samples, 1 of 2")"));
+    EXPECT_THAT(parts, testing::HasSubstr(R"(alt="samples, 2 of 2")"));
+    EXPECT_EQ(parts.find("<figcaption>"), parts.rfind("<figcaption>"));
+    EXPECT_TRUE(figure_in_parts({}, "nothing", "no picture").empty());
 }
 
 TEST(Html, RowOfOneCellSpansTheTable) {

@@ -188,8 +188,10 @@ TEST_F(ReportCommand, HasPicturesThatShowSomething) {
             EXPECT_GT(static_cast<double>(dark), 0.01 * static_cast<double>(picture.total()));
         }
     };
-    expect_pictures(plain_, 8);
-    expect_pictures(diagnosed_, 9);
+    // Of two sensors each: deviation, spectrum, the samples of three axes, and the course over
+    // time and over the temperature.
+    expect_pictures(plain_, 14);
+    expect_pictures(diagnosed_, 15);
 }
 
 TEST_F(ReportCommand, TellsTheBoardOfACapture) {
