@@ -18,6 +18,9 @@ constexpr double root_s_per_root_h = 60.0;
 // sqrt(2 ln 2 / pi): the level of the flat part over B. IEEE Std 952-1997 C.1.3.
 const double flat_level = std::sqrt(2.0 * std::log(2.0) / pi);
 
+// Narrower, a table with N in both units would need letters that are too small.
+constexpr double two_units_of_N_mm = 120.0;
+
 constexpr double tau_of_N_s = 1.0;
 constexpr double tau_of_K_s = 3.0;
 
@@ -155,7 +158,7 @@ std::vector<LegendColumn> columns_of(const AllanFigure& allan) {
     const DeviationUnit& unit = allan.unit;
     const double to_paper = unit.per_unit_of_data;
     std::vector<LegendColumn> columns{{"N  (" + unit.name + ")/√Hz", &AllanTrace::N, to_paper}};
-    if (!unit.density.name.empty()) {
+    if (!unit.density.name.empty() && allan.paper.width_mm >= two_units_of_N_mm) {
         columns.push_back({"N  " + unit.density.name, &AllanTrace::N, to_paper * unit.density.factor});
     }
     if (unit.has_second_B) {

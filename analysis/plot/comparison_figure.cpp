@@ -69,11 +69,15 @@ public:
 
     void add_statistics_to(Figure& figure) const {
         figure.panels.push_back(histograms());
+        add_curves_to(figure);
+        figure.panels.push_back(ratios());
+    }
+
+    void add_curves_to(Figure& figure) const {
         figure.panels.push_back(
             curves(axis_.allan, "Allan deviation", "averaging time τ (s)", "σ(τ) (" + unit_ + ")"));
         figure.panels.push_back(curves(axis_.spectrum, "spectrum (root of the density)", "frequency (Hz)",
                                        "√S ((" + unit_ + ")/√Hz)"));
-        figure.panels.push_back(ratios());
     }
 
 private:
@@ -217,11 +221,14 @@ Figure figure_of(const ComparisonFigure& request) {
     figure.scale = request.paper.scale();
     for (const AxisComparison& axis : comparison.axes) {
         const ComparedAxisPanels panels(comparison, axis);
+        const bool is_one = comparison.axes.size() == 1;
         // On narrow paper nothing else would have room on the sheet.
-        if (figure.columns == compared_columns_most || comparison.axes.size() == 1) {
-            panels.add_series_to(figure);
+        if (figure.columns == compared_columns_most || is_one) { panels.add_series_to(figure); }
+        if (figure.columns > 1 || is_one) {
+            panels.add_statistics_to(figure);
+        } else {
+            panels.add_curves_to(figure);
         }
-        panels.add_statistics_to(figure);
     }
     const auto columns = static_cast<std::size_t>(figure.columns);
     const std::size_t rows = (figure.panels.size() + columns - 1) / columns;

@@ -263,6 +263,12 @@ private:
     std::string x_name_;
 };
 
+// How much there is to see: what stands out before or after, or else how far it is off.
+std::pair<double, double> rank_of(const GapDomain* domain) {
+    return {std::max(domain->surprise_before_nats, domain->surprise_after_nats),
+            std::max(domain->gap_before, domain->gap_after)};
+}
+
 // One way of looking, on the axes that have it.
 struct Row {
     std::string name;
@@ -270,13 +276,9 @@ struct Row {
 
     bool is_whole(std::size_t axes) const { return domains.size() == axes; }
 
-    // How much there is to see: what stands out before or after, or else how far it is off.
     std::pair<double, double> rank() const {
         std::pair<double, double> most;
-        for (const GapDomain* domain : domains) {
-            most = std::max(most, {std::max(domain->surprise_before_nats, domain->surprise_after_nats),
-                                   std::max(domain->gap_before, domain->gap_after)});
-        }
+        for (const GapDomain* domain : domains) { most = std::max(most, rank_of(domain)); }
         return most;
     }
 };
@@ -342,6 +344,11 @@ DrawnRows drawn_rows(const Diagnosis& diagnosis, const PaperSize& paper, double 
     const std::size_t axes = axes_in(diagnosis);
     const bool by_axis = axes > 1 && axes <= most && rows.front().domains.size() == axes;
     drawn.columns = by_axis ? axes : std::clamp(drawn.domains.size(), std::size_t{1}, most);
+    const std::size_t stacked_most = std::max(held, rows_least);
+    if (drawn.columns == 1 && drawn.domains.size() > stacked_most) {
+        std::ranges::stable_sort(drawn.domains, std::ranges::greater(), rank_of);
+        drawn.domains.resize(stacked_most);
+    }
     return drawn;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "analysis/plot/canvas.hpp"
 #include "analysis/plot/legend.hpp"
@@ -182,6 +183,28 @@ std::vector<PanelPlace> draw_panels(Canvas& canvas, const Figure& figure, const 
     return places;
 }
 
+// Broken between words; a word that is too long is shortened.
+std::vector<std::string> wrapped(const Typeface& typeface, const std::string& text, double size_px,
+                                 double width_px) {
+    std::vector<std::string> lines;
+    std::size_t start = 0;
+    while (start < text.size()) {
+        std::size_t end = text.size();
+        const auto is_long = [&] {
+            return typeface.measure(text.substr(start, end - start), size_px).width_px > width_px;
+        };
+        while (is_long()) {
+            const std::size_t blank = text.rfind(' ', end - 1);
+            if (blank == std::string::npos || blank <= start) { break; }
+            end = blank;
+        }
+        lines.push_back(
+            typeface.shortened(text.substr(start, end - start), size_px, width_px, Ellipsis::end));
+        start = end + 1;
+    }
+    return lines;
+}
+
 // Source and facts in as few lines as hold them. The source gets what the facts leave of the first line.
 std::vector<std::string> fact_lines(const Figure& figure, const Typeface& typeface, double width_px) {
     const double size_px = letter_px * figure.scale;
@@ -202,7 +225,9 @@ std::vector<std::string> fact_lines(const Figure& figure, const Typeface& typefa
         if (width_of(longer) <= width_px) {
             lines.back() = longer;
         } else {
-            lines.push_back(typeface.shortened(fact, size_px, width_px, Ellipsis::end));
+            for (std::string& line : wrapped(typeface, fact, size_px, width_px)) {
+                lines.push_back(std::move(line));
+            }
         }
     }
     lines.erase(std::remove(lines.begin(), lines.end(), std::string()), lines.end());
@@ -216,9 +241,10 @@ double draw_heading(Canvas& canvas, const Figure& figure, const Typeface& regula
     double y = figure_edge_px * figure.scale;
     if (!figure.title.empty()) {
         const double size_px = title_px * figure.scale;
-        canvas.text(bold, bold.shortened(figure.title, size_px, width_px, Ellipsis::end), {left, y},
-                    {size_px, colours::ink, Across::left, Along::top});
-        y += 1.35 * size_px;
+        for (const std::string& line : wrapped(bold, figure.title, size_px, width_px)) {
+            canvas.text(bold, line, {left, y}, {size_px, colours::ink, Across::left, Along::top});
+            y += 1.35 * size_px;
+        }
     }
     for (const std::string& line : fact_lines(figure, regular, width_px)) {
         canvas.text(regular, line, {left, y},

@@ -128,18 +128,20 @@ Figure figure_of(const HistogramFigure& histograms) {
     figure.facts = histograms.facts;
     figure.scale = histograms.paper.scale();
     const bool are_many = histograms.traces.size() > most_in_one_column;
+    // In a narrow column the numbers have no room beside a panel.
+    const bool are_small = are_many || histograms.paper.columns_up_to(2) == 1;
     figure.columns = are_many ? histograms.paper.columns_up_to(3) : 1;
     for (std::size_t i = 0; i < histograms.traces.size(); ++i) {
         figure.panels.push_back(
-            panel_of(histograms.traces[i], histograms, colours::cycle.at(i % (are_many ? 3 : 6)), are_many));
+            panel_of(histograms.traces[i], histograms, colours::cycle.at(i % (are_many ? 3 : 6)), are_small));
     }
-    if (are_many) { figure.key = key_of_small_panels(); }
+    if (are_small) { figure.key = key_of_small_panels(); }
     const auto columns = static_cast<std::size_t>(figure.columns);
     const auto rows = static_cast<int>((figure.panels.size() + columns - 1) / columns);
     figure.width_px = histograms.paper.width_px();
-    const int key_px = are_many ? histogram_key_px : 0;
+    const int key_px = are_small ? histogram_key_px : 0;
     figure.height_px = histograms.paper.scaled_pixels(histogram_heading_px + key_px +
-                                                      rows * (are_many ? small_panel_px : wide_panel_px));
+                                                      rows * (are_small ? small_panel_px : wide_panel_px));
     return figure;
 }
 

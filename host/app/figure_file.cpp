@@ -12,7 +12,7 @@
 namespace gyrolog {
 namespace {
 
-constexpr double figure_width_least_mm = 120.0;
+constexpr double figure_width_least_mm = 88.0;
 constexpr double figure_width_most_mm = 420.0;  // A3 across
 constexpr double figure_dpi_least = 72.0;
 constexpr double figure_dpi_most = 600.0;

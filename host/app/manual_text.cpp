@@ -24,8 +24,10 @@ and what it found instead; `gyrolog --device sim:` runs the virtual one in real 
 
 A figure is a `.png`, or for paper a `.svg` or `.pdf`, by the ending of its name, with every command
 that has `--plot`. It is 180 mm wide, the text of a page or two columns of a journal, and no letter
-is smaller than 8 pt. `--plot-width 240` makes it wider with letters of the same size, `--plot-dpi
-150` a `.png` coarser than 300 dots to the inch; the file itself says how large it is to be printed.
+is smaller than 8 pt. `--plot-width 88` fits one column of a journal, with the panels below each
+other and a wide table in letters of 7 pt; `--plot-width 240` is wider with letters of the same
+size. `--plot-dpi 150` makes a `.png` coarser than 300 dots to the inch; the file itself says how
+large it is to be printed.
 Colours differ in grey, too.
 
 On a terminal, what takes longer than a second says how far it is and how long it will still take.

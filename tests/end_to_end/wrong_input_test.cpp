@@ -423,7 +423,7 @@ TEST_F(WrongInput, OfAnalyze) {
         {"analyze c.csv --deviation best", 2, "'best' is none of overlapping, "},
         {"analyze c.csv --plot a.jpg", 2,
          "'a.jpg' does not end in .png, .svg or .pdf: a figure has no other form"},
-        {"analyze c.csv --plot a.png --plot-width 20", 2, "--plot-width: 20 must be from 120 to 420 mm"},
+        {"analyze c.csv --plot a.png --plot-width 20", 2, "--plot-width: 20 must be from 88 to 420 mm"},
         {"analyze c.csv --plot a.png --plot-width wide", 2, "--plot-width: 'wide' is no number"},
         {"analyze c.csv --plot a.png --plot-dpi 0", 2, "--plot-dpi: 0 must be from 72 to 600"},
         {"analyze c.csv --json c.csv", 2, "RECORDING and --json are the same file 'c.csv'"},

@@ -220,6 +220,27 @@ TEST(AllanFigure, HasLettersThatCanBeReadAndCoverNothing) {
     }
 }
 
+// One column of a journal. The table may have letters of 7 pt.
+TEST(AllanFigure, CanBeReadInANarrowColumn) {
+    AllanFigure figure = small_figure({trace_of("x", 0.01, 1e4, 40, 0.4), trace_of("y", 0.01, 1e4, 40, 1.0),
+                                       trace_of("z", 0.01, 1e4, 40, 2.2)});
+    figure.title = "Allan deviation and noise density of the accelerometer";
+    figure.source = "night.pcapng";
+    figure.facts = {"100 Hz", "6 h", "2,160,000 samples", "stopped by the user for 2.0 s, none missing"};
+    figure.unit = DeviationUnit::rad_per_s_as_deg_per_s();
+    for (AllanTrace& trace : figure.traces) {
+        trace.N = PlottedCoefficient{1.7463e-4, 8.5e-8};
+        trace.B = PlottedCoefficient{3.4e-5, 1.9e-6};
+        trace.K = PlottedCoefficient{1.7e-6, 3.7e-7};
+    }
+    figure.paper = {88.0, 300.0};
+    figure.height_mm = AllanFigure().height_mm;
+    const Rendering rendering = render(figure);
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    EXPECT_THAT(faults_of_letters(rendering.drawing, 7.0), testing::IsEmpty());
+    EXPECT_TRUE(rendering.panels.at(0).legend.has_value());
+}
+
 TEST(AllanFigure, WordsCoverNeitherEachOtherNorTheLegend) {
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> factor(0.3, 3.0);

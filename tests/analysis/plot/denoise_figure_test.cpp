@@ -99,7 +99,7 @@ std::vector<std::string> key_of(const Figure& figure) {
 
 TEST(DenoiseFigure, FitsAPageWithLettersThatCanBeReadAndCoverNothing) {
     const std::vector<std::vector<std::string>> axes{{"x"}, {"x", "y"}, {"x", "y", "z"}};
-    for (const double width_mm : {120.0, 180.0, 420.0}) {
+    for (const double width_mm : {88.0, 120.0, 180.0, 420.0}) {
         const PaperSize paper{width_mm, 100.0};
         for (const std::vector<std::string>& names : axes) {
             for (const std::size_t units : {1U, 3U}) {

@@ -366,6 +366,26 @@ TEST(DiagnosisFigure, FitsAPageWithLettersThatCanBeReadAndCoverNothing) {
     EXPECT_THAT(faults_of_letters(rendering.drawing), testing::IsEmpty());
 }
 
+// Panels of all axes below each other would be two pages high: those with the most to see stay.
+TEST(DiagnosisFigure, FitsAPageInANarrowColumn) {
+    Diagnosis diagnosis = partly_explained();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const char* name : {"rhythm of the noise", "noise by rate", "bursts"}) {
+            diagnosis.domains.push_back(time_domain(axis));
+            diagnosis.domains.back().name = name;
+        }
+    }
+    diagnosis.domains.back().surprise_before_nats = 1e6;
+    const PaperSize paper{88.0, 300.0};
+    const Figure figure =
+        figure_of(DiagnosisFigure{diagnosis, "partly explained", {"200 simulations"}, paper});
+    EXPECT_EQ(figure.columns, 1);
+    EXPECT_LE(figure.height_px, paper.pixels(text_height_mm) + 1);
+    EXPECT_THAT(figure.panels.at(1).caption, testing::HasSubstr("bursts"));
+    const Rendering rendering = render(figure);
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+}
+
 TEST(DiagnosisFigure, DrawsBandsAndMarksThatDifferInGreyToo) {
     const Diagnosis diagnosis = diagnosis_with({allan_domain(0), time_domain(0)});
     const Rendering rendering = render(DiagnosisFigure{diagnosis, "known: temp_lag", {"200 simulations"}});

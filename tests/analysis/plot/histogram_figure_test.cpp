@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/analysis/plot/lettering.hpp"
 #include "tests/analysis/plot/picture.hpp"
 
 namespace gyrolog {
@@ -98,6 +99,18 @@ TEST(HistogramFigure, OfAnArrayHasThreeColumns) {
     EXPECT_EQ(rendering.panels[0].plot.left, rendering.panels[21].plot.left);
     EXPECT_LT(rendering.panels[0].plot.right, rendering.panels[1].plot.left);
     EXPECT_LT(rendering.panels[0].plot.bottom, rendering.panels[3].plot.top);
+}
+
+TEST(HistogramFigure, InANarrowColumnHasItsNumbersAboveThePanels) {
+    HistogramFigure histograms = small_figure({trace_of("x"), trace_of("y")});
+    histograms.paper = {88.0, 300.0};
+    const Figure figure = figure_of(histograms);
+    EXPECT_EQ(figure.columns, 1);
+    EXPECT_EQ(figure.key.size(), 2U);
+    for (const Panel& panel : figure.panels) { EXPECT_THAT(panel.caption, testing::HasSubstr("mean")); }
+    const Rendering rendering = render(figure);
+    ASSERT_TRUE(rendering.ok()) << rendering.problem;
+    EXPECT_THAT(faults_of_letters(rendering.drawing), testing::IsEmpty());
 }
 
 TEST(HistogramFigure, RendersConstantAndEmptyColumns) {

@@ -31,13 +31,13 @@ inline std::vector<Lettering> letterings_of(const Drawing& drawing) {
     return letterings;
 }
 
-inline std::vector<std::string> faults_of_letters(const Drawing& drawing) {
+inline std::vector<std::string> faults_of_letters(const Drawing& drawing, double least_pt = letter_pt) {
     std::vector<std::string> faults;
     const std::vector<Lettering> letterings = letterings_of(drawing);
     const Box sheet{0.0, 0.0, double(drawing.width_px), double(drawing.height_px)};
     for (std::size_t i = 0; i < letterings.size(); ++i) {
         const Lettering& one = letterings[i];
-        if (one.size_pt < letter_pt - 1e-6) { faults.push_back("small: " + one.text); }
+        if (one.size_pt < least_pt - 1e-6) { faults.push_back("small: " + one.text); }
         if (one.text.find("…") != std::string::npos) { faults.push_back("cut: " + one.text); }
         if (!sheet.contains(one.ink)) { faults.push_back("over the edge: " + one.text); }
         for (std::size_t k = 0; k < i; ++k) {
