@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
+#include "analysis/noise/noise_model.hpp"
 #include "analysis/plot/number_text.hpp"
 #include "analysis/plot/trace_look.hpp"
 
@@ -11,6 +13,9 @@ namespace gyrolog {
 namespace {
 
 constexpr std::size_t most_lines_named = 3;  // of each trace
+constexpr double octave = 2.0;
+constexpr double seen_from = 4.0;    // times the density about it
+constexpr double stem_most = 100.0;  // times the band's density: the noise stays readable
 
 double density_on_paper(double density, const DeviationUnit& unit) {
     return std::sqrt(density) * unit.per_unit_of_data;
@@ -43,19 +48,64 @@ Curve model(const AllanTrace& trace, const TraceLook& look, const DeviationUnit&
     return curve;
 }
 
-// On top of what the spectrum shows of the line.
+// The band that shows the line best, or none.
+const SpectrumPoint* band_of(const SpectralLine& line, const std::vector<SpectrumPoint>& bands) {
+    const SpectrumPoint* top = nullptr;
+    for (const SpectrumPoint& band : bands) {
+        if (std::abs(band.f_hz - line.f_hz) > std::max(band.width_hz, line.width_hz)) { continue; }
+        if (top == nullptr || band.density > top->density) { top = &band; }
+    }
+    return top;
+}
+
+// Of the bands about it, within an octave.
+double density_around(const SpectrumPoint& band, const std::vector<SpectrumPoint>& bands) {
+    std::vector<double> around;
+    for (const SpectrumPoint& other : bands) {
+        const bool is_near = other.f_hz < band.f_hz * octave && other.f_hz > band.f_hz / octave;
+        if (is_near && &other != &band) { around.push_back(other.density); }
+    }
+    if (around.empty()) { return band.density; }
+    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
+    std::ranges::nth_element(around, middle);
+    return *middle;
+}
+
+// Of a spectrum as fine as the record allows: half the band's degrees of freedom are its bins. Half of the
+// line's power, A^2 / 2, is at the negative frequency.
+double peak_density(const SpectralLine& line, const SpectrumPoint& band) {
+    const double bin_hz = 2.0 * band.width_hz / std::max(band.dof, 2.0);
+    const double width_hz = std::max(bin_hz, line.width_hz * std::sqrt(2.0 * pi));
+    return band.density + line.amplitude * line.amplitude / 4.0 / width_hz;
+}
+
+// Up from what the bands show of the line to its peak.
+Curve stem(const SpectralLine& line, double from, double to, Colour colour) {
+    Curve curve;
+    curve.x = {line.f_hz, line.f_hz};
+    curve.y = {from, to};
+    curve.stroke = {colour, 2.0, {}};
+    curve.sets_range = false;
+    return curve;
+}
+
+// On top of what the spectrum shows of the line; where averaging has hidden it, on the peak that it has
+// without.
 void add_lines(Panel& panel, const AllanTrace& trace, const TraceLook& look, const DeviationUnit& unit) {
+    const Colour colour = mixed(look.colour, colours::ink, 0.25);
     for (std::size_t i = 0; i < std::min(trace.lines.size(), most_lines_named); ++i) {
         const SpectralLine& line = trace.lines[i];
-        const SpectrumPoint* top = nullptr;
-        for (const SpectrumPoint& p : trace.spectrum.points) {
-            if (std::abs(p.f_hz - line.f_hz) > std::max(p.width_hz, line.width_hz)) { continue; }
-            if (top == nullptr || p.density > top->density) { top = &p; }
+        const SpectrumPoint* band = band_of(line, trace.spectrum.points);
+        if (band == nullptr) { continue; }
+        Point top{band->f_hz, density_on_paper(band->density, unit)};
+        if (band->density < seen_from * density_around(*band, trace.spectrum.points)) {
+            const double most = stem_most * band->density;
+            const Point peak{line.f_hz, density_on_paper(std::min(peak_density(line, *band), most), unit)};
+            panel.curves.push_back(stem(line, top.y, peak.y, colour));
+            top = peak;
         }
-        if (top == nullptr) { continue; }
-        panel.callouts.push_back({top->f_hz, density_on_paper(top->density, unit),
-                                  rounded_number(line.f_hz, 4) + " Hz",
-                                  mixed(look.colour, colours::ink, 0.25), Marker::triangle_down});
+        panel.callouts.push_back(
+            {top.x, top.y, rounded_number(line.f_hz, 4) + " Hz", colour, Marker::triangle_down});
     }
 }
 

@@ -6,7 +6,9 @@
 
 namespace gyrolog {
 
-// In the same colours as the Allan curves, with the strongest lines marked; the legend is theirs.
+// In the same colours as the Allan curves; the legend is theirs. The strongest lines are marked: a steady one
+// is lost in the average of its band, and its marker then stands at the peak of a spectrum as fine as the
+// record allows.
 Panel spectrum_panel(const AllanFigure& allan);
 
 bool has_spectrum(const AllanFigure& allan);

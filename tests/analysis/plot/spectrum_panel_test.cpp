@@ -104,6 +104,45 @@ TEST(SpectrumPanel, MarksTheStrongestLinesWithTheirFrequency) {
     EXPECT_NEAR(panel.callouts[0].x, 31.4, 0.4 * 31.4);
 }
 
+const Curve* upright_at(const Panel& panel, double f_hz) {
+    for (const Curve& curve : panel.curves) {
+        if (curve.x == std::vector<double>{f_hz, f_hz}) { return &curve; }
+    }
+    return nullptr;
+}
+
+// A weak steady line is lost in its band's average: its marker stands on the peak of the unaveraged spectrum.
+TEST(SpectrumPanel, DrawsALineThatAveragingHides) {
+    AllanTrace trace = white_trace("x");
+    SpectralLine line;
+    line.f_hz = 31.4;
+    // Of a bin of 0.5 Hz, 2 x 12.6 Hz / 50: a density of 10 N^2, and 0.4 N^2 of the band.
+    const double bin_hz = 2.0 * trace.spectrum.points.back().width_hz / 50.0;
+    line.amplitude = 2.0 * N * std::sqrt(10.0 * bin_hz);
+    trace.lines.push_back(line);
+    const Panel panel = spectrum_panel(figure_with({trace}));
+    const Curve* stem = upright_at(panel, 31.4);
+    ASSERT_NE(stem, nullptr);
+    EXPECT_NEAR(stem->y.at(0), 0.005, 1e-9);
+    EXPECT_GT(stem->y.at(1), 0.005 * 3.0);
+    EXPECT_LT(stem->y.at(1), 0.005 * 4.0);
+    EXPECT_DOUBLE_EQ(panel.callouts.at(0).y, stem->y.at(1));
+    EXPECT_DOUBLE_EQ(panel.callouts.at(0).x, 31.4);
+}
+
+TEST(SpectrumPanel, DrawsNoStemWhereTheBandsShowTheLine) {
+    AllanTrace trace = white_trace("x");
+    SpectrumPoint& top = trace.spectrum.points.at(18);
+    top.density *= 9.0;
+    SpectralLine line;
+    line.f_hz = top.f_hz;
+    line.amplitude = N;
+    trace.lines.push_back(line);
+    const Panel panel = spectrum_panel(figure_with({trace}));
+    EXPECT_EQ(upright_at(panel, line.f_hz), nullptr);
+    EXPECT_NEAR(panel.callouts.at(0).y, 0.015, 1e-9);
+}
+
 TEST(AllanFigure, DrawsAnArrayInOneColourForEachAxis) {
     std::vector<AllanTrace> traces;
     for (int unit = 1; unit <= 8; ++unit) {
