@@ -135,21 +135,8 @@ Result<Comparison> with_recording(const CompareRequest& request) {
     return comparison;
 }
 
-// Of two recordings each has its own: what differs at long averaging times may be the length.
-std::string length_text(const Comparison& comparison) {
-    std::string length = format_duration(comparison.duration_s);
-    const std::string other = format_duration(comparison.other_duration_s);
-    if (comparison.simulations > 0 || other == length) { return length; }
-    return length + " (the other " + other + ")";
-}
-
 Status write_plot(const Comparison& comparison, const PaperSize& paper, const std::string& path) {
-    const Rendering rendering =
-        render(ComparisonFigure{comparison,
-                                {fmt::format("{:.6g} Hz", comparison.rate_hz), length_text(comparison),
-                                 counted(comparison.samples, "sample")},
-                                paper});
-    return write_figure(rendering, path);
+    return write_figure(render(ComparisonFigure{comparison, comparison_facts(comparison), paper}), path);
 }
 
 Status write_results(Console& console, const CompareRequest& request, const Comparison& comparison) {

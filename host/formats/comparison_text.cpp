@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/counted.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/text_table.hpp"
 #include "host/formats/uncertain_number.hpp"
@@ -262,6 +263,13 @@ std::string comparison_text(const Comparison& comparison, Wording wording) {
     if (!comparison.warnings.empty()) { text += '\n'; }
     for (const std::string& warning : comparison.warnings) { text += wrapped_text("warning: ", warning); }
     return text;
+}
+
+std::vector<std::string> comparison_facts(const Comparison& comparison) {
+    std::string length = duration_text(comparison.duration_s);
+    const std::string other = duration_text(comparison.other_duration_s);
+    if (comparison.simulations == 0 && other != length) { length += " (the other " + other + ")"; }
+    return {fmt::format("{:.6g} Hz", comparison.rate_hz), length, counted(comparison.samples, "sample")};
 }
 
 }  // namespace gyrolog

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/compare/comparison.hpp"
 #include "host/formats/wording.hpp"
@@ -13,5 +14,9 @@ std::string comparison_text(const Comparison& comparison, Wording wording = Word
 
 // "x: the simulation is too quiet by 4.7 dB at 13 ms (Allan deviation 0.02, simulated 0.012 dps)"
 std::string outcome_sentence(const Comparison& comparison, const AxisComparison& axis);
+
+// For the head of a figure: rate, length, samples. Of two recordings each has its own length: what differs at
+// long averaging times may be that.
+std::vector<std::string> comparison_facts(const Comparison& comparison);
 
 }  // namespace gyrolog

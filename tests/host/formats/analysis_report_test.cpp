@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -213,6 +215,38 @@ TEST(AnalysisText, FitsATerminalOf80Columns) {
         EXPECT_LE(width_of(line), 80U) << line;
     }
     EXPECT_THAT(text, testing::ContainsRegex("\n +x +y +z\n  bias .*-43.*\n")) << "not in one table";
+}
+
+std::string in_one_line(const std::string& text) {
+    std::string line;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) { line += word + ' '; }
+    return line;
+}
+
+// A model has 0 where diagnose may find a B or K: without the sentence the two seem to contradict each other.
+TEST(AnalysisText, SaysWhatDiagnoseMayFindBelowALimit) {
+    AnalysisReport report = analyze(parsed(warm_text(0.0)));
+    const auto text_with = [&](bool B_is_limit, bool K_is_limit) {
+        for (AxisReport& axis : report.axes) {
+            FittedCoefficient known;
+            known.state = FittedCoefficient::State::identified;
+            known.value = 1e-4;
+            FittedCoefficient limit;
+            limit.upper = 2e-4;
+            const auto set = [&](NoiseTerm term, bool is_limit) {
+                axis.fit.terms.at(static_cast<std::size_t>(term)) = is_limit ? limit : known;
+            };
+            set(NoiseTerm::B, B_is_limit && axis.axis == "y");
+            set(NoiseTerm::K, K_is_limit && axis.axis == "x");
+        }
+        return in_one_line(analysis_text(report));
+    };
+    EXPECT_THAT(text_with(false, false), testing::Not(HasSubstr("diagnose")));
+    EXPECT_THAT(text_with(true, false), HasSubstr("may find a B (flicker_missing): a size below the limit"));
+    EXPECT_THAT(text_with(false, true), HasSubstr("may find a K (rrw_missing): a size below the limit"));
+    EXPECT_THAT(text_with(true, true),
+                HasSubstr("may find a B (flicker_missing) or K (rrw_missing): a size"));
 }
 
 TEST(AnalysisText, OfCountsHasNoUnitsOfTheTrade) {

@@ -12,6 +12,7 @@ namespace {
 
 using nlohmann::json;
 using testing::ContainsRegex;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -197,6 +198,18 @@ TEST(ComparisonJson, HasTheCurvesInDegreesWithTheirBand) {
     EXPECT_EQ(answer["axes"]["x"]["sentence"],
               "x: the simulation is too quiet by 4.7 dB at 13 ms (Allan deviation 2, simulated 1 dps)");
     EXPECT_EQ(answer["warnings"][0], "a warning");
+}
+
+// A simulation is as long as its recording; another recording may be shorter, and the figure says so.
+TEST(ComparisonFacts, HaveTheLengthsOfTwoRecordings) {
+    Comparison comparison = against_a_model();
+    EXPECT_THAT(comparison_facts(comparison), ElementsAre("100 Hz", "60 min", "360,000 samples"));
+    comparison.simulations = 0;
+    comparison.other_duration_s = 1800.0;
+    EXPECT_THAT(comparison_facts(comparison),
+                ElementsAre("100 Hz", "60 min (the other 30 min)", "360,000 samples"));
+    comparison.other_duration_s = 3600.4;
+    EXPECT_THAT(comparison_facts(comparison), ElementsAre("100 Hz", "60 min", "360,000 samples"));
 }
 
 }  // namespace
