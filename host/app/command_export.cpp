@@ -235,10 +235,10 @@ ExitCode export_to_file(Console& console, const ExportOptions& options) {
     }
     const ExportFormat* format = export_format_of(options.output);
     if (format == nullptr) {
-        return report_error(
-            console, "export",
-            {ErrorCode::invalid_argument,
-             "'" + options.output + "' has none of the endings that tell the format: " + known_endings()});
+        return report_error(console, "export",
+                            {ErrorCode::invalid_argument,
+                             "'" + options.output + "' has none of the endings that tell the format: " +
+                                 known_endings() + "; for another simulator or a filter, --for says which"});
     }
     const Status done = export_noise_or_samples(console, options, *format);
     if (!done.ok()) { return report_error(console, "export", done.error()); }

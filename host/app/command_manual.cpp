@@ -6,6 +6,7 @@
 #include "host/app/manual_page.hpp"
 #include "host/app/option_check.hpp"
 #include "host/app/result_output.hpp"
+#include "host/base/nearest_name.hpp"
 
 namespace gyrolog {
 namespace {
@@ -21,8 +22,10 @@ Action setup_manual(CLI::App& app) {
     auto name = std::make_shared<std::string>();
     const CLI::App* root = app.get_parent();
     // Asked once the words are parsed: the commands are not all declared yet.
-    const auto is_command = [root](const std::string& text) {
-        return command_of(*root, text) != nullptr ? std::string() : "there is no command '" + text + "'";
+    const auto is_command = [root](const std::string& text) -> std::string {
+        if (command_of(*root, text) != nullptr) { return {}; }
+        const std::string meant = nearest_name(text, all_command_names());
+        return "there is no command '" + text + "'" + (meant.empty() ? "" : "; did you mean " + meant + "?");
     };
     app.add_option("COMMAND", *name, "The command; without one, the page of the program itself")
         ->check(CLI::Validator(is_command, ""))

@@ -118,16 +118,18 @@ the diagnosis against `--model`, and how long the next recording has to be. It i
 its figures inside. It has no scripts and fetches nothing.
 
 From results of many recordings (`.jsonl`, what `table` reads) it makes a page on the units: how far
-they lie apart in each coefficient, which stand out, the causes that the diagnoses name with the
-range of their shares, and which recordings have an error or, with `--expected`, no answer.)"},
+they lie apart in each coefficient, as a table and as a figure with every unit, which stand out, the
+causes that the diagnoses name with the range of their shares, and which recordings have an error
+or, with `--expected`, no answer.)"},
     ManualText{
         "compare",
         R"(With a model, the recording is simulated 40 times (`--simulations`, `--seed`): at its instants, with
 its holes, temperature and motion, and with the sensor drawn within the uncertainties that the model
 states. For each axis the figure shows both signals in time on the same scale, both distributions,
-and the Allan deviation and the spectrum over the band of the simulations. At each point one more
-simulation lies within that band with a probability of 95.12 %. The text says where the recording
-lies outside and by how many decibels, unless chance does as much. It ends in one sentence for each
+and the Allan deviation and the spectrum over the band of the simulations; on narrow paper fewer of
+them. At each point one more simulation lies within that band with a probability of 95.12 %. The
+text says where the recording lies outside and by how many decibels, unless chance does as much. It
+ends in one sentence for each
 axis: "x: the simulation is too quiet by 4.7 dB at 13 ms". It names no cause.)"},
     ManualText{
         "calibrate",

@@ -250,7 +250,15 @@ Result<std::vector<FleetLine>> read_fleet_lines(const std::string& path) {
     std::vector<FleetLine> lines;
     const Status read = each_line(path, [&](std::string_view text, std::size_t number) -> Status {
         auto line = parse_fleet_line(text);
-        if (!line.ok()) { return in_context("line " + std::to_string(number), std::move(line).error()); }
+        if (!line.ok()) {
+            Error error = in_context("line " + std::to_string(number), std::move(line).error());
+            // Of another file not even the first is one.
+            if (lines.empty()) {
+                error.message +=
+                    "; results are lines that analyze, check, compare or diagnose wrote with --jsonl";
+            }
+            return error;
+        }
         lines.push_back(std::move(line).value());
         return {};
     });

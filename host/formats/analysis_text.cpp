@@ -123,7 +123,7 @@ std::string gravity_text(const AccelerometerReport& report) {
 }
 
 std::string head_of(const AnalysisReport& report) {
-    std::string text = fmt::format("{}: {} samples, {}", printable(report.name), report.samples,
+    std::string text = fmt::format("{}: {}, {}", printable(report.name), counted(report.samples, "sample"),
                                    duration_text(report.duration_s));
     text += fmt::format(", {} Hz", report.rate_sd_hz ? with_uncertainty(report.rate_hz, *report.rate_sd_hz)
                                                      : fmt::format("{:.6g}", report.rate_hz));

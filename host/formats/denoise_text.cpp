@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/counted.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/text_table.hpp"
 #include "host/formats/uncertain_number.hpp"
@@ -170,8 +171,8 @@ std::string design_text(const DenoiseDesign& design) {
 
 std::string denoise_text(const DenoiseReport& report) {
     std::string text =
-        wrapped_text("", fmt::format("{}: {:.6g} Hz, {}, {} samples", printable(report.name), report.rate_hz,
-                                     duration_text(report.duration_s), report.samples));
+        wrapped_text("", fmt::format("{}: {:.6g} Hz, {}, {}", printable(report.name), report.rate_hz,
+                                     duration_text(report.duration_s), counted(report.samples, "sample")));
     for (const std::string& warning : report.warnings) { text += wrapped_text("warning: ", warning); }
     text += wrapped_text("noise of the units: ", report.learned_from);
     if (report.axes.empty()) { return text; }

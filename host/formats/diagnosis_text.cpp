@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "host/base/counted.hpp"
 #include "host/base/printable.hpp"
 #include "host/formats/cause_table.hpp"
 #include "host/formats/diagnosis_details.hpp"
@@ -274,11 +275,11 @@ std::string reference_sentence(const Diagnosis& diagnosis) {
 }
 
 std::string heading_text(const Diagnosis& diagnosis) {
-    std::string text = fmt::format("{}{} against {} simulations of {} (seed {}): {} samples at {:.6g} Hz, {}",
-                                   diagnosis.recording_name,
-                                   diagnosis.unit.sensor == SensorKind::gyro ? "" : ", the accelerometer,",
-                                   diagnosis.simulations, diagnosis.model_name, diagnosis.seed,
-                                   diagnosis.samples, diagnosis.rate_hz, duration_text(diagnosis.duration_s));
+    std::string text = fmt::format(
+        "{}{} against {} simulations of {} (seed {}): {} at {:.6g} Hz, {}", diagnosis.recording_name,
+        diagnosis.unit.sensor == SensorKind::gyro ? "" : ", the accelerometer,", diagnosis.simulations,
+        diagnosis.model_name, diagnosis.seed, counted(diagnosis.samples, "sample"), diagnosis.rate_hz,
+        duration_text(diagnosis.duration_s));
     if (!diagnosis.passes.empty()) { text += "; " + passes_text(diagnosis); }
     return text;
 }

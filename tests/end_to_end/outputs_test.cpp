@@ -300,7 +300,7 @@ TEST_F(Outputs, AFileThatCannotBeWrittenCostsNoOther) {
     const ProgramResult result = run_gyrolog({"analyze", text_, "--json", full, "--plot", plot});
     EXPECT_EQ(result.exit_code, 6);
     EXPECT_THAT(result.err, HasSubstr("full.json': disk full"));
-    EXPECT_THAT(result.out, HasSubstr("4000 samples"));
+    EXPECT_THAT(result.out, HasSubstr("4,000 samples"));
     EXPECT_GT(read_whole_file(plot).size(), 1000U);
 }
 

@@ -259,7 +259,7 @@ TEST(AnalysisText, OfCountsHasNoUnitsOfTheTrade) {
 TEST(AnalysisText, NamesEveryAxisWithItsUnits) {
     const std::string text =
         analysis_text(analyze(parsed(csv_of(test::nbs14_1000_point_frequency(), "t_s,gx_dps"))));
-    EXPECT_THAT(text, HasSubstr("run.csv: 1000 samples"));
+    EXPECT_THAT(text, HasSubstr("run.csv: 1,000 samples"));
     EXPECT_THAT(text, HasSubstr("no dropouts"));
     EXPECT_THAT(text, HasSubstr("deg/√h"));
     EXPECT_THAT(text, HasSubstr("deg/h"));
