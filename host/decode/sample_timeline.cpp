@@ -21,6 +21,12 @@ struct Point {
     double y = 0.0;
 };
 
+// A damaged file may claim any time; far from the ends of the type, differences cannot overflow.
+std::int64_t arrival_ns_of(HostTime arrival) {
+    constexpr std::int64_t far_ns = std::numeric_limits<std::int64_t>::max() / 4;
+    return std::clamp(arrival.monotonic_ns, -far_ns, far_ns);
+}
+
 // The part of the convex hull below the points, which come in order of x.
 std::vector<Point> lower_hull(const std::vector<Point>& points) {
     std::vector<Point> hull;
@@ -43,28 +49,48 @@ void SampleTimeline::take_hello(const glp_hello& hello) {
     tick_mask_ = hello.tick_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << hello.tick_bits) - 1U;
 }
 
-// The counter may go round more than once while nothing is sampled: the host's clock then says how often. It
-// never takes a turn away, because a source that does not wait is faster than its own time.
-std::int64_t SampleTimeline::ticks_since_last(const glp_samples& samples, std::int64_t arrival_ns) const {
-    const double host_s = static_cast<double>(arrival_ns - arrival_ns_) * 1e-9;
-    const double tick_hz = tick_hz_.value_or(0);
-    const std::uint64_t step = (samples.first_ticks - *raw_ticks_) & tick_mask_;
+// The counter may go round more than once while nothing is sampled: what passed by another account says how
+// often. That never takes a turn away: a source that does not wait is faster than its own time.
+std::int64_t SampleTimeline::ticks_since_last(std::uint64_t ticks, double about_ticks) const {
+    const std::uint64_t step = (ticks - *raw_ticks_) & tick_mask_;
     if (step > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) / 4) { return 0; }
-    double turns = 0.0;
-    if (tick_hz > 0.0 && tick_mask_ != ~std::uint64_t{0}) {
-        const double turn_s = (static_cast<double>(tick_mask_) + 1.0) / tick_hz;
-        turns =
-            std::clamp(std::round((host_s - static_cast<double>(step) / tick_hz) / turn_s), 0.0, max_wraps);
+    double turned = 0.0;
+    if (tick_hz_.value_or(0) > 0 && tick_mask_ != ~std::uint64_t{0}) {
+        const double turn = static_cast<double>(tick_mask_) + 1.0;
+        turned =
+            turn * std::clamp(std::round((about_ticks - static_cast<double>(step)) / turn), 0.0, max_wraps);
     }
-    const double turned = turns * (static_cast<double>(tick_mask_) + 1.0);
     return static_cast<std::int64_t>(step) + (turned < 1e18 ? static_cast<std::int64_t>(turned) : 0);
+}
+
+double SampleTimeline::ticks_by_host(std::int64_t arrival_ns) const {
+    return static_cast<double>(arrival_ns - arrival_ns_) * 1e-9 * tick_hz_.value_or(0);
+}
+
+// In one run the board's indices tell: what waited on the board while nobody took it arrives late, and
+// together with what comes behind it.
+double SampleTimeline::ticks_by_index(const SamplePlace& place, const glp_samples& samples,
+                                      std::int64_t arrival_ns) const {
+    if (runs_.empty() || runs_.back().number != place.run || runs_.back().last.index <= 0) {
+        return ticks_by_host(arrival_ns);
+    }
+    const Run& run = runs_.back();
+    const double spacing = static_cast<double>(run.last.ticks) / static_cast<double>(run.last.index);
+    const auto index = static_cast<std::int64_t>(samples.first_index - run.first_index);
+    return spacing * static_cast<double>(index - run.last.index);
+}
+
+std::optional<double> SampleTimeline::since_last_s(std::uint32_t boot, std::uint64_t ticks,
+                                                   HostTime arrival) const {
+    if (boots_.empty() || boots_.back().number != boot || !raw_ticks_ || tick_hz_.value_or(0) == 0) {
+        return std::nullopt;
+    }
+    return static_cast<double>(ticks_since_last(ticks, ticks_by_host(arrival_ns_of(arrival)))) / *tick_hz_;
 }
 
 void SampleTimeline::take_samples(const SamplePlace& place, const glp_samples& samples, HostTime arrival) {
     present_ = place;
-    // A damaged file may claim any time; far from the ends of the type, differences cannot overflow.
-    constexpr std::int64_t far_ns = std::numeric_limits<std::int64_t>::max() / 4;
-    const std::int64_t arrival_ns = std::clamp(arrival.monotonic_ns, -far_ns, far_ns);
+    const std::int64_t arrival_ns = arrival_ns_of(arrival);
     if (boots_.empty() || boots_.back().number != place.boot) {
         if (boots_.size() == runs_kept) { return; }
         Boot boot;
@@ -78,7 +104,8 @@ void SampleTimeline::take_samples(const SamplePlace& place, const glp_samples& s
         boots_.push_back(boot);
         ticks_ = 0;
     } else {
-        const std::int64_t step = ticks_since_last(samples, arrival_ns);
+        const std::int64_t step =
+            ticks_since_last(samples.first_ticks, ticks_by_index(place, samples, arrival_ns));
         if (step > std::numeric_limits<std::int64_t>::max() / 2 - ticks_) { return; }
         ticks_ += step;
     }

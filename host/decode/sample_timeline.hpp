@@ -54,6 +54,10 @@ public:
     // rate. No value for a run that is not known, or without tick_hz.
     std::optional<double> device_time_s(std::uint32_t run, std::uint64_t index, double rate_hz) const;
 
+    // From the first of the last samples until this boot of the board counts `ticks`. No value before there
+    // are any, or without tick_hz.
+    std::optional<double> since_last_s(std::uint32_t boot, std::uint64_t ticks, HostTime arrival) const;
+
     // Whether the first device time of a run is known for good, whatever comes.
     bool settled(std::uint32_t run) const;
 
@@ -93,7 +97,10 @@ private:
         double tail_delay_s() const;
     };
 
-    std::int64_t ticks_since_last(const glp_samples& samples, std::int64_t arrival_ns) const;
+    std::int64_t ticks_since_last(std::uint64_t ticks, double about_ticks) const;
+    double ticks_by_host(std::int64_t arrival_ns) const;
+    double ticks_by_index(const SamplePlace& place, const glp_samples& samples,
+                          std::int64_t arrival_ns) const;
     void keep(Run& run, const Stamp& stamp) const;
     void note_delay(Boot& boot, const Run& run) const;
     const Run* find(std::uint32_t number) const;

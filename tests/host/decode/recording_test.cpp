@@ -334,6 +334,25 @@ TEST(SampleTimeline, FollowsTicksThatGoRound) {
     EXPECT_LT(*recording->stamp_jitter_s, 1e-6);
 }
 
+// A board keeps its oldest frames while nobody takes them: they come late, together with the next ones.
+TEST(SampleTimeline, FramesThatWaitedOnTheBoardAreNoTurnsOfTheTicks) {
+    for (const double stall_s : {2500.0, 9000.0}) {
+        Listening link;
+        link.begin();
+        link.hear_samples(99);
+        link.board.delay_s = stall_s;
+        link.hear_samples(20);
+        link.board.lose_samples(static_cast<std::uint32_t>(stall_s * 1003.0));
+        link.board.delay_s = 0.001;
+        link.hear_samples(100);
+        const auto recording = link.decoder.take_recording("bench");
+        ASSERT_TRUE(recording.ok());
+        EXPECT_NEAR(recording->rate_hz, 1003.0, 1e-4) << stall_s;
+        ASSERT_EQ(recording->dropouts.size(), 1U);
+        EXPECT_NEAR(recording->dropouts[0].at_s, 120 * 16 / 1003.0, 1e-3) << stall_s;
+    }
+}
+
 TEST(SampleTimeline, AsksTheHostHowOftenTicksWentRoundInAPause) {
     Listening link;
     link.begin();
