@@ -168,6 +168,9 @@ std::string verdict(const LoadedCapture& capture) {
     if ((end == FileEnd::damaged && !longer) || capture.stream_bytes_gone > 0) {
         return "damaged: something that was captured is gone";
     }
+    if (!capture.contradictions().empty()) {
+        return "the counters contradict the samples: how much is missing is not certain";
+    }
     if (!samples_complete(capture)) { return "something is missing"; }
     if (longer) { return "nothing is missing; what stands behind the capture's end is no part of it"; }
     if (end == FileEnd::torn_tail) {
@@ -195,7 +198,7 @@ std::string started_utc(const LoadedCapture& capture) {
 
 bool nothing_missing(const LoadedCapture& capture) {
     return samples_complete(capture) && capture.file.blocks.end != FileEnd::damaged &&
-           capture.stream_bytes_gone == 0;
+           capture.stream_bytes_gone == 0 && capture.contradictions_of_writer.empty();
 }
 
 Json check_json(const std::string& path, const LoadedCapture& capture) {
@@ -232,6 +235,7 @@ Json check_json(const std::string& path, const LoadedCapture& capture) {
         {"dropouts", dropouts},
         {"dropouts_unlisted", link.dropouts_unlisted},
         {"stops", stops_json(capture, link)},
+        {"contradictions", capture.contradictions()},
         {"corrupted_by_reason", reasons_json(link)},
         {"lost_on_device",
          {{"samples", link.samples.lost_on_device}, {"frames", link.frames.lost_on_device}}},
@@ -288,6 +292,9 @@ std::string check_text(const std::string& path, const LoadedCapture& capture) {
     }
     if (!link.stops.empty()) {
         text += fmt::format("  {}\n", stops_text(link.stops.size(), stopped_s(capture, link)));
+    }
+    for (const std::string& contradiction : capture.contradictions()) {
+        text += wrapped_text("  contradiction: ", contradiction);
     }
     text += wrapped_text("  ", verdict(capture));
     return text;
@@ -399,6 +406,7 @@ std::vector<LabelledLine> info_lines(const std::string& path, const LoadedCaptur
     }
     line("missing", missing_text(link));
     if (!link.stops.empty()) { line("pause", stops_text(link.stops.size(), stopped_s(capture, link))); }
+    for (const std::string& contradiction : capture.contradictions()) { line("note", contradiction); }
     for (const CaptureMark& mark : capture.marks) { line("mark", mark_text(capture, mark)); }
     line("file",
          fmt::format("{}, {}", format_bytes(capture.file.blocks.bytes_total), end_text(path, capture)));

@@ -106,6 +106,9 @@ Result<TimedRecording> read_capture(const RecordingInput& input) {
     GYROLOG_CHECK(check_gyro(*recording, input));
     const std::string hurt = what_is_wrong_with_the_end(capture, input);
     if (!hurt.empty()) { recording->warnings.push_back(hurt); }
+    for (const std::string& contradiction : capture.contradictions()) {
+        recording->warnings.push_back(contradiction + ": how much is missing is not certain");
+    }
     if (input.samples_most == RecordingInput{}.samples_most) {
         warn_of_missing_ends(*recording, capture.decoder->report(),
                              recording->rate_hz * static_cast<double>(input.samples_per_row));

@@ -14,6 +14,8 @@ struct CaptureCounters {
     std::uint64_t samples_missing = 0;
     std::uint64_t transfers_dropped = 0;  // on the host, for lack of room before the disk
     std::uint64_t bytes_dropped = 0;
+
+    bool operator==(const CaptureCounters&) const = default;
 };
 
 }  // namespace gyrolog

@@ -21,6 +21,16 @@ constexpr std::uint64_t implausible_span = std::uint64_t{1} << 62U;
 
 constexpr std::uint64_t sensor_fifo_bytes = 512;  // of an MPU-9250
 
+// What a sensor makes in so long, if the clocks are no worse than that.
+constexpr double fastest_hz = 33'000.0;  // of an MPU-9250, with its clock's error
+constexpr double slack_s = 10.0;         // of what had waited on its way
+
+std::uint64_t instants_most(std::optional<double> passed_s) {
+    if (!passed_s) { return implausible_jump; }
+    const double instants = fastest_hz * (std::max(*passed_s, 0.0) + slack_s);
+    return static_cast<std::uint64_t>(std::min(instants, static_cast<double>(implausible_jump)));
+}
+
 constexpr std::uint16_t cause_flags =
     glp_flag_sensor_fifo_overflow | glp_flag_bus_error | glp_flag_ring_overflow | glp_flag_data_ready_silent;
 
@@ -48,9 +58,10 @@ std::uint16_t flag_of_event(std::uint16_t code) {
 }
 
 // A counter of the board that wraps. One that went down was started again, which counts nothing.
+bool went_down(std::uint32_t from, std::uint32_t to) { return to - from >= 0x8000'0000U; }
+
 std::uint32_t counted_up(std::uint32_t from, std::uint32_t to) {
-    const std::uint32_t step = to - from;
-    return step < 0x8000'0000U ? step : 0U;
+    return went_down(from, to) ? 0U : to - from;
 }
 
 }  // namespace
@@ -138,14 +149,53 @@ bool LinkAccounts::take_malformed(const glp_frame& frame) {
 
 bool LinkAccounts::take_other(const glp_frame& frame) { return take_number(frame, false); }
 
-bool LinkAccounts::take_status(const glp_frame& frame, const glp_device_status& status) {
+bool LinkAccounts::take_status(const glp_frame& frame, const glp_device_status& status,
+                               std::optional<double> passed_s) {
     if (!take_number(frame, false)) { return false; }
     if (status_lost_frames_) {
         frames_.lost_on_device += counted_up(*status_lost_frames_, status.lost_frames);
+        note_lost_frames();
     }
     status_lost_frames_ = status.lost_frames;
-    if (status.streaming != 0) { tail_ = Tail{status.next_index, pending_max(), status.lost_samples}; }
+    if (status.streaming != 0) {
+        take_tail({status.next_index, pending_max(), status.lost_samples}, passed_s);
+    }
     return true;
+}
+
+// Every frame of this start that came before is known, so the counters begin where they ended.
+bool LinkAccounts::goes_on() const {
+    return in_run_ && frames_missing_ == 0 && !start_told_ && !booted_since_samples_ && !connection_lost_;
+}
+
+void LinkAccounts::take_tail(const Tail& tail, std::optional<double> passed_s) {
+    if (goes_on()) {
+        if (tail.next_index < next_index_ || went_down(lost_samples_, tail.lost_samples)) {
+            note(Contradiction::counted_short);
+            return;
+        }
+        note_lost_samples(grid_lost_ + counted_up(lost_samples_, tail.lost_samples),
+                          grid_missing_ + (tail.next_index - next_index_));
+    }
+    if (in_run_ && tail.next_index > next_index_ && tail.next_index - next_index_ > instants_most(passed_s)) {
+        note(Contradiction::counted_ahead);
+        return;
+    }
+    tail_ = tail;
+}
+
+// In the present grid. A frame that was lost behind the device took samples along that are in no counter, so
+// there may be more room than the lost ones need, but never less.
+void LinkAccounts::note_lost_samples(std::uint64_t lost, std::uint64_t room) {
+    if (lost <= room + grid_excess_) { return; }
+    note(Contradiction::lost_samples, lost - room - grid_excess_);
+    grid_excess_ = lost - room;
+}
+
+void LinkAccounts::note_lost_frames() {
+    const std::uint64_t room = frames_.missing + frames_before_hello_ + frames_.dropped_at_start;
+    std::uint64_t& noted = contradictions_[static_cast<std::size_t>(Contradiction::lost_frames)];
+    if (frames_.lost_on_device > room) { noted = std::max(noted, frames_.lost_on_device - room); }
 }
 
 // Of the instants that have passed, those of a frame that is not full and of the sensor's FIFO are not lost
@@ -155,18 +205,19 @@ std::uint64_t LinkAccounts::pending_max() const {
     return frame_samples_ - 1 + (sample_bytes > 0 ? sensor_fifo_bytes / sample_bytes : 0);
 }
 
-bool LinkAccounts::take_event(const glp_frame& frame, const glp_event& event) {
+bool LinkAccounts::take_event(const glp_frame& frame, const glp_event& event,
+                              std::optional<double> passed_s) {
     const std::uint64_t before_hello = frames_before_hello_;
     if (!take_number(frame, false)) { return false; }
     told_flags_ = static_cast<std::uint16_t>(told_flags_ | flag_of_event(event.code));
     if (event.code == glp_event_started) {
         keep_open(before_hello);
         frames_.dropped_at_start += std::exchange(frames_before_hello_, 0);
-        start_seen_ = true;
+        start_seen_ = start_told_ = true;
         status_lost_frames_ = 0;
     }
     if (event.code == glp_event_stopped) {
-        tail_ = Tail{event.index, 0, static_cast<std::uint32_t>(event.value)};
+        take_tail({event.index, 0, static_cast<std::uint32_t>(event.value)}, passed_s);
     }
     return true;
 }
@@ -178,9 +229,10 @@ void LinkAccounts::keep_open(std::uint64_t before_hello) {
     frames_.missing -= before_hello;
 }
 
-bool LinkAccounts::begins_grid(const glp_frame& frame, const glp_samples& samples) const {
+bool LinkAccounts::begins_grid(const glp_frame& frame, const glp_samples& samples,
+                               std::uint64_t jump_most) const {
     return !in_run_ || booted_since_samples_ || (frame.flags & glp_flag_first_after_start) != 0 ||
-           samples.first_index < next_index_ || samples.first_index - next_index_ >= implausible_jump ||
+           samples.first_index < next_index_ || samples.first_index - next_index_ >= jump_most ||
            samples.first_index - grid_index_ >= implausible_span;
 }
 
@@ -196,34 +248,56 @@ void LinkAccounts::begin_run(std::uint64_t next_index, std::uint32_t lost_sample
     next_index_ = next_index;
     lost_samples_ = lost_samples;
     lost_unplaced_ = 0;
+    grid_lost_ = grid_missing_ = grid_excess_ = 0;
     tail_.reset();
     silent_instants_ = 0;
 }
 
-std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, const glp_samples& samples) {
+// An index that cannot be right where it stands: nothing says how many instants lie before it.
+std::optional<Contradiction> LinkAccounts::misplaced(const glp_frame& frame, const glp_samples& samples,
+                                                     std::uint64_t jump_most) const {
+    if (!in_run_ || booted_since_samples_ || (frame.flags & glp_flag_first_after_start) != 0) {
+        return std::nullopt;
+    }
+    if (samples.first_index < next_index_) {
+        return goes_on() ? std::optional(Contradiction::index_again) : std::nullopt;
+    }
+    const bool is_ahead = samples.first_index - next_index_ >= jump_most ||
+                          samples.first_index - grid_index_ >= implausible_span;
+    return is_ahead ? std::optional(Contradiction::index_ahead) : std::nullopt;
+}
+
+void LinkAccounts::begin_grid(const glp_frame& frame, const glp_samples& samples, bool is_misplaced) {
+    const bool start_was_in_stream =
+        in_run_ || start_seen_ || (frame.flags & glp_flag_first_after_start) != 0;
+    const bool from_zero = start_was_in_stream && samples.first_index < implausible_jump && !is_misplaced;
+    const bool came_back = connection_lost_ || booted_since_samples_;
+    const bool joins = in_run_ && (came_back || (!is_misplaced && is_restart(frame, samples, next_index_)));
+    LinkJoin next{.run_before = run_, .end_index = next_index_};
+    // Before the first samples the gap is theirs: their index counts it.
+    if (in_run_) {
+        for (const LinkDropout& part : tail_gap()) { next.end_index += part.samples; }
+        enter(tail_gap());
+    }
+    begin_run(from_zero ? 0 : samples.first_index, from_zero ? 0 : samples.lost_samples);
+    if (!joins) { return; }
+    next.run_after = run_;
+    next.first_index = next_index_;
+    next.cause = booted_since_samples_ ? DropoutCause::reset
+                 : connection_lost_    ? DropoutCause::unplugged
+                                       : DropoutCause::stopped;
+    join(next);
+}
+
+std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, const glp_samples& samples,
+                                                      std::optional<double> passed_s) {
     if (!take_number(frame, false)) { return std::nullopt; }
 
-    if (begins_grid(frame, samples)) {
-        const bool start_was_in_stream =
-            in_run_ || start_seen_ || (frame.flags & glp_flag_first_after_start) != 0;
-        const bool from_zero = start_was_in_stream && samples.first_index < implausible_jump;
-        const bool came_back = connection_lost_ || booted_since_samples_;
-        const bool joins = in_run_ && (came_back || is_restart(frame, samples, next_index_));
-        LinkJoin next{.run_before = run_, .end_index = next_index_};
-        // Before the first samples the gap is theirs: their index counts it.
-        if (in_run_) {
-            for (const LinkDropout& part : tail_gap()) { next.end_index += part.samples; }
-            enter(tail_gap());
-        }
-        begin_run(from_zero ? 0 : samples.first_index, from_zero ? 0 : samples.lost_samples);
-        if (joins) {
-            next.run_after = run_;
-            next.first_index = next_index_;
-            next.cause = booted_since_samples_ ? DropoutCause::reset
-                         : connection_lost_    ? DropoutCause::unplugged
-                                               : DropoutCause::stopped;
-            join(next);
-        }
+    const std::uint64_t jump_most = instants_most(passed_s);
+    const std::optional<Contradiction> misplacement = misplaced(frame, samples, jump_most);
+    if (misplacement) { note(*misplacement); }
+    if (begins_grid(frame, samples, jump_most)) {
+        begin_grid(frame, samples, misplacement.has_value());
     } else if (samples.config_generation != generation_ || samples.layout != layout_ ||
                (frame.flags & glp_flag_time_discontinuity) != 0) {
         ++run_;
@@ -234,9 +308,13 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
 
     const std::uint64_t missing = samples.first_index - next_index_;
     const std::uint32_t lost = counted_up(lost_samples_, samples.lost_samples);
+    if (went_down(lost_samples_, samples.lost_samples)) { note(Contradiction::counted_short); }
     lost_samples_ = samples.lost_samples;
     samples_.lost_on_device += lost;
     lost_unplaced_ += lost;
+    grid_lost_ += lost;
+    grid_missing_ += missing;
+    note_lost_samples(grid_lost_, grid_missing_);
     if (missing > 0) {
         enter(split(missing, lost_unplaced_, frame.flags));
         lost_unplaced_ -= std::min(missing, lost_unplaced_);
@@ -245,7 +323,7 @@ std::optional<SamplePlace> LinkAccounts::take_samples(const glp_frame& frame, co
     next_index_ = samples.first_index + samples.count;
     frames_missing_ = 0;
     told_flags_ = 0;
-    booted_since_samples_ = false;
+    booted_since_samples_ = start_told_ = false;
     connection_lost_ = false;
     tail_.reset();
     silent_instants_ = 0;
@@ -319,6 +397,7 @@ LinkCounts LinkAccounts::counts(const FrameDecoder& decoder) const {
     }
     counts.frames.good = intact_ - frames_.duplicated - malformed_;
     counts.samples = samples_;
+    counts.contradictions = contradictions_;
     counts.dropouts_counted = dropouts_.size() + joins_.size() + dropouts_unlisted_;
     for (const LinkDropout& part : tail_gap()) {
         counts.samples.missing += part.samples;

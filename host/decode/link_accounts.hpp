@@ -9,6 +9,9 @@
 //   - At the end of a run the STATUS and EVENT frames tell how far the board had counted.
 // Across a reset of the board (another boot id, or numbers that begin again) and across a lost connection the
 // numbers prove nothing: such a join is told with its two ends, and the clocks say what lies between.
+//
+// Counters that cannot be true of what came are counted as contradictions, and nothing is concluded from
+// them.
 #pragma once
 
 #include <algorithm>
@@ -18,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/decode/contradiction.hpp"
 #include "host/decode/frame_decoder.hpp"
 #include "host/decode/protocol.hpp"
 
@@ -90,6 +94,7 @@ struct LinkCounts {
     std::uint64_t boots = 0;  // of the board, as far as the stream shows
     std::uint64_t runs = 0;
     std::uint64_t samples_frozen = 0;  // of the good ones: one reading again and again
+    Contradictions contradictions{};
 
     // Sampling instants from the first one to the last.
     std::uint64_t instants() const { return samples.good + samples.missing + samples_in_stops; }
@@ -108,7 +113,8 @@ struct LinkReport : LinkCounts {
     std::uint64_t samples_missing_at_end = 0;
 
     bool complete() const {
-        return frames.missing == 0 && samples.missing == 0 && joins.empty() && samples_frozen == 0;
+        return frames.missing == 0 && samples.missing == 0 && joins.empty() && samples_frozen == 0 &&
+               !any(contradictions);
     }
 };
 
@@ -120,17 +126,23 @@ struct SamplePlace {
 };
 
 // Each take_ call is given one frame, in the order of arrival. False or no value means: this frame is a
-// duplicate and must be used for nothing.
+// duplicate and must be used for nothing. `passed_s`: since the last SAMPLES, where the clocks tell.
 class LinkAccounts {
 public:
-    // What comes next comes over another connection.
-    void begin_connection() { connection_lost_ = numbers_unsure_ = true; }
+    // What comes next comes over another connection, and a start of the board begins its counters anew.
+    void begin_connection() {
+        connection_lost_ = numbers_unsure_ = true;
+        status_lost_frames_.reset();
+    }
 
     bool take_hello(const glp_frame& frame, const glp_hello& hello);
     bool take_config(const glp_frame& frame, const glp_config& config);
-    std::optional<SamplePlace> take_samples(const glp_frame& frame, const glp_samples& samples);
-    bool take_status(const glp_frame& frame, const glp_device_status& status);
-    bool take_event(const glp_frame& frame, const glp_event& event);
+    std::optional<SamplePlace> take_samples(const glp_frame& frame, const glp_samples& samples,
+                                            std::optional<double> passed_s = std::nullopt);
+    bool take_status(const glp_frame& frame, const glp_device_status& status,
+                     std::optional<double> passed_s = std::nullopt);
+    bool take_event(const glp_frame& frame, const glp_event& event,
+                    std::optional<double> passed_s = std::nullopt);
     bool take_malformed(const glp_frame& frame);
     bool take_other(const glp_frame& frame);  // replies and unknown types
     // So many instants have passed since the last sample by the board's clock (SampleLiveness); 0: none.
@@ -157,12 +169,22 @@ private:
     void keep_open(std::uint64_t before_hello);
     std::uint64_t pending_max() const;
     void begin_run(std::uint64_t next_index, std::uint32_t lost_samples);
-    bool begins_grid(const glp_frame& frame, const glp_samples& samples) const;
+    bool begins_grid(const glp_frame& frame, const glp_samples& samples, std::uint64_t jump_most) const;
+    std::optional<Contradiction> misplaced(const glp_frame& frame, const glp_samples& samples,
+                                           std::uint64_t jump_most) const;
+    void begin_grid(const glp_frame& frame, const glp_samples& samples, bool is_misplaced);
     std::vector<LinkDropout> split(std::uint64_t missing, std::uint64_t lost, std::uint16_t flags) const;
     std::vector<LinkDropout> told_gap() const;
     std::vector<LinkDropout> tail_gap() const;
     void enter(const std::vector<LinkDropout>& gap);
     void join(const LinkJoin& next);
+    bool goes_on() const;
+    void note(Contradiction kind, std::uint64_t count = 1) {
+        contradictions_[static_cast<std::size_t>(kind)] += count;
+    }
+    void note_lost_samples(std::uint64_t lost, std::uint64_t room);
+    void note_lost_frames();
+    void take_tail(const Tail& tail, std::optional<double> passed_s);
     static bool is_restart(const glp_frame& frame, const glp_samples& samples, std::uint64_t next_index);
 
     FrameAccounts frames_;
@@ -195,6 +217,11 @@ private:
     std::uint64_t frame_samples_ = 1;  // of a full frame, as configured or seen
     std::optional<Tail> tail_;
     std::uint64_t silent_instants_ = 0;
+    Contradictions contradictions_{};
+    bool start_told_ = false;         // since the last SAMPLES
+    std::uint64_t grid_lost_ = 0;     // in the present grid, as the board counts them in SAMPLES
+    std::uint64_t grid_missing_ = 0;  // in the present grid, by its indices
+    std::uint64_t grid_excess_ = 0;   // in the present grid, of the lost ones: what has no room
     std::optional<std::uint32_t> status_lost_frames_;
 };
 

@@ -306,6 +306,39 @@ void RecordingBuilder::enter_dropouts(const LinkReport& link, const std::vector<
     }
 }
 
+// What a board says that contradicts itself, and clocks that do, leave dropouts that are not the holes.
+void RecordingBuilder::fit_dropouts_to_holes(const LinkReport& link, Recording& recording) {
+    const auto instant = [&](const Dropout& dropout) {
+        return static_cast<std::int64_t>(std::llround(dropout.at_s * recording.rate_hz));
+    };
+    std::vector<Dropout> fitted;
+    bool differ = false;
+    auto next = recording.dropouts.cbegin();
+    for (std::size_t i = 1; i < recording.segments.size(); ++i) {
+        const Segment& before = recording.segments[i - 1];
+        const std::int64_t begin = before.first_index + static_cast<std::int64_t>(before.count);
+        const std::int64_t end = recording.segments[i].first_index;
+        std::int64_t left = end - begin;
+        for (; next != recording.dropouts.cend() && instant(*next) <= end; ++next) {
+            const bool inside = instant(*next) >= begin;
+            const std::int64_t samples = inside ? std::min(next->samples, left) : 0;
+            differ = differ || samples != next->samples;
+            if (samples == 0 && (!inside || next->samples > 0)) { continue; }
+            fitted.push_back(*next);
+            fitted.back().samples = samples;
+            left -= samples;
+        }
+        if (left == 0 || link.dropouts_unlisted > 0) { continue; }
+        differ = true;
+        fitted.push_back({static_cast<double>(end - left) / recording.rate_hz, left, "time_stamps"});
+    }
+    differ = differ || next != recording.dropouts.cend();
+    if (!differ) { return; }
+    recording.dropouts = std::move(fitted);
+    recording.warnings.emplace_back(
+        "what is told of dropouts does not add up to the holes between the samples: the holes count");
+}
+
 void RecordingBuilder::set_rate(const Stretch& stretch, const SampleTimeline& timeline,
                                 Recording& recording) {
     const double nominal_hz = stretch.config->rate_mHz * 1e-3;
@@ -343,6 +376,7 @@ Result<Recording> RecordingBuilder::finish(std::string name, const SampleTimelin
     set_rate(stretch, timeline, recording);
     if (recording.rate_hz <= 0.0) { return Error{ErrorCode::malformed, "the board says that its rate is 0"}; }
     enter_dropouts(link, place_on_grid(stretch.pieces, timeline, recording), recording);
+    if (samples_per_row_ == 1) { fit_dropouts_to_holes(link, recording); }
     const Piece& first = stretch.pieces.front();
     const auto device_s = timeline.device_time_s(first.run, first.first_index, recording.rate_hz);
     const auto clock = timeline.host_clock();

@@ -109,6 +109,7 @@ private:
     void append(const SamplePlace& place, const glp_samples& samples);
     void append_means(const SamplePlace& place, const glp_samples& samples);
     void enter_rows(const SamplePlace& place, std::uint64_t first_index, std::size_t rows);
+    static void fit_dropouts_to_holes(const LinkReport& link, Recording& recording);
     static void set_rate(const Stretch& stretch, const SampleTimeline& timeline, Recording& recording);
     std::vector<RunOrigin> place_on_grid(const std::vector<Piece>& pieces, const SampleTimeline& timeline,
                                          Recording& recording) const;

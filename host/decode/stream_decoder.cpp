@@ -163,7 +163,8 @@ void StreamDecoder::on_config(const ReceivedFrame& frame, const glp_config& conf
 }
 
 void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& samples) {
-    const std::optional<SamplePlace> place = accounts_.take_samples(frame.frame, samples);
+    const std::optional<SamplePlace> place =
+        accounts_.take_samples(frame.frame, samples, since_samples_s(samples.first_ticks, frame));
     if (!place) { return; }
     run_ = place->run;
     timeline_.take_samples(*place, samples, frame.arrival);
@@ -177,7 +178,7 @@ void StreamDecoder::on_samples(const ReceivedFrame& frame, const glp_samples& sa
 }
 
 void StreamDecoder::on_status(const ReceivedFrame& frame, const glp_device_status& status) {
-    if (!accounts_.take_status(frame.frame, status)) { return; }
+    if (!accounts_.take_status(frame.frame, status, since_samples_s(status.ticks, frame))) { return; }
     status_ = status;
     liveness_.take_status(status);
     note_silence();
@@ -185,10 +186,14 @@ void StreamDecoder::on_status(const ReceivedFrame& frame, const glp_device_statu
 }
 
 void StreamDecoder::on_event(const ReceivedFrame& frame, const glp_event& event) {
-    if (!accounts_.take_event(frame.frame, event)) { return; }
+    if (!accounts_.take_event(frame.frame, event, since_samples_s(event.ticks, frame))) { return; }
     liveness_.take_event(event);
     note_silence();
     if (options_.observer != nullptr) { options_.observer->on_event(frame, event); }
+}
+
+std::optional<double> StreamDecoder::since_samples_s(std::uint64_t ticks, const ReceivedFrame& frame) const {
+    return timeline_.since_last_s(accounts_.boot(), ticks, frame.arrival);
 }
 
 void StreamDecoder::note_silence() {

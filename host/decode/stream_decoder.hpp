@@ -100,6 +100,7 @@ private:
     std::uint64_t samples_in_all(const std::vector<LinkJoin>& joins, const Pauses& pauses) const;
     void settle(const std::vector<LinkJoin>& joins, Pauses& pauses) const;
     void complete(LinkCounts& counts) const;
+    std::optional<double> since_samples_s(std::uint64_t ticks, const ReceivedFrame& frame) const;
     void note_silence();
 
     StreamDecoderOptions options_;

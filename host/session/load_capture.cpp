@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
 #include <string_view>
 #include <utility>
 
+#include "host/base/counted.hpp"
 #include "host/capture/segment_files.hpp"
 
 namespace gyrolog {
@@ -53,15 +55,19 @@ public:
         std::uint64_t stream_bytes = 0;
         std::uint64_t gone = 0;
         const auto hold_against = [&](const std::optional<CaptureCheckpoint>& checkpoint) {
-            if (checkpoint && checkpoint->stream_bytes > stream_bytes) {
+            if (!checkpoint) { return; }
+            if (checkpoint->stream_bytes > stream_bytes) {
                 gone = std::max(gone, checkpoint->stream_bytes - stream_bytes);
             }
+            hold_counters(*checkpoint, stream_bytes);
         };
+        follow(reader.segment());
         while (!enough()) {
             on_stage_("read");
             GYROLOG_TRY(const std::optional<CapturedTransfer> captured, reader.next());
             hold_against(reader.checkpoint());
             if (!captured) { break; }
+            follow(reader.segment());
             if (captured->transfer.carries_stream()) { stream_bytes += captured->transfer.data.size(); }
             on_bytes_(captured->transfer.data.size());
             on_stage_("decode");
@@ -86,6 +92,31 @@ private:
         present_ = segment;
     }
 
+    // Whether all files of the capture have been read so far: the counters are of all of them.
+    void follow(const std::optional<CaptureSegment>& segment) {
+        if (!segment || segment->number == part_) { return; }
+        is_without_gap_ = is_without_gap_ && segment->number == part_ + 1;
+        part_ = segment->number;
+    }
+
+    // The writer decodes what it writes: up to a checkpoint it counts what is decoded here. Those with which
+    // a file is closed where another one follows are of the checkpoint before.
+    void hold_counters(const CaptureCheckpoint& checkpoint, std::uint64_t stream_bytes) {
+        if (!is_without_gap_ || checkpoint.counters == held_) { return; }
+        held_ = checkpoint.counters;
+        if (checkpoint.stream_bytes > stream_bytes) { return; }
+        const LinkCounts link = loaded_.decoder->counts();
+        const auto compare = [&](std::uint64_t told, std::uint64_t found, const char* what) {
+            if (told == found || !contradicted_.insert(what).second) { return; }
+            loaded_.contradictions_of_writer.push_back("the writer counted " + counted(told, what) +
+                                                       " up to a checkpoint, and " + format_count(found) +
+                                                       (found == 1 ? " is there" : " are there"));
+        };
+        compare(checkpoint.stream_bytes, stream_bytes, "byte");
+        compare(held_.frames, link.frames.good, "frame");
+        compare(held_.samples, link.samples.good, "sample");
+    }
+
     void take(const Transfer& transfer) {
         if (!any_data_ && transfer.carries_stream() && !transfer.data.empty()) {
             loaded_.first_data = transfer.time;
@@ -100,9 +131,19 @@ private:
     std::function<void(std::uint64_t)> on_bytes_;  // of each transfer
     bool any_data_ = false;
     std::optional<CaptureSegment> present_;
+    std::uint64_t part_ = 0;
+    bool is_without_gap_ = true;
+    CaptureCounters held_;
+    std::set<std::string_view> contradicted_;
 };
 
 }  // namespace
+
+std::vector<std::string> LoadedCapture::contradictions() const {
+    std::vector<std::string> all = sentences(decoder->counts().contradictions);
+    all.insert(all.end(), contradictions_of_writer.begin(), contradictions_of_writer.end());
+    return all;
+}
 
 Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples, const StageObserver& on_stage,
                                    const KeptRows& kept, const ShareObserver& on_share) {
@@ -136,6 +177,9 @@ Result<LoadedCapture> load_capture(const std::string& path, bool keep_samples, c
                          "': it holds no whole block: it is no capture, or its writer died before it had "
                          "written one"};
     }
+    const bool is_whole = loaded.file.blocks.damaged_ranges == 0 && loaded.stream_bytes_gone == 0 &&
+                          loaded.file.truncated_transfers == 0;
+    if (!is_whole) { loaded.contradictions_of_writer.clear(); }
     return loaded;
 }
 

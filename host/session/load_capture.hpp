@@ -24,8 +24,14 @@ struct LoadedCapture {
     std::vector<CaptureMark> marks;                    // in the order of the files
     // By the writer's own checkpoints: bytes of the stream that it put into the files and that are not there.
     std::uint64_t stream_bytes_gone = 0;
+    // How the writer's counters at its checkpoints contradict what was decoded up to there; empty where
+    // something of the stream is gone. The first that was found of each kind.
+    std::vector<std::string> contradictions_of_writer;
     HostTime first_data;  // arrival of the first stream bytes
     std::unique_ptr<StreamDecoder> decoder;
+
+    // Those of the board (contradiction.hpp), and of the writer.
+    std::vector<std::string> contradictions() const;
 
     // Whether the program that wrote the last file also closed it; true where a foreign program cannot have
     // said so. Of a capture that was read to its end.

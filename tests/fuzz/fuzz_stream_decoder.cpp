@@ -77,6 +77,10 @@ void require_recording(StreamDecoder& decoder) {
     }
     GYROLOG_REQUIRE(rows == recording->rows());
     for (const Column& column : recording->columns) { GYROLOG_REQUIRE(column.size() == rows); }
+    if (recording->samples_per_row > 1) { return; }
+    std::int64_t missing = 0;
+    for (const Dropout& dropout : recording->dropouts) { missing += dropout.samples; }
+    GYROLOG_REQUIRE(missing == recording->missing_samples());
 }
 
 }  // namespace

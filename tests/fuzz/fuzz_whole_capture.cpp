@@ -21,6 +21,10 @@ void check_accounts(const LoadedCapture& capture, std::size_t file_bytes) {
     const LinkReport report = capture.decoder->report();
     GYROLOG_REQUIRE(report.bytes.balanced());
     GYROLOG_REQUIRE(report.bytes.total <= capture.file.stream_bytes);
+    for (const std::string& contradiction : capture.contradictions()) {
+        GYROLOG_REQUIRE(!contradiction.empty());
+    }
+    GYROLOG_REQUIRE(!report.complete() || sentences(report.contradictions).empty());
     for (const Dropout& dropout : capture.decoder->timed(report.dropouts)) {
         GYROLOG_REQUIRE(std::isfinite(dropout.at_s));
     }
@@ -38,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_accounts(*capture, size);
     const auto recording = capture->decoder->take_recording("fuzz");
     if (recording.ok()) {
-        check_grid(*recording);
+        check_promises(*recording);
     } else {
         GYROLOG_REQUIRE(!recording.error().message.empty());
     }

@@ -9,8 +9,6 @@
 
 namespace gyrolog {
 
-// Also of a stream that says anything: what its dropouts count there need not be the holes that its clocks
-// show.
 inline void check_grid(const Recording& recording) {
     GYROLOG_REQUIRE(recording.rate_hz > 0.0 && std::isfinite(recording.rate_hz));
     GYROLOG_REQUIRE(recording.rows() > 0);
