@@ -14,11 +14,20 @@ struct MotionRefusalOptions {
     // Of the rows: what moves for less is a touch, as a disturbance is (DisturbanceOptions::together_share).
     // The report warns of it.
     double touched_most = DisturbanceOptions().together_share;
+    // Of an accelerometer at rest the mean over `mean_s` stays nearer to its median than this, which is a
+    // tilt of six degrees. Vibration is no motion: it has no mean.
+    double rest_most_g = 0.1;
+    double mean_s = 0.25;
 };
 
 // Error: failed where the report is of a recording in motion (AnalysisReport::is_of_motion()), with what to
 // do. `result` is what is not made then: "a model".
 Status refuse_motion(const AnalysisReport& report, const Recording& recording, const std::string& path,
                      const std::string& result, const MotionRefusalOptions& options = {});
+
+// Error: failed where an accelerometer, presented as a gyro (accelerometer_as_gyro.hpp), was turned or moved
+// for longer than a touch: nothing says what it should have shown then.
+Status refuse_moving_accelerometer(const Recording& as_gyro, const std::string& path,
+                                   const MotionRefusalOptions& options = {});
 
 }  // namespace gyrolog

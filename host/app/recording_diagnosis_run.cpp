@@ -23,6 +23,7 @@
 #include "host/app/diagnosis_input.hpp"
 #include "host/app/diagnosis_output.hpp"
 #include "host/app/figure_file.hpp"
+#include "host/app/motion_refusal.hpp"
 #include "host/app/output_paths.hpp"
 #include "host/app/progress_line.hpp"
 #include "host/app/quantity.hpp"
@@ -198,6 +199,31 @@ Result<std::vector<DescribedEffect>> read_questions(const RecordingDiagnosisRequ
     return questions;
 }
 
+RecordingInput input_of(const RecordingDiagnosisRequest& request, SensorKind sensor) {
+    RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
+    input.lsb_g = request.lsb_g;
+    input.sensor = sensor;
+    input.samples_per_row = request.average;
+    input.part = request.part;
+    input.text = request.text;
+    return input;
+}
+
+Status check_rest(const DiagnosisInput& read, const RecordingInput& input) {
+    if (input.sensor != SensorKind::accelerometer) { return {}; }
+    for (const auto& recording : {read.samples, read.means}) {
+        if (recording != nullptr) { GYROLOG_CHECK(refuse_moving_accelerometer(*recording, input.path)); }
+    }
+    return {};
+}
+
+// Before the gyro is diagnosed for minutes.
+Status check_accelerometer(const RecordingDiagnosisRequest& request) {
+    const RecordingInput input = input_of(request, SensorKind::accelerometer);
+    GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
+    return check_rest(read, input);
+}
+
 // `source`: the model; null: one of the recording's own.
 Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisRequest& request,
                                 const ModelSource* source, SensorKind sensor) {
@@ -210,13 +236,9 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
         whole = source->file.model;
         GYROLOG_TRY(file, model_of_sensor(source->file, sensor, request.model_path));
     }
-    RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
-    input.lsb_g = request.lsb_g;
-    input.sensor = sensor;
-    input.samples_per_row = request.average;
-    input.part = request.part;
-    input.text = request.text;
+    RecordingInput input = input_of(request, sensor);
     GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
+    GYROLOG_CHECK(check_rest(read, input));
     if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, sensor, request.recording_path)); }
     complete_from(*read.samples, file);
     whole.rate_hz = file.model.rate_hz;
@@ -225,6 +247,7 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
         input.path = request.holdout_path;
         input.part = {};
         GYROLOG_TRY(second, read_for_diagnosis(input, read));
+        GYROLOG_CHECK(check_rest(second, input));
     }
     std::optional<ProgressLine> progress(std::in_place, console);
     DiagnosisOptions options = options_of(*progress, request);
@@ -297,6 +320,9 @@ ExitCode diagnose_recording_to_files(Console& console, const RecordingDiagnosisR
     const auto corrected = corrected_output(request.model_out_path, source);
     if (!corrected.ok()) { return fail(corrected.error()); }
     Diagnoses diagnoses;
+    if (request.sensors == Sensors::all) {
+        if (const Status fine = check_accelerometer(request); !fine.ok()) { return fail(fine.error()); }
+    }
     for (const SensorKind sensor : {SensorKind::gyro, SensorKind::accelerometer}) {
         if (!includes(request.sensors, sensor)) { continue; }
         Result<Diagnosis> diagnosis = diagnose_with(console, request, source, sensor);

@@ -135,6 +135,37 @@ TEST_F(AccelerometerCommands, DiagnoseTakesAPlainModelOfTheRecordingsOwn) {
     EXPECT_NEAR(written->accelerometer->axes[2].noise.N_rad_per_sqrt_s, 150e-6 * g, 30e-6 * g);
 }
 
+// Motion of an accelerometer would be explained, cause after cause, for a quarter of an hour.
+TEST_F(AccelerometerCommands, DiagnoseRefusesOneThatWasTurned) {
+    SimulationRequest request;
+    request.samples = 12'000;
+    Recording turned = simulate_recording(six_axes(), request);
+    for (Column& column : turned.columns) {
+        std::vector<double> values = column.values();
+        for (std::size_t i = 4000; i < 8000; ++i) {
+            if (column.name == "ax") { values[i] += 0.3 * g; }
+            if (column.name == "gy" && (i < 4300 || i >= 7700)) { values[i] += i < 4300 ? 0.1 : -0.1; }
+        }
+        if (column.name == "ax" || column.name == "gy") {
+            column = Column{column.name, column.unit, std::move(values)};
+        }
+    }
+    ASSERT_TRUE(write_recording_csv(turned, recording).ok());
+    for (const char* sensor : {"accelerometer", "all"}) {
+        for (const std::vector<std::string>& of : {std::vector<std::string>{"--auto"}, {"--model", model}}) {
+            std::vector<std::string> line = {"diagnose", recording, "--sensor", sensor, "--json", "-"};
+            line.insert(line.end(), of.begin(), of.end());
+            ASSERT_EQ(run(line), ExitCode::failed) << err.str();
+            EXPECT_THAT(err.str(), HasSubstr("an accelerometer is diagnosed at rest only, and for 33 % of "
+                                             "the recording it is turned or moved by more than 0.1 g"));
+        }
+    }
+    ASSERT_EQ(run({"diagnose", recording, "--sensor", "accelerometer", "--auto", "--still", "auto", "--json",
+                   "-", "--simulations", "20"}),
+              ExitCode::ok)
+        << err.str();
+}
+
 TEST_F(AccelerometerCommands, CompareSaysByHowMuchTheSimulationIsTooQuiet) {
     write_recording_of(six_axes());
     ASSERT_EQ(run({"compare", recording, model, "--sensor", "accelerometer"}), ExitCode::ok) << err.str();
