@@ -55,6 +55,7 @@ void on_stop_signal(int number) {
 
 void on_crash(int number) {
     give_terminal_back();
+    remove_unfinished_files();
     restore_ports();
     end_by(number);
 }

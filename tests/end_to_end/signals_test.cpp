@@ -156,6 +156,23 @@ TEST_F(Signals, OfLimitsAndTimersAreTidyToo) {
     }
 }
 
+// Ctrl-\ ends everything at once, as a crash does. A capture is there as far as it was written.
+TEST_F(Signals, AQuitLeavesNoPartOfAFile) {
+    for (const LongCommand& command : commands()) {
+        const std::string what = command.arguments[0] + " to " + command.leaves;
+        const ProgramResult result =
+            run_gyrolog_and_signal(command.arguments, milliseconds(command.interrupted_after_ms), SIGQUIT);
+        ASSERT_NE(result.signalled_ns, 0) << what << ": it has too little to do for this test";
+        EXPECT_LE(seconds_since(result.signalled_ns), at_once_s) << what;
+        EXPECT_EQ(result.exit_code, 128 + SIGQUIT) << what << '\n' << result.err;
+        for (const std::string& name : names()) {
+            EXPECT_TRUE(name.ends_with(".pcapng")) << what << " left " << name;
+            EXPECT_EQ(run_gyrolog({"check", folder.path(name)}).exit_code, 0) << what;
+            fs::remove(folder.path(name));
+        }
+    }
+}
+
 // The bare program's first Ctrl-C ends the capture. One in the analysis that follows ends that, and the
 // capture stays.
 TEST_F(Signals, CtrlCInTheAnalysisAfterACaptureEndsIt) {
