@@ -366,6 +366,20 @@ Status write_results(Console& console, const Request& request, const DenoiseRun&
     return results.finish();
 }
 
+// What one unit says twice is no second opinion.
+Status check_units(const std::vector<std::string>& paths) {
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (!same_file(paths[j], paths[i])) { continue; }
+            return invalid_argument(
+                fmt::format("'{}' and '{}' are the same recording: each unit of an array "
+                            "has its own",
+                            paths[j], paths[i]));
+        }
+    }
+    return {};
+}
+
 ExitCode denoise_command(Console& console, const Request& request) {
     const auto fail = [&](const Error& error) { return report_error(console, "denoise", error); };
     const Status named = check_ending({"--output", request.output}, "a denoised recording", text_endings);
@@ -379,6 +393,7 @@ ExitCode denoise_command(Console& console, const Request& request) {
     const NamedPath outputs[] = {
         {"--output", request.output}, {"--json", request.json_path}, {"--plot", request.plot_path}};
     if (const Status fine = check_output_paths(read, outputs); !fine.ok()) { return fail(fine.error()); }
+    if (const Status units = check_units(request.input.paths); !units.ok()) { return fail(units.error()); }
     DenoiseRun run(request);
     if (const Status done = run.run(console); !done.ok()) { return fail(done.error()); }
     const Status written = write_results(console, request, run);

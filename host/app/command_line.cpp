@@ -91,7 +91,7 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
 
 // The parser's own words for a value that is missing, or is none of a few, said so that one can act on them.
 std::string plain_words(const std::string& problem) {
-    static const std::regex missing(": 1 required (.*?)(:\\{.*\\})? missing$");
+    static const std::regex missing(": 1 required (.*?)(:DIR|:\\{.*\\})? missing$");
     static const std::regex none_of(": (.*) not in \\{(.*)\\}$");
     std::smatch found;
     if (std::regex_search(problem, found, missing)) {

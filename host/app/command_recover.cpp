@@ -48,6 +48,9 @@ ExitCode recover(Console& console, const RecoverOptions& options) {
     if (const Status fine = check_output_paths(read, paths); !fine.ok()) {
         return report_error(console, "recover", fine.error());
     }
+    if (const Status named = check_ending(paths[0], "a capture", capture_endings); !named.ok()) {
+        return report_error(console, "recover", named.error());
+    }
     const auto report = recover_capture(options.damaged, options.recovered);
     if (!report.ok()) { return report_error(console, "recover", report.error()); }
     if (report->header_rewritten) {

@@ -13,6 +13,7 @@
 #include "host/app/recording_input.hpp"
 #include "host/app/result_output.hpp"
 #include "host/app/simulation_run.hpp"
+#include "host/base/byte_size.hpp"
 #include "host/base/counted.hpp"
 #include "host/capture/append_file.hpp"
 #include "host/formats/effect_catalogue.hpp"
@@ -107,8 +108,8 @@ Status check_room(const std::string& path, double bytes) {
     const auto free_bytes = computers_disk().free_bytes(path);
     if (other || !free_bytes.ok() || bytes <= static_cast<double>(*free_bytes)) { return {}; }
     return Error{ErrorCode::disk_full,
-                 fmt::format("write '{}': it takes about {:.3g} GB, and its disk has {:.3g} GB left", path,
-                             bytes * 1e-9, static_cast<double>(*free_bytes) * 1e-9)};
+                 fmt::format("write '{}': it takes about {}, and its disk has {} left", path,
+                             format_bytes(static_cast<std::uint64_t>(bytes)), format_bytes(*free_bytes))};
 }
 
 // The model is of one gyro with three axes, whatever the recording has.

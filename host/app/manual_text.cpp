@@ -189,6 +189,9 @@ at rest: its first 900 000 samples one by one for what is fast, and all of it in
 for what is slow. One report says what both found. 24 h at 1 kHz take less than 1 GB. Of a recording
 in motion the beginning is diagnosed. `--average 10` looks at means of ten samples only.
 
+`--sensor accelerometer` holds the accelerometer at rest against the model: a recording in which it
+is turned or moved is refused, and `--still auto` takes the longest part at rest of one.
+
 If the reference is an orientation (`ref_qw` ... `ref_qz`), its rates are far noisier than the
 sensor. The sensor's noise is then judged at its longest rest, and how it answers to the motion in
 means of 50 ms. If it is a rate (`ref_x_dps` ...) and the model has no `ref_noise_dps`, its noise is

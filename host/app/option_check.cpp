@@ -48,7 +48,7 @@ CLI::Validator understood_or_none(Result<Number> (*parse)(std::string_view)) {
     return {[parse](const std::string& text) -> std::string {
                 if (text == "0") { return ""; }
                 const auto parsed = parse(text);
-                return parsed.ok() ? "" : parsed.error().message + "; or 0";
+                return parsed.ok() ? "" : parsed.error().message + ", or 0";
             },
             ""};
 }

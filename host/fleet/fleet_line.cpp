@@ -268,7 +268,10 @@ Result<std::vector<FleetLine>> read_fleet_lines(const std::string& path) {
 
 Result<std::vector<std::string>> read_name_list(const std::string& path) {
     std::vector<std::string> names;
-    const Status read = each_line(path, [&](std::string_view text, std::size_t /*number*/) -> Status {
+    const Status read = each_line(path, [&](std::string_view text, std::size_t number) -> Status {
+        if (text.find('\0') != std::string_view::npos) {
+            return malformed(fmt::format("line {}: this is no text: names stand in it one a line", number));
+        }
         const std::size_t begin = text.find_first_not_of(" \t");
         const std::size_t end = text.find_last_not_of(" \t");
         names.emplace_back(text.substr(begin, end - begin + 1));

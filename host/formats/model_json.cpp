@@ -14,6 +14,7 @@
 #include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/recorded_converter.hpp"
+#include "host/base/byte_size.hpp"
 #include "host/base/file_output.hpp"
 #include "host/base/nearest_name.hpp"
 #include "host/base/printable.hpp"
@@ -597,8 +598,9 @@ Result<std::string> read_model_text(const std::string& path, const std::string& 
         }
         text.append(*piece);
         if (text.size() > input_limits.json_bytes_most) {
-            return Error{ErrorCode::malformed, fmt::format("{}: longer than {} bytes: no {}", reading,
-                                                           input_limits.json_bytes_most, called)};
+            return Error{ErrorCode::malformed,
+                         fmt::format("{}: it is longer than {}, and no {} is", reading,
+                                     format_bytes(input_limits.json_bytes_most), called)};
         }
     }
     return in_context(reading, reader.error());

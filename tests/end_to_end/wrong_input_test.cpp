@@ -143,11 +143,14 @@ protected:
             force += std::to_string(row) + (row % 3 == 0 ? ",0.01,1\n" : ",0.02,1.01\n");
         }
         write("force.csv", force);
+        write("long.csv.txt", std::string(17'000'000, ' '));
+        ASSERT_EQ(run_gyrolog({"check", "c.pcapng", "--jsonl", "lines.jsonl"}).exit_code, 0);
     }
 
     static void write_models() {
         const std::string model = model_text;
         write("m.json", model);
+        ASSERT_EQ(run_gyrolog({"simulate", "m.json", "-o", "longer.csv", "--duration", "25s"}).exit_code, 0);
         write("empty.json", "");
         write("noise.json", noise(5000));
         write("list.json", "[1]");
@@ -259,8 +262,11 @@ TEST_F(WrongInput, OfCommandsThatReadACapture) {
         {"recover empty.pcapng -o r.pcapng", 1, "'empty.pcapng': it holds no intact block of a capture"},
         {"recover noise.pcapng -o r.pcapng", 1, "recover 'noise.pcapng': not a capture"},
         {"recover c.csv -o r.pcapng", 1, "recover 'c.csv': not a capture"},
-        {"recover c.pcapng -o m.json", 2, "write 'm.json': it exists; choose another name"},
+        {"recover c.pcapng -o cut.pcapng", 2, "write 'cut.pcapng': it exists; choose another name"},
         {"recover c.pcapng -o c.pcapng", 2, "FILE and --output are the same file"},
+        {"recover c.pcapng -o r.txt", 2, "--output 'r.txt' has none of the endings of a capture: .pcapng"},
+        {"recover c.pcapng -o none/r.pcapng", 1, "write 'none/r.pcapng': no such directory"},
+        {"recover c.pcapng c.pcapng -o r.pcapng", 2, "not expected: c.pcapng"},
         {"recover c.pcapng -o -", 2, "--output '-': only --json goes to standard output"},
     });
     const std::string check = run_gyrolog({"check", "damaged.pcapng"}).out;
@@ -281,6 +287,9 @@ TEST_F(WrongInput, OfCapture) {
         {"capture -o x.pcapng --device usbb:", 2, "device 'usbb:': usbb is no kind of device"},
         {"capture -o x.pcapng --device usb", 2, device_forms},
         {"capture -o x.pcapng --device tty:", 2, "nothing stands behind the ':'"},
+        {"capture -o x.pcapng --device /dev/ttyACM0", 2, device_forms},
+        {"capture -o none/x.pcapng --device sim:", 1, "write 'none/x.pcapng': no such directory"},
+        {"capture -o x.pcapng --device tty:/dev/null,speed=fast", 2, "speed=fast: wants a number of baud"},
         {"capture -o x.pcapng --device tty:/dev/no_such_tty", 3, "/dev/no_such_tty"},
         {"capture -o x.pcapng --device tty:/dev/null", 2, "open serial port '/dev/null': not a terminal"},
         {"capture -o x.pcapng --device sim:rat=5", 2, "rat=5: there is no such option; there are model rate"},
@@ -404,6 +413,7 @@ TEST_F(WrongInput, OfAnalyze) {
         {"analyze c.csv c.csv --jsonl dir", 1, "write 'dir': it is a directory"},
         {"analyze --jsonl l.jsonl", 2, "give a RECORDING, or --curve"},
         {"analyze c.csv --from soon", 2, "--from: 'soon' is no duration"},
+        {"analyze c.csv --from -5", 2, "--from: '-5' is no duration: it has to be longer than 0, or 0"},
         {"analyze c.csv --from 99", 2, "'c.csv' has no sample from 99 s to"},
         {"analyze c.csv --from 19.991", 2, "'c.csv' has only one sample from 19.991 s"},
         {"analyze c.csv --from 5 --to 3s", 2, "--from 5 s is not before --to 3 s"},
@@ -478,6 +488,9 @@ TEST_F(WrongInput, OfCommandsThatReadAModel) {
         {"simulate m.json -o s.csv --seed 1.5", 2, "--seed: '1.5' is no whole number"},
         {"simulate m.json -o s.csv --like none.csv", 1, "--like: read 'none.csv': no such file"},
         {"simulate m.json -o s.csv --like m.json", 1, "--like: read 'm.json': this is JSON"},
+        {"simulate m.json m.json -o s.csv", 2, "not expected: m.json"},
+        {"simulate m.json#arm -o s.csv", 2, "model 'm.json': it is one sensor; '#arm' names none"},
+        {"simulate m.json -o s.csv --duration 1e300", 2, "it has to be ten years at the most"},
         {"simulate m.json -o s.csv --model-out m.json", 2, "MODEL and --model-out are the same file"},
     });
 }
@@ -526,6 +539,22 @@ TEST_F(WrongInput, OfCompareDiagnoseAndDenoise) {
         {"denoise none.csv", 1, "read 'none.csv': no such file"},
         {"denoise m.json", 1, "read 'm.json': this is JSON"},
         {"denoise torn.csv.xz", 1, "its compressed text is damaged or cut off"},
+        {"denoise c.csv dir/../c.csv", 2,
+         "'c.csv' and 'dir/../c.csv' are the same recording: each unit of an array has its own"},
+        {"diagnose longer.csv --model m.json --ask none.json", 1, "read effect 'none.json': no such file"},
+        {"diagnose longer.csv --model m.json --ask m.json", 1,
+         "schema is 'gyrolog-model/1', not 'gyrolog-effect/1'"},
+        {"diagnose longer.csv --model m.json --ask long.csv.txt", 1,
+         "it is longer than 16.8 MB, and no effect is"},
+        {"diagnose longer.csv --model m.json --holdout none.csv", 1, "read 'none.csv': no such file"},
+        {"diagnose longer.csv --model m.json --holdout m.json", 1,
+         "read 'm.json': this is JSON, a model or a report"},
+        {"diagnose c.csv --auto --model m.json", 2, "--model excludes --auto"},
+        {"diagnose c.csv --auto --model-out x.sdf", 2,
+         "the model is no simulator's file: write a .json, of which `gyrolog export` makes one"},
+        {"diagnose force.csv --auto --sensor accelerometer", 1,
+         "has 100 samples; a diagnosis needs at least"},
+        {"compare c.csv m.json --sensor ear", 2, "--sensor: 'ear' is none of gyro, accelerometer"},
         {"denoise c.csv -o d.txt", 2, "'d.txt' has none of the endings of a denoised recording: .csv"},
         {"denoise c.csv -o c.csv", 2, "RECORDING and --output are the same file"},
         {"denoise c.csv --method magic", 2, "'magic' is none of kalman, wavelet, joint"},
@@ -583,6 +612,11 @@ TEST_F(WrongInput, OfExportAndConform) {
         {"export c.csv -o -", 2, "--output '-': only --json goes to standard output"},
         {"export c.csv -o c.csv", 2, "RECORDING and --output are the same file"},
         {"export m.json -o e.csv", 2, "a model has no samples for a .csv: `gyrolog simulate` makes"},
+        {"export m.json -o e.sdf", 2, "'e.sdf' has none of the endings that tell the format: .csv"},
+        {"export m.json -o e.sdf --for px4", 2,
+         "--for: there is no simulator or filter 'px4'; there are the"},
+        {"export m.json -o e.sdf --for sdf --horizon soon", 2, "--horizon: 'soon' is no duration"},
+        {"conform --device sim: extra", 2, "not expected: extra"},
         {"conform --device", 2, "--device wants its URI behind it"},
         {"conform --device usbb:", 2, "device 'usbb:': usbb is no kind of device"},
         {"conform --device tty:/dev/no_such_tty", 3, "/dev/no_such_tty"},
@@ -605,6 +639,10 @@ TEST_F(WrongInput, OfReportAndCalibrate) {
         {"report none.csv -o r.html", 1, "read 'none.csv': no such file"},
         {"report dir -o r.html", 1, "read 'dir': it is a directory"},
         {"report m.json -o r.html", 1, "read 'm.json': this is JSON, a model or a report perhaps"},
+        {"report c.csv c.csv -o r.html", 2,
+         "a page is of one recording; of several, give the results of `gyrolog analyze ... --jsonl"},
+        {"report lines.jsonl c.csv -o r.html", 2,
+         "a page is of one recording or of results (.jsonl), not of"},
         {"report c.csv -o r.txt", 2, "'r.txt' has none of the endings of a page: .html, .htm"},
         {"report c.csv -o -", 2, "--output '-': only --json goes to standard output"},
         {"report c.csv -o dir", 1, "write 'dir': it is a directory"},
@@ -632,6 +670,10 @@ TEST_F(WrongInput, OfTable) {
         {"table noise.csv -o t.csv", 1, "read 'noise.csv': line 1"},
         {"table list.json -o t.csv", 1, "read 'list.json': line 1"},
         {"table m.json -o t.csv", 1, "read 'm.json': line 1: no JSON"},
+        {"table lines.jsonl -o t.csv --expected none.txt", 1, "read 'none.txt': no such file"},
+        {"table lines.jsonl -o t.csv --expected c.pcapng", 1,
+         "read 'c.pcapng': line 3: this is no text: names stand in it one a line"},
+        {"table lines.jsonl -o t.csv --population t.csv", 2, "--output and --population are the same file"},
         {"table m.json", 2, "--output is required"},
         {"table m.json -o t.xls", 2, "'t.xls' has none of the endings of a table: .csv, .sqlite"},
         {"table m.json -o -", 2, "--output '-': give a name that ends in .csv or .sqlite"},
@@ -640,9 +682,10 @@ TEST_F(WrongInput, OfTable) {
     });
 }
 
-TEST_F(WrongInput, OfDoctorExtcapAndCompletion) {
+TEST_F(WrongInput, OfDoctorExtcapManualAndCompletion) {
     expect_told({
         {"doctor extra", 2, "not expected: extra"},
+        {"doctor --root", 2, "--root wants its FOLDER behind it"},
         {"doctor --root none", 2, "--root: Directory does not exist: none"},
         {"doctor --root c.csv", 2, "--root: Directory is actually a file: c.csv"},
         {"doctor --json dir", 1, "write 'dir': it is a directory"},
@@ -655,6 +698,8 @@ TEST_F(WrongInput, OfDoctorExtcapAndCompletion) {
          "'m.json': it is no named pipe (mkfifo makes one)"},
         {"extcap --extcap-interface gyrolog-sim --capture --fifo f --sim rat=3", 2,
          "rat=3: there is no such option"},
+        {"manual nosuch", 2, "there is no command 'nosuch'"},
+        {"manual \"\"", 2, "there is no command ''"},
         {"completion", 2, "SHELL is required"},
         {"completion tcsh", 2, "'tcsh' is none of bash, zsh, fish"},
         {"completion \"\"", 2, "'' is none of bash, zsh, fish"},
