@@ -24,7 +24,7 @@ struct ReportOptions {
 // Empty, or what was given that only goes with the page of one recording.
 std::string option_of_recording(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
-        const std::string name = option->get_name();
+        std::string name = option->get_name();
         const bool is_of_both = name == "--output" || name == "--quiet" || name == "--expected";
         if (option->nonpositional() && option->count() > 0 && !is_of_both) { return name; }
     }
