@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "analysis/plot/number_text.hpp"
 
@@ -73,27 +74,33 @@ Ticks linear_ticks(Range range, int max_labels) {
     return result;
 }
 
-// Plain numbers where they are short and 2 and 5 stand among the powers of ten.
+// Of a decade, those that have a label: ever fewer, and as evenly as a logarithm has them.
+using Mantissas = std::span<const int>;
+constexpr std::array powers_only{1};
+constexpr std::array with_two_and_five{1, 2, 5};
+constexpr std::array with_three{1, 3};
+
+// Plain numbers where they are short and others stand among the powers of ten.
 std::string decade_label(int mantissa, int exponent, bool is_plain) {
     if (is_plain) { return fixed_decimal(mantissa * power10(exponent), std::max(0, -exponent)); }
     if (mantissa == 1) { return power_of_ten(exponent); }
     return std::to_string(mantissa) + "×" + power_of_ten(exponent);
 }
 
-// Every power of ten whose exponent is a multiple of the stride gets a label. `also_2_and_5` labels those
-// too.
-Ticks decade_ticks(Range range, int stride, bool also_2_and_5) {
+// Every power of ten whose exponent is a multiple of the stride gets a label, and the other mantissas in all
+// decades.
+Ticks decade_ticks(Range range, int stride, Mantissas mantissas) {
     Ticks result;
     const int first = static_cast<int>(std::floor(std::log10(range.lo)));
     const int last = static_cast<int>(std::ceil(std::log10(range.hi)));
-    const bool is_plain = also_2_and_5 && range.lo >= 1e-3 && range.hi < 2e4;
+    const bool is_plain = mantissas.size() > 1 && range.lo >= 1e-3 && range.hi < 2e4;
     const bool with_minor = stride == 1 && 9 * (last - first) <= minor_ticks_max;
     for (int exponent = first; exponent <= last; ++exponent) {
         for (int mantissa = 1; mantissa <= (with_minor ? 9 : 1); ++mantissa) {
             const double value = mantissa * power10(exponent);
             if (!is_inside_log(value, range)) { continue; }
             const bool labelled =
-                mantissa == 1 ? exponent % stride == 0 : also_2_and_5 && (mantissa == 2 || mantissa == 5);
+                mantissa == 1 ? exponent % stride == 0 : std::ranges::count(mantissas, mantissa) != 0;
             result.ticks.push_back(
                 {value, labelled ? decade_label(mantissa, exponent, is_plain) : std::string()});
         }
@@ -118,19 +125,23 @@ Ticks linear_ticks_on_log_scale(Range range, int max_labels) {
 }
 
 Ticks logarithmic_ticks(Range range, int max_labels) {
-    if (labels_in(decade_ticks(range, 1, false)) < 3) {
-        Ticks fine = decade_ticks(range, 1, true);
-        if (labels_in(fine) >= 3 && labels_in(fine) <= max_labels) { return fine; }
-        if (labels_in(fine) < 3) { return linear_ticks_on_log_scale(range, max_labels); }
+    if (labels_in(decade_ticks(range, 1, powers_only)) < 3) {
+        int most = 0;
+        for (const Mantissas mantissas : {Mantissas(with_two_and_five), Mantissas(with_three)}) {
+            Ticks fine = decade_ticks(range, 1, mantissas);
+            if (labels_in(fine) >= 3 && labels_in(fine) <= max_labels) { return fine; }
+            most = std::max(most, labels_in(fine));
+        }
+        if (most < 3) { return linear_ticks_on_log_scale(range, max_labels); }
     }
     constexpr std::array<int, 10> strides{1, 2, 3, 5, 10, 20, 50, 100, 200, 500};
     for (const int stride : strides) {
-        Ticks coarse = decade_ticks(range, stride, false);
+        Ticks coarse = decade_ticks(range, stride, powers_only);
         if (labels_in(coarse) <= max_labels) {
             return labels_in(coarse) >= 2 ? coarse : linear_ticks_on_log_scale(range, max_labels);
         }
     }
-    return decade_ticks(range, 1000, false);
+    return decade_ticks(range, 1000, powers_only);
 }
 
 bool keep_apart(const Ticks& ticks, const Scale& scale, double min_apart_px,

@@ -150,6 +150,11 @@ TEST(LogarithmicScale, LabelsTwoAndFiveOnAShortAxis) {
                 ElementsAre("5×10⁻⁷", "10⁻⁶", "2×10⁻⁶"));
 }
 
+TEST(LogarithmicScale, LabelsThreeWhereTwoAndFiveHaveNoRoom) {
+    EXPECT_THAT(labels_of(find_ticks(ScaleKind::logarithmic, {1.5e-3, 0.06}, 4)),
+                ElementsAre("0.003", "0.01", "0.03"));
+}
+
 TEST(LogarithmicScale, TakesLinearStepsWithinAFractionOfADecade) {
     EXPECT_THAT(labels_of(find_ticks(ScaleKind::logarithmic, {1.05, 1.45}, 5)),
                 ElementsAre("1.1", "1.2", "1.3", "1.4"));
