@@ -54,13 +54,8 @@ Recording with_turn_rates(Recording recording) {
     }
     std::erase_if(recording.columns, is_of_reference);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        recording.columns.push_back({std::string("ref_") + axis_names.at(axis),
-                                     "rad/s",
-                                     std::move(rates.at(axis)),
-                                     1.0,
-                                     0.0,
-                                     "",
-                                     {}});
+        recording.columns.push_back(
+            {std::string("ref_") + axis_names.at(axis), "rad/s", std::move(rates.at(axis))});
     }
     return recording;
 }

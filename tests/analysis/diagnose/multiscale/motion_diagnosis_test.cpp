@@ -146,13 +146,8 @@ std::shared_ptr<const Recording> recorded_against_rates(std::uint64_t seed, cons
         }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        recording->columns.push_back({std::string("ref_") + axis_names.at(axis),
-                                      "rad/s",
-                                      std::move(rates.at(axis)),
-                                      1.0,
-                                      0.0,
-                                      "",
-                                      {}});
+        recording->columns.push_back(
+            {std::string("ref_") + axis_names.at(axis), "rad/s", std::move(rates.at(axis))});
     }
     return recording;
 }
