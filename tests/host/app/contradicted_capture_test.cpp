@@ -182,7 +182,7 @@ TEST_F(ContradictedCapture, AnIndexThatNoSensorReaches) {
     EXPECT_EQ(check["samples"]["missing"], 0);
     EXPECT_NEAR(check["duration_s"].get<double>(), 3.19, 0.01);
     const std::string analysis = run({"analyze", path, "--sensor", "gyro"}).out;
-    EXPECT_THAT(analysis, HasSubstr("made.pcapng: 3200 samples, 3.19 s"));
+    EXPECT_THAT(analysis, HasSubstr("made.pcapng: 3,200 samples, 3.19 s"));
     EXPECT_THAT(analysis, HasSubstr("\nno dropouts\nwarning: samples have an index that no sensor reaches"));
 }
 

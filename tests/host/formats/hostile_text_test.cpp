@@ -85,7 +85,7 @@ TEST_F(HostileText, ALineWithoutEndIsRefused) {
     EXPECT_LT(std::filesystem::file_size(path), 100'000U);
     EXPECT_THAT(refusal_of_recording(path), HasSubstr("line 2 is longer than 1048576 bytes"));
     EXPECT_THAT(refusal_of_model(file("line.json.gz", std::string(64U << 20U, ' '))),
-                HasSubstr("longer than 16777216 bytes"));
+                HasSubstr("longer than 16.8 MB, and no model is"));
 }
 
 // 80 MB out of 80 kB; what it was made of would fill as many rows as bytes.
