@@ -81,9 +81,9 @@ void change_parts(Mutation& mutation, Json& node, const Json& from_elsewhere) {
         mutation.one_in(2) ? static_cast<void>(node.erase(part)) : node.push_back(value);
         return;
     }
-    const std::string key = part.key();
-    if (mutation.one_in(2)) { node.erase(key); }
-    if (mutation.one_in(2)) { node[changed_text(key)] = value; }
+    const std::string other_key = changed_text(part.key());
+    if (mutation.one_in(2)) { node.erase(part); }
+    if (mutation.one_in(2)) { node[other_key] = value; }
 }
 
 }  // namespace
