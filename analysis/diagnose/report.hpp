@@ -206,8 +206,8 @@ struct ReferenceQuality {
     bool is_orientation = false;
     bool is_known_at_rest = false;    // otherwise its error is not known without the sensor's noise
     std::size_t samples_per_row = 1;  // that a rate of the reference is a mean of
-    // One sigma of such a rate, by axis: in the tenth of the time where it is least, and where it is most. At
-    // rest both are the same.
+    // One sigma of such a rate, by axis: in the tenth of the time where it is least, and where it is most. If
+    // it is known at rest, both are the same.
     std::array<Span, 3> error_rad_s{};
     // Of the sensor against the reference. Which of the two is late nobody can tell.
     double latency_s = 0.0;

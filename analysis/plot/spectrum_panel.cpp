@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/numerics/robust_spread.hpp"
 #include "analysis/plot/number_text.hpp"
 #include "analysis/plot/trace_look.hpp"
 
@@ -65,10 +66,7 @@ double density_around(const SpectrumPoint& band, const std::vector<SpectrumPoint
         const bool is_near = other.f_hz < band.f_hz * octave && other.f_hz > band.f_hz / octave;
         if (is_near && &other != &band) { around.push_back(other.density); }
     }
-    if (around.empty()) { return band.density; }
-    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-    std::ranges::nth_element(around, middle);
-    return *middle;
+    return around.empty() ? band.density : median_of(around);
 }
 
 // Of a spectrum as fine as the record allows: half the band's degrees of freedom are its bins. Half of the

@@ -10,8 +10,8 @@ namespace gyrolog {
 
 // One sigma of white noise: the root of the mean square of the differences of neighbours, of this order k,
 // over the sum of their squared coefficients, which is (2k)! / (k!)^2. A polynomial of a lower degree drops
-// out of them, and what is slow nearly does. Of n differences the square is known to 3/n, 4.6/n for k = 3, of
-// its square. 0 where no k + 1 neighbours are known. Unit: the column's.
+// out of them, and what is slow nearly does. The relative variance of the squared result from n differences
+// is 3/n for k = 1 and 4.6/n for k = 3. 0 where no k + 1 neighbours are known. Unit: the column's.
 double neighbour_scatter(const Column& column, std::span<const Segment> segments, std::size_t order = 1);
 
 }  // namespace gyrolog

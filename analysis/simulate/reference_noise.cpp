@@ -16,6 +16,10 @@ namespace gyrolog::resolution {
 constexpr double least_noise_rel = 0.01;
 // A motion that fades out is smooth over four samples.
 constexpr std::size_t difference_order = 3;
+// Times 1/n: the relative variance of a variance from n differences of that order (neighbour_scatter.hpp),
+// and from n samples.
+constexpr double by_differences = 4.6;
+constexpr double by_samples = 2.0;
 
 }  // namespace gyrolog::resolution
 
@@ -53,10 +57,9 @@ ReferenceNoise reference_noise_at_rest(const Recording& recording) {
         if (!(sd > resolution::least_noise_rel * own)) { continue; }
         noise.sd_rad_s.at(axis) = sd;
         const double share = sd * sd / (sd * sd + own * own);
-        // Relative variances of a variance: 2/n of n samples, and of third differences more
-        // (neighbour_scatter.hpp).
-        noise.is_known_well =
-            noise.is_known_well && share * share * 4.6 / rows_of(rest) < 2.0 / rows_of(recording.segments);
+        const double by_rest = share * share * resolution::by_differences / rows_of(rest);
+        const double by_all = resolution::by_samples / rows_of(recording.segments);
+        noise.is_known_well = noise.is_known_well && by_rest < by_all;
     }
     return noise;
 }

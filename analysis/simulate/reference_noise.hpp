@@ -11,8 +11,9 @@ struct ReferenceNoise {
     // One sigma of white noise of a row of ref_x, ref_y and ref_z in rad/s. 0 for an axis that has no
     // reference in rad/s, or one whose noise is not seen beside the gyro's.
     std::array<double, 3> sd_rad_s{};
-    // All rows tell the variance of gyro and reference together no better than the rest tells the share of
-    // the reference in it, on any axis.
+    // On every axis the rest tells the reference's variance more precisely than all rows tell the sum of the
+    // gyro's and the reference's. If not, the error of the first would look like a change of the gyro's
+    // noise.
     bool is_known_well = true;
 
     // The root of the mean square over the axes that have noise.

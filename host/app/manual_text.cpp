@@ -129,8 +129,8 @@ states. For each axis the figure shows both signals in time on the same scale, b
 and the Allan deviation and the spectrum over the band of the simulations; on narrow paper fewer of
 them. At each point one more simulation lies within that band with a probability of 95.12 %. The
 text says where the recording lies outside and by how many decibels, unless chance does as much. It
-ends in one sentence for each
-axis: "x: the simulation is too quiet by 4.7 dB at 13 ms". It names no cause.)"},
+ends in one sentence for each axis: "x: the simulation is too quiet by 4.7 dB at 13 ms". It names no
+cause.)"},
     ManualText{
         "calibrate",
         R"(It needs no level table. Lay the sensor down in at least nine poses for some seconds each, the six
@@ -197,6 +197,7 @@ sensor. The sensor's noise is then judged at its longest rest, and how it answer
 means of 50 ms. If it is a rate (`ref_x_dps` ...) and the model has no `ref_noise_dps`, its noise is
 that of its samples where the sensor rests. The report states the reference's error, delay and
 bandwidth first.
+
 analysis/METHODS.md has how often the answer is right on recordings whose effect the program is not
 told.
 

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "analysis/numerics/robust_spread.hpp"
+#include "analysis/recording/block_means.hpp"
 #include "analysis/recording/still_runs.hpp"
 #include "analysis/simulate/accelerometer_as_gyro.hpp"
 #include "host/app/denoise_knowledge.hpp"
@@ -30,43 +35,31 @@ double share_in_motion(const Recording& recording) {
            static_cast<double>(at_rest) / static_cast<double>(std::max<std::size_t>(1, recording.rows()));
 }
 
-std::vector<double> means_of_runs(const Recording& recording, const Column& column, std::size_t rows) {
-    std::vector<double> means;
-    for (const Segment& segment : recording.segments) {
-        for (std::size_t from = 0; from + rows <= segment.count; from += rows) {
-            double sum = 0.0;
-            for (std::size_t row = from; row < from + rows; ++row) {
-                sum += column.value(segment.first + row);
-            }
-            means.push_back(sum / static_cast<double>(rows));
+// Of the blocks, those whose mean is farther from the median than `most` on any axis.
+double share_beyond(const std::vector<std::vector<BlockMean>>& axes, double most) {
+    std::set<std::int64_t> beyond;
+    std::size_t blocks = 0;
+    for (const std::vector<BlockMean>& of_axis : axes) {
+        std::vector<double> means;
+        std::ranges::transform(of_axis, std::back_inserter(means), &BlockMean::mean);
+        const double median = median_of(means);
+        for (const BlockMean& block : of_axis) {
+            if (std::abs(block.mean - median) > most) { beyond.insert(block.index); }
         }
+        blocks = std::max(blocks, of_axis.size());
     }
-    return means;
-}
-
-// Of the means, those that are farther from the median than `most` on any axis.
-double share_beyond(const std::vector<std::vector<double>>& axes, double most) {
-    std::vector<bool> is_beyond(axes.front().size(), false);
-    for (const std::vector<double>& means : axes) {
-        std::vector<double> sorted = means;
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::ranges::nth_element(sorted, middle);
-        for (std::size_t i = 0; i < means.size(); ++i) {
-            if (std::abs(means[i] - *middle) > most) { is_beyond[i] = true; }
-        }
-    }
-    return static_cast<double>(std::ranges::count(is_beyond, true)) / static_cast<double>(is_beyond.size());
+    return static_cast<double>(beyond.size()) / static_cast<double>(blocks);
 }
 
 }  // namespace
 
 Status refuse_moving_accelerometer(const Recording& as_gyro, const std::string& path,
                                    const MotionRefusalOptions& options) {
-    const auto rows = static_cast<std::size_t>(std::max(1.0, std::round(options.mean_s * as_gyro.rate_hz)));
-    std::vector<std::vector<double>> axes;
+    const auto instants = std::max<std::int64_t>(1, std::llround(options.mean_s * as_gyro.rate_hz));
+    std::vector<std::vector<BlockMean>> axes;
     for (const char* axis : axis_names) {
         const Column* column = as_gyro.find(std::string("g") + axis);
-        if (column != nullptr) { axes.push_back(means_of_runs(as_gyro, *column, rows)); }
+        if (column != nullptr) { axes.push_back(block_means(*column, as_gyro.segments, instants)); }
     }
     if (axes.empty() || axes.front().empty()) { return {}; }
     const double share =

@@ -55,12 +55,6 @@ void append_warnings(std::vector<std::string>& to, const DiagnosisInput& of) {
     }
 }
 
-// An orientation is one to judge by where its means are long enough.
-bool is_judged_in_motion(const Recording& recording, SensorKind sensor) {
-    if (sensor != SensorKind::gyro) { return false; }
-    return !moves_against_orientation(recording) || !diagnosis_refusal(means_against_orientation(recording));
-}
-
 // In means that were asked for.
 std::optional<Diagnosis> diagnose_means(const DiagnosisInput& read, const SensorModel& model,
                                         const std::string& name, const DiagnosisOptions& options) {
@@ -257,9 +251,7 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
     auto diagnosis = read.means != nullptr
                          ? diagnose_long({read.samples, read.means}, file.model, name, options, second.means)
                      : request.average > 1 ? diagnose_means(read, file.model, name, options)
-                     : is_judged_in_motion(*read.samples, sensor)
-                         ? diagnose_in_motion(read.samples, file.model, name, options)
-                         : diagnose(read.samples, file.model, name, options);
+                                           : diagnose_in_motion(read.samples, file.model, name, options);
     progress.reset();
     append_warnings(diagnosis->warnings, read);
     append_new(diagnosis->warnings, file.notes);

@@ -34,12 +34,6 @@ bool any(const Contradictions& contradictions) {
     return std::ranges::any_of(contradictions, [](std::uint64_t count) { return count > 0; });
 }
 
-const char* name_of(Contradiction kind) {
-    constexpr std::array<const char*, contradiction_kinds> names = {
-        "lost_samples", "lost_frames", "index_again", "index_ahead", "counted_short", "counted_ahead"};
-    return names[static_cast<std::size_t>(kind)];
-}
-
 std::vector<std::string> sentences(const Contradictions& contradictions) {
     std::vector<std::string> all;
     for (std::size_t kind = 0; kind < contradiction_kinds; ++kind) {

@@ -24,8 +24,6 @@ constexpr std::size_t contradiction_kinds = 6;
 using Contradictions = std::array<std::uint64_t, contradiction_kinds>;
 
 bool any(const Contradictions& contradictions);
-// "lost_samples"
-const char* name_of(Contradiction kind);
 // Of each kind that there is: "the board counts 50 samples as lost, and no gap in its indices has room for
 // them".
 std::vector<std::string> sentences(const Contradictions& contradictions);

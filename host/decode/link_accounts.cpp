@@ -229,11 +229,20 @@ void LinkAccounts::keep_open(std::uint64_t before_hello) {
     frames_.missing -= before_hello;
 }
 
+// Nothing came before it that its index could be held against.
+bool LinkAccounts::is_at_start(const glp_frame& frame) const {
+    return !in_run_ || booted_since_samples_ || (frame.flags & glp_flag_first_after_start) != 0;
+}
+
+// Of an index that is not below the next one.
+bool LinkAccounts::is_ahead(const glp_samples& samples, std::uint64_t jump_most) const {
+    return samples.first_index - next_index_ >= jump_most ||
+           samples.first_index - grid_index_ >= implausible_span;
+}
+
 bool LinkAccounts::begins_grid(const glp_frame& frame, const glp_samples& samples,
                                std::uint64_t jump_most) const {
-    return !in_run_ || booted_since_samples_ || (frame.flags & glp_flag_first_after_start) != 0 ||
-           samples.first_index < next_index_ || samples.first_index - next_index_ >= jump_most ||
-           samples.first_index - grid_index_ >= implausible_span;
+    return is_at_start(frame) || samples.first_index < next_index_ || is_ahead(samples, jump_most);
 }
 
 // The indices begin again because the board was told to start again, and not because one has gone wrong.
@@ -256,15 +265,11 @@ void LinkAccounts::begin_run(std::uint64_t next_index, std::uint32_t lost_sample
 // An index that cannot be right where it stands: nothing says how many instants lie before it.
 std::optional<Contradiction> LinkAccounts::misplaced(const glp_frame& frame, const glp_samples& samples,
                                                      std::uint64_t jump_most) const {
-    if (!in_run_ || booted_since_samples_ || (frame.flags & glp_flag_first_after_start) != 0) {
-        return std::nullopt;
-    }
+    if (is_at_start(frame)) { return std::nullopt; }
     if (samples.first_index < next_index_) {
         return goes_on() ? std::optional(Contradiction::index_again) : std::nullopt;
     }
-    const bool is_ahead = samples.first_index - next_index_ >= jump_most ||
-                          samples.first_index - grid_index_ >= implausible_span;
-    return is_ahead ? std::optional(Contradiction::index_ahead) : std::nullopt;
+    return is_ahead(samples, jump_most) ? std::optional(Contradiction::index_ahead) : std::nullopt;
 }
 
 void LinkAccounts::begin_grid(const glp_frame& frame, const glp_samples& samples, bool is_misplaced) {

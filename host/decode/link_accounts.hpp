@@ -169,6 +169,8 @@ private:
     void keep_open(std::uint64_t before_hello);
     std::uint64_t pending_max() const;
     void begin_run(std::uint64_t next_index, std::uint32_t lost_samples);
+    bool is_at_start(const glp_frame& frame) const;
+    bool is_ahead(const glp_samples& samples, std::uint64_t jump_most) const;
     bool begins_grid(const glp_frame& frame, const glp_samples& samples, std::uint64_t jump_most) const;
     std::optional<Contradiction> misplaced(const glp_frame& frame, const glp_samples& samples,
                                            std::uint64_t jump_most) const;

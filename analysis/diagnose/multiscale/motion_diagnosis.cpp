@@ -117,10 +117,11 @@ std::optional<Diagnosis> diagnose_in_two_passes(const std::shared_ptr<const Reco
 }
 
 std::optional<Diagnosis> diagnose_against_orientation(const std::shared_ptr<const Recording>& recording,
+                                                      const std::shared_ptr<const Recording>& means,
                                                       const SensorModel& model, const std::string& model_name,
                                                       DiagnosisOptions options) {
     if (options.holdout) { options.holdout = shared_means(*options.holdout); }
-    auto diagnosis = diagnose_in_two_passes(recording, shared_means(*recording), model, model_name, options);
+    auto diagnosis = diagnose_in_two_passes(recording, means, model, model_name, options);
     if (diagnosis) { diagnosis->reference->is_orientation = true; }
     return diagnosis;
 }
@@ -157,7 +158,10 @@ std::optional<Diagnosis> diagnose_in_motion(const std::shared_ptr<const Recordin
                                             const SensorModel& model, const std::string& model_name,
                                             const DiagnosisOptions& options) {
     if (moves_against_orientation(*recording)) {
-        return diagnose_against_orientation(recording, model, model_name, options);
+        const auto means = shared_means(*recording);
+        return diagnosis_refusal(*means)
+                   ? diagnose(recording, model, model_name, options)
+                   : diagnose_against_orientation(recording, means, model, model_name, options);
     }
     const ReferenceNoise noise =
         model.ref_noise_rad_s > 0.0 ? ReferenceNoise{} : reference_noise_at_rest(*recording);

@@ -23,9 +23,8 @@ bool moves_against_orientation(const Recording& recording);
 // place of the orientation.
 Recording means_against_orientation(const Recording& recording);
 
-// Like diagnose(), which it is where the sensor does not move against a reference, the model states the noise
-// of the reference's rates, or they have none. Of what moves_against_orientation() the means have no
-// diagnosis_refusal().
+// Like diagnose(), and the same where there is no such reference: no reference at all, rates whose noise the
+// model states, rates without noise, or an orientation of which there are too few means.
 std::optional<Diagnosis> diagnose_in_motion(const std::shared_ptr<const Recording>& recording,
                                             const SensorModel& model, const std::string& model_name,
                                             const DiagnosisOptions& options);

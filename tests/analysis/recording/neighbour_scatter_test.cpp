@@ -36,6 +36,26 @@ TEST(NeighbourScatter, IsThatOfWhiteNoiseByDifferencesOfAnyOrder) {
     }
 }
 
+// Of 2000 records of 200 samples; a variance of as many is known to sqrt(2 / 2000), 3 %.
+TEST(NeighbourScatter, HasTheVarianceThatIsStated) {
+    constexpr std::size_t records = 2000;
+    constexpr std::size_t rows = 200;
+    std::mt19937_64 random(12);
+    std::normal_distribution<double> normal;
+    for (const auto& [order, factor] : {std::pair<std::size_t, double>{1, 3.0}, {3, 4.6}}) {
+        double sum = 0.0;
+        for (std::size_t record = 0; record < records; ++record) {
+            std::vector<double> values(rows);
+            for (double& value : values) { value = normal(random); }
+            const double scatter =
+                neighbour_scatter(column_of(std::move(values)), std::vector<Segment>{{0, rows, 0}}, order);
+            sum += (scatter * scatter - 1.0) * (scatter * scatter - 1.0);
+        }
+        const double variance = sum / static_cast<double>(records);
+        EXPECT_NEAR(variance * static_cast<double>(rows - order) / factor, 1.0, 0.15) << "order " << order;
+    }
+}
+
 TEST(NeighbourScatter, LosesWhatIsSlowTheMoreTheHigherTheOrder) {
     const Column moved = noise_on(1.0, 20.0);
     EXPECT_GT(neighbour_scatter(moved, whole), 3.0 * sd);
