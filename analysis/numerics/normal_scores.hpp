@@ -19,8 +19,13 @@ public:
     double of(double magnitude) const;
 
 private:
+    std::size_t part_of(double magnitude) const;
+
     std::vector<double> magnitudes_;  // that differ
     std::vector<double> scores_;
+    // How many of them lie below each of as many equal parts of their range: where the search begins.
+    std::vector<std::size_t> below_;
+    double parts_per_unit_ = 0.0;
 };
 
 }  // namespace gyrolog

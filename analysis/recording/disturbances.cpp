@@ -71,26 +71,44 @@ struct TwoMeans {
     }
 };
 
-TwoMeans two_means(std::span<const double> values) {
-    const auto n = static_cast<double>(values.size());
-    const double origin = values.front();
-    double sum = 0.0;
-    for (const double value : values) { sum += value - origin; }
-    std::size_t step = values.size();
-    double before = sum;
-    double explained = sum * sum / n;
-    double running = 0.0;
-    for (std::size_t i = 1; i < values.size(); ++i) {
-        running += values[i - 1] - origin;
-        const auto k = static_cast<double>(i);
-        const double rest = sum - running;
-        const double here = running * running / k + rest * rest / (n - k);
-        if (here > explained) { explained = here, step = i, before = running; }
+// Of blocks of one length.
+class StepSearch {
+public:
+    explicit StepSearch(std::size_t count) : weights_(count) {
+        const auto n = static_cast<double>(count);
+        for (std::size_t i = 1; i < count; ++i) {
+            const auto k = static_cast<double>(i);
+            weights_[i] = n / (k * (n - k));
+        }
     }
-    const double mean = origin + before / static_cast<double>(step);
-    const bool is_one = step == values.size();
-    return {step, mean, is_one ? mean : origin + (sum - before) / (n - static_cast<double>(step))};
-}
+
+    // With k of n numbers before it, whose sum is off by d from k means, a step explains d^2 n / (k (n - k))
+    // of the squares about the mean.
+    TwoMeans two_means(std::span<const double> values) const {
+        const auto n = static_cast<double>(values.size());
+        const double origin = values.front();
+        double sum = 0.0;
+        for (const double value : values) { sum += value - origin; }
+        const double mean = sum / n;
+        std::size_t step = values.size();
+        double before = sum;
+        double explained = 0.0;
+        double running = 0.0;
+        for (std::size_t i = 1; i < values.size(); ++i) {
+            running += values[i - 1] - origin;
+            const double off = running - static_cast<double>(i) * mean;
+            const double here = off * off * weights_[i];
+            if (here > explained) { explained = here, step = i, before = running; }
+        }
+        const double of_first = origin + before / static_cast<double>(step);
+        const bool is_one = step == values.size();
+        return {step, of_first,
+                is_one ? of_first : origin + (sum - before) / (n - static_cast<double>(step))};
+    }
+
+private:
+    std::vector<double> weights_;
+};
 
 // Less the largest squares. `least`: a power that the numbers' grid has by itself.
 Power power_of_rest(std::span<const double> rest, double least) {
@@ -105,18 +123,21 @@ Power power_of_rest(std::span<const double> rest, double least) {
 }
 
 // About two means.
-Power power_of(std::span<const double> values, double least) {
-    const TwoMeans means = two_means(values);
+Power power_of(std::span<const double> values, const StepSearch& search, double least) {
+    const TwoMeans means = search.two_means(values);
     std::vector<double> rest(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) { rest[i] = means.off(values, i); }
     return power_of_rest(rest, least);
 }
 
-double median_of(std::vector<double> values) {
+// Changes the order of the values.
+double median_in_place(std::span<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::ranges::nth_element(values, middle);
     return *middle;
 }
+
+double median_of(std::vector<double> values) { return median_in_place(values); }
 
 // The level of the blocks around each. The noise may change slowly, with the temperature, say; of a window of
 // four times the longest disturbance one is a quarter, which a median hardly feels. Between the middles of
@@ -186,8 +207,13 @@ struct Course {
     double over_level(std::size_t block) const { return over_level(powers[block], block); }
 };
 
+// One signal, and the step of its grid.
+struct Numbers {
+    std::span<const double> values;
+    double step = 0.0;
+};
+
 struct Signal {
-    Course raw;
     std::vector<double> scores;  // of the numbers, normal
     Course loudness;             // of these
     double degrees = 0.0;        // of freedom of a block of them
@@ -241,10 +267,12 @@ double take_scores(std::span<const double> values, const std::vector<Block>& blo
                    const DisturbanceOptions& options, std::vector<double>& scores) {
     scores.assign(values.size(), 0.0);
     std::vector<double> magnitudes;
+    std::vector<double> sorted(blocks.front().count);
     const std::size_t every = 1 + blocks.size() * blocks.front().count / options.magnitudes_most;
     for (const Block& block : blocks) {
         const auto here = values.subspan(block.first, block.count);
-        const double median = median_of({here.begin(), here.end()});
+        std::ranges::copy(here, sorted.begin());
+        const double median = median_in_place(sorted);
         for (std::size_t i = 0; i < here.size(); ++i) {
             scores[block.first + i] = here[i] - median;
             if ((block.first + i) % every == 0) { magnitudes.push_back(std::abs(here[i] - median)); }
@@ -261,20 +289,19 @@ Course course_of(std::span<const double> values, const std::vector<Block>& block
                  double longest_share, const DisturbanceOptions& options) {
     Course course;
     course.least_power = least_power;
+    const StepSearch search(blocks.front().count);
     for (const Block& block : blocks) {
-        course.powers.push_back(power_of(values.subspan(block.first, block.count), least_power));
+        course.powers.push_back(power_of(values.subspan(block.first, block.count), search, least_power));
     }
     course.levels = levels_of(course.powers, longest_share, options);
     return course;
 }
 
-Signal signal_of(std::span<const double> values, const std::vector<Block>& blocks, double longest_share,
+Signal signal_of(const Numbers& numbers, const std::vector<Block>& blocks, double longest_share,
                  const DisturbanceOptions& options) {
     Signal signal;
     signal.loud_from = normal_upper_quantile(1.0 / static_cast<double>(blocks.size()));
-    const double step = code_step(values);
-    const double step_score = take_scores(values, blocks, step, options, signal.scores);
-    signal.raw = course_of(values, blocks, power_of_codes(step), longest_share, options);
+    const double step_score = take_scores(numbers.values, blocks, numbers.step, options, signal.scores);
     signal.loudness = course_of(signal.scores, blocks, power_of_codes(step_score), longest_share, options);
     signal.degrees = degrees_of(signal.loudness, blocks.front().count);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -288,7 +315,7 @@ Signal signal_of(std::span<const double> values, const std::vector<Block>& block
 bool is_pulse(const Signal& signal, const Block& at, std::size_t block) {
     const auto scores = std::span(signal.scores).subspan(at.first, at.count);
     const double least = signal.loudness.least_power;
-    const Power rest = power_of(without_pulse({scores.begin(), scores.end()}), least);
+    const Power rest = power_of(without_pulse({scores.begin(), scores.end()}), StepSearch(at.count), least);
     if (signal.root(signal.loudness.over_level(rest, block)) > signal.loud_from) { return false; }
     return rest.log <= power_of_rest(without_ringing(scores), least).log;
 }
@@ -329,17 +356,17 @@ bool is_loud_in_sum(const std::vector<Signal>& signals, std::size_t block) {
 }
 
 // Of a variance of its own: the likelihood ratio of a block of normal samples.
-double gain_nats(const Signal& signal, std::size_t block, std::size_t count) {
-    const double ratio = std::exp(signal.raw.over_level(block));
+double gain_nats(const Course& course, std::size_t block, std::size_t count) {
+    const double ratio = std::exp(course.over_level(block));
     const double degrees = static_cast<double>(count) - fitted_per_block;
     return ratio > 1.0 ? 0.5 * twice_gain_nats(ratio, degrees) : 0.0;
 }
 
-void add_block(Disturbance& disturbance, const std::vector<Signal>& signals, std::size_t block,
-               std::size_t count) {
+void add_block(Disturbance& disturbance, const std::vector<Signal>& signals,
+               const std::vector<Course>& courses, std::size_t block, std::size_t count) {
     for (std::size_t s = 0; s < signals.size(); ++s) {
-        disturbance.gain_nats[s] += gain_nats(signals[s], block, count);
-        disturbance.largest = std::max(disturbance.largest, signals[s].raw.powers[block].largest);
+        disturbance.gain_nats[s] += gain_nats(courses[s], block, count);
+        disturbance.largest = std::max(disturbance.largest, courses[s].powers[block].largest);
         if (signals[s].is_loud(block) && std::ranges::count(disturbance.loud, s) == 0) {
             disturbance.loud.push_back(s);
         }
@@ -458,11 +485,11 @@ struct Seen {
 };
 
 // Nothing where there are no signals, or too few blocks.
-Seen seen_in_blocks(const Recording& recording, std::span<const std::vector<double>> signals,
-                    std::size_t times, double longest_share, const DisturbanceOptions& options) {
+Seen seen_in_blocks(const Recording& recording, const std::vector<Numbers>& signals, std::size_t times,
+                    double longest_share, const DisturbanceOptions& options) {
     Seen seen{blocks_of(recording, times, options), {}, {}};
     if (signals.empty() || seen.blocks.size() < options.blocks_least) { return {}; }
-    for (const std::vector<double>& signal : signals) {
+    for (const Numbers& signal : signals) {
         seen.signals.push_back(signal_of(signal, seen.blocks, longest_share, options));
     }
     seen.disturbed = disturbed_blocks(seen.signals, seen.blocks, options);
@@ -494,8 +521,10 @@ void take_over(const Seen& longer, Seen& shorter) {
 }
 
 // Disturbed blocks as long as they follow without a hole.
-std::vector<Disturbance> stretches(const Recording& recording, const std::vector<Block>& blocks,
-                                   const std::vector<Signal>& signals, const std::vector<bool>& disturbed) {
+std::vector<Disturbance> stretches(const Recording& recording, const Seen& seen,
+                                   const std::vector<Course>& courses, const std::vector<bool>& disturbed) {
+    const std::vector<Block>& blocks = seen.blocks;
+    const std::vector<Signal>& signals = seen.signals;
     std::vector<Disturbance> found;
     const std::int64_t origin = recording.segments.front().first_index;
     const auto seconds = [&](std::int64_t index) {
@@ -512,7 +541,7 @@ std::vector<Disturbance> stretches(const Recording& recording, const std::vector
         }
         found.back().rows += here.count;
         found.back().to_s = seconds(here.index + static_cast<std::int64_t>(here.count));
-        add_block(found.back(), signals, block, here.count);
+        add_block(found.back(), signals, courses, block, here.count);
     }
     return found;
 }
@@ -523,13 +552,21 @@ std::vector<Disturbance> disturbances(const Recording& recording,
                                       std::span<const std::vector<double>> signals,
                                       const DisturbanceOptions& options) {
     const double longest_share = longest_share_of(recording, options);
-    Seen shortest = seen_in_blocks(recording, signals, options.block_lengths.front(), longest_share, options);
+    std::vector<Numbers> numbers;
+    for (const std::vector<double>& signal : signals) { numbers.push_back({signal, code_step(signal)}); }
+    Seen shortest = seen_in_blocks(recording, numbers, options.block_lengths.front(), longest_share, options);
     if (shortest.blocks.empty()) { return {}; }
     for (const std::size_t times : std::span(options.block_lengths).subspan(1)) {
-        take_over(seen_in_blocks(recording, signals, times, longest_share, options), shortest);
+        take_over(seen_in_blocks(recording, numbers, times, longest_share, options), shortest);
+    }
+    if (std::ranges::count(shortest.disturbed, true) == 0) { return {}; }
+    std::vector<Course> courses;
+    for (const Numbers& signal : numbers) {
+        courses.push_back(
+            course_of(signal.values, shortest.blocks, power_of_codes(signal.step), longest_share, options));
     }
     std::vector<Disturbance> found =
-        stretches(recording, shortest.blocks, shortest.signals, and_neighbours(shortest.disturbed));
+        stretches(recording, shortest, courses, and_neighbours(shortest.disturbed));
     const auto rows = static_cast<double>(recording.rows());
     std::erase_if(
         found, [&](const Disturbance& one) { return static_cast<double>(one.rows) > longest_share * rows; });

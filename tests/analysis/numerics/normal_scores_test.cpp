@@ -1,5 +1,6 @@
 #include "analysis/numerics/normal_scores.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -39,6 +40,25 @@ TEST(NormalScores, OfEqualNumbersAreThatOfTheirMiddle) {
     EXPECT_NEAR(scores.of(1.0), normal_upper_quantile(0.5 * (1.0 - 6.0 / 10.0)), 1e-12);
     EXPECT_LT(scores.of(0.5), scores.of(1.0));
     EXPECT_GE(scores.of(0.5), scores.of(0.0));
+}
+
+// The search begins near its end: between any two magnitudes, and on each, it ends where a search of all
+// does.
+TEST(NormalScores, AreThoseOfTheLargestMagnitudeThatIsNotAbove) {
+    std::mt19937_64 random(3);
+    std::student_t_distribution<double> tailed(1.5);
+    std::vector<double> magnitudes(1000);
+    for (double& x : magnitudes) { x = std::round(std::abs(tailed(random)) * 50.0) / 50.0; }
+    const NormalScores scores(magnitudes);
+    std::ranges::sort(magnitudes);
+    for (std::size_t i = 1; i < magnitudes.size(); ++i) {
+        const double here = scores.of(magnitudes[i]);
+        EXPECT_EQ(scores.of(std::nextafter(magnitudes[i], 1e9)), here);
+        const bool is_first = magnitudes[i - 1] < magnitudes[i];
+        if (!is_first) { continue; }
+        EXPECT_LT(scores.of(std::nextafter(magnitudes[i], 0.0)), here);
+        EXPECT_EQ(scores.of(0.5 * (magnitudes[i - 1] + magnitudes[i])), scores.of(magnitudes[i - 1]));
+    }
 }
 
 TEST(NormalScores, OfNothingAreZero) { EXPECT_EQ(NormalScores({}).of(3.0), 0.0); }
