@@ -26,6 +26,7 @@ namespace {
 
 struct Quantities {
     std::vector<const Column*> columns;
+    std::vector<std::size_t> places;     // among all quantities
     std::vector<std::size_t> axes;       // of the first columns; a last one more is the temperature
     std::vector<double> repeated_apart;  // by column, the share of rows that repeat the one before the last
 
@@ -60,6 +61,7 @@ Quantities moving_quantities(const Quantities& all, const std::vector<PatternCou
         // Carries no news: a dead axis, a thermometer in coarse steps.
         if (share > decisions.nearly_all) { continue; }
         moving.columns.push_back(all.columns[c]);
+        moving.places.push_back(c);
         moving.repeated_apart.push_back(share);
         if (c < all.axes.size()) { moving.axes.push_back(all.axes[c]); }
     }
@@ -77,8 +79,7 @@ struct Excess {
 double eps_sd(double eps, double rows) { return std::sqrt(std::max(eps, 1.0 / rows) / rows); }
 
 // Rows that repeat the one before in every quantity of a set, by the number of rows since the last such one.
-std::vector<double> distances_of(const Recording& recording, const Quantities& moving, std::size_t set) {
-    const std::vector<std::uint8_t> patterns = row_patterns(recording, moving.columns, 1);
+std::vector<double> distances_of(const Recording& recording, const RowPatterns& patterns, std::size_t set) {
     std::vector<double> distances;
     for (const Segment& segment : recording.segments) {
         std::optional<std::size_t> last;
@@ -126,14 +127,22 @@ public:
         const Quantities all = all_quantities(recording, *prediction_);
         const std::size_t blocks =
             std::clamp<std::size_t>(recording.rows() / resolution::block_rows, 1, resolution::blocks_max);
-        std::vector<PatternCounts> apart = count_patterns(recording, all.columns, 2, blocks);
+        const auto count_apart = [&](const RowPatterns& next, RowPatterns rows, std::size_t quantities) {
+            leave_out_runs(next, quantities, rows);
+            return count_patterns(recording, rows, 2, blocks);
+        };
+        const RowPatterns apart_rows = row_patterns(recording, all.columns, 2);
+        RowPatterns near_rows = row_patterns(recording, all.columns, 1);
+        std::vector<PatternCounts> apart = count_apart(near_rows, apart_rows, all.columns.size());
         const Quantities moving = moving_quantities(all, apart);
         if (moving.axes.empty()) { return std::nullopt; }
         if (moving.columns.size() < all.columns.size()) {
-            apart = count_patterns(recording, moving.columns, 2, blocks);
+            near_rows = patterns_of_some(near_rows, moving.places);
+            apart =
+                count_apart(near_rows, patterns_of_some(apart_rows, moving.places), moving.columns.size());
         }
         std::size_t looked_at = 0;
-        const std::vector<PatternCounts> near = count_patterns(recording, moving.columns, 1, blocks);
+        const std::vector<PatternCounts> near = count_patterns(recording, near_rows, 1, blocks);
         const std::optional<Excess> best =
             best_set(recording, moving, in_one_block(near), in_one_block(apart), looked_at);
         if (!best) { return std::nullopt; }
@@ -143,7 +152,7 @@ public:
         Finding finding = finding_of(moving, excess, static_cast<double>(looked_at));
         // Of a single quantity some repeat by chance, which is at random in any case.
         if (std::popcount(excess.set) > 1) {
-            if (const auto runs = random_runs(distances_of(recording, moving, excess.set), excess)) {
+            if (const auto runs = random_runs(distances_of(recording, near_rows, excess.set), excess)) {
                 finding.entries.front().params["run_length"] = runs->length;
                 finding.sd.front()["run_length"] = runs->length_sd;
             }
@@ -230,23 +239,30 @@ struct Steps {
     std::array<double, 3> of_codes{};  // by size: 0, 1 and 2 codes
 };
 
+// Of a step's size, 0 to 2, or 3 for all that are larger.
+std::size_t codes_of(double step, double code) {
+    const double codes = code > 0.0 ? step / code + 0.5 : step == 0.0 ? 0.0 : 3.0;
+    return static_cast<std::size_t>(std::min(codes, 3.0));
+}
+
 Steps count_steps(const Column& column, const Recording& recording, double code) {
-    Steps steps;
+    std::array<std::size_t, 4> of_codes{};
     std::visit(
         [&](const auto& data) {
             const ValueRange range(data);
             for (const Segment& segment : recording.segments) {
                 for (std::size_t row = segment.first + 1; row < segment.first + segment.count; ++row) {
                     if (range.ends_at(data[row])) { continue; }
-                    steps.all += 1.0;
                     const double step =
                         std::fabs(static_cast<double>(data[row]) - static_cast<double>(data[row - 1]));
-                    const double codes = code > 0.0 ? step / code + 0.5 : step == 0.0 ? 0.0 : 3.0;
-                    if (codes < 3.0) { steps.of_codes[static_cast<std::size_t>(codes)] += 1.0; }
+                    ++of_codes[codes_of(step, code)];
                 }
             }
         },
         column.data);
+    Steps steps;
+    for (const std::size_t count : of_codes) { steps.all += static_cast<double>(count); }
+    std::copy_n(of_codes.begin(), steps.of_codes.size(), steps.of_codes.begin());
     return steps;
 }
 

@@ -19,7 +19,7 @@ namespace {
 bool contains(std::size_t pattern, std::size_t set) { return (pattern & set) == set; }
 
 void mark(const Column& column, const Recording& recording, std::size_t lag, std::size_t bit,
-          std::vector<std::uint8_t>& patterns) {
+          RowPatterns& patterns) {
     std::visit(
         [&](const auto& data) {
             const ValueRange range(data);
@@ -35,22 +35,11 @@ void mark(const Column& column, const Recording& recording, std::size_t lag, std
 }
 
 // Neighbours often have the same pattern; two tables, in turns, do not wait for each other.
-void count_rows(const std::vector<std::uint8_t>& patterns, std::size_t from, std::size_t end,
-                PatternCounts& counts) {
+void count_rows(const RowPatterns& patterns, std::size_t from, std::size_t end, PatternCounts& counts) {
     std::array<std::array<std::size_t, repeat_patterns>, 2> tables{};
     for (std::size_t row = from; row < end; ++row) { ++tables[row % 2][patterns[row]]; }
     for (std::size_t pattern = 0; pattern < repeat_patterns; ++pattern) {
         counts[pattern] += static_cast<double>(tables[0][pattern] + tables[1][pattern]);
-    }
-}
-
-// Rows that repeat in all quantities one after the other are one sample shown again and again.
-void leave_out_runs(const Recording& recording, const std::vector<const Column*>& quantities,
-                    std::vector<std::uint8_t>& patterns) {
-    const auto all = static_cast<std::uint8_t>((std::size_t{1} << quantities.size()) - 1);
-    const std::vector<std::uint8_t> next = row_patterns(recording, quantities, 1);
-    for (std::size_t row = 1; row < patterns.size(); ++row) {
-        if (next[row] == all && next[row - 1] == all) { patterns[row] = 0; }
     }
 }
 
@@ -132,18 +121,34 @@ RepeatFit fit(const std::vector<PatternCounts>& blocks, std::size_t quantities, 
 
 }  // namespace
 
-std::vector<std::uint8_t> row_patterns(const Recording& recording,
-                                       const std::vector<const Column*>& quantities, std::size_t lag) {
-    std::vector<std::uint8_t> patterns(recording.rows(), 0);
+RowPatterns row_patterns(const Recording& recording, const std::vector<const Column*>& quantities,
+                         std::size_t lag) {
+    RowPatterns patterns(recording.rows(), 0);
     for (std::size_t c = 0; c < quantities.size(); ++c) { mark(*quantities[c], recording, lag, c, patterns); }
     return patterns;
 }
 
-std::vector<PatternCounts> count_patterns(const Recording& recording,
-                                          const std::vector<const Column*>& quantities, std::size_t lag,
-                                          std::size_t blocks) {
-    std::vector<std::uint8_t> patterns = row_patterns(recording, quantities, lag);
-    if (lag > 1) { leave_out_runs(recording, quantities, patterns); }
+RowPatterns patterns_of_some(const RowPatterns& patterns, std::span<const std::size_t> quantities) {
+    std::array<std::uint8_t, repeat_patterns> of_some{};
+    for (std::size_t pattern = 0; pattern < repeat_patterns; ++pattern) {
+        std::size_t seen = 0;
+        for (std::size_t c = 0; c < quantities.size(); ++c) { seen |= (pattern >> quantities[c] & 1U) << c; }
+        of_some[pattern] = static_cast<std::uint8_t>(seen);
+    }
+    RowPatterns some(patterns.size());
+    std::ranges::transform(patterns, some.begin(), [&](std::uint8_t pattern) { return of_some[pattern]; });
+    return some;
+}
+
+void leave_out_runs(const RowPatterns& next, std::size_t quantities, RowPatterns& apart) {
+    const auto all = static_cast<std::uint8_t>((std::size_t{1} << quantities) - 1);
+    for (std::size_t row = 1; row < apart.size(); ++row) {
+        if (next[row] == all && next[row - 1] == all) { apart[row] = 0; }
+    }
+}
+
+std::vector<PatternCounts> count_patterns(const Recording& recording, const RowPatterns& patterns,
+                                          std::size_t lag, std::size_t blocks) {
     std::vector<PatternCounts> counts(blocks);
     const auto block_of = [&](std::size_t row) { return row * blocks / patterns.size(); };
     for (const Segment& segment : recording.segments) {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "analysis/recording/recording.hpp"
@@ -38,17 +39,25 @@ private:
     Value highest_;
 };
 
+// By row.
+using RowPatterns = std::vector<std::uint8_t>;
+
 // The pattern of each row against the `lag`-th before it; 0 where that belongs to another segment. A
 // quantity's lowest and highest value count as no repeats.
-std::vector<std::uint8_t> row_patterns(const Recording& recording,
-                                       const std::vector<const Column*>& quantities, std::size_t lag);
+RowPatterns row_patterns(const Recording& recording, const std::vector<const Column*>& quantities,
+                         std::size_t lag);
+
+// The patterns of some of the quantities, named by their places.
+RowPatterns patterns_of_some(const RowPatterns& patterns, std::span<const std::size_t> quantities);
+
+// Rows that repeat in all quantities one after the other are one sample shown again and again: in `apart`,
+// the patterns of a lag above 1, the function clears those within such a run. `next`: the patterns of lag 1.
+void leave_out_runs(const RowPatterns& next, std::size_t quantities, RowPatterns& apart);
 
 // The function counts the rows whose `lag`-th before belongs to the same segment, by pattern, in `blocks`
-// equal blocks of rows. A quantity's lowest and highest value count as no repeats, nor, of a lag above 1, do
-// rows within a run that repeats in all quantities.
-std::vector<PatternCounts> count_patterns(const Recording& recording,
-                                          const std::vector<const Column*>& quantities, std::size_t lag,
-                                          std::size_t blocks);
+// equal blocks of rows.
+std::vector<PatternCounts> count_patterns(const Recording& recording, const RowPatterns& patterns,
+                                          std::size_t lag, std::size_t blocks);
 
 // The number of all patterns that contain `set`, and of all there are.
 double count_containing(const PatternCounts& counts, std::size_t set);
