@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "analysis/diagnose/decision_options.hpp"
 
@@ -171,10 +172,8 @@ double WhitenedHistogram::excess_kurtosis() const {
 WhitenedHistogram whitened_histogram(const WhitenedBlocks& blocks, const Observation& observation,
                                      std::size_t axis, const std::vector<double>& scale) {
     WhitenedHistogram histogram;
-    histogram.count.assign(resolution::bin_count, 0.0);
-    for (std::size_t i = 0; i < resolution::bin_count; ++i) {
-        histogram.at.push_back((static_cast<double>(i) + 0.5) / resolution::bins_per_sigma);
-    }
+    std::vector<std::size_t> counts(resolution::bin_count, 0);
+    std::vector<double> beyond;
     for (std::size_t block = 0; block < blocks.size(); ++block) {
         const double n = blocks.weight[block] + 1.0;
         const double unit = scale.empty() ? blocks.level : scale[block];
@@ -184,15 +183,20 @@ WhitenedHistogram whitened_histogram(const WhitenedBlocks& blocks, const Observa
                         [&](double w) {
                             const double off = std::fabs(w - blocks.mean[block]) * factor;
                             const double place = off * resolution::bins_per_sigma;
-                            histogram.samples += 1.0;
                             if (place < static_cast<double>(resolution::bin_count)) {
-                                histogram.count[static_cast<std::size_t>(place)] += 1.0;
+                                ++counts[static_cast<std::size_t>(place)];
                             } else {
-                                histogram.at.push_back(off);
-                                histogram.count.push_back(1.0);
+                                beyond.push_back(off);
                             }
                         });
     }
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        histogram.at.push_back((static_cast<double>(i) + 0.5) / resolution::bins_per_sigma);
+    }
+    histogram.at.insert(histogram.at.end(), beyond.begin(), beyond.end());
+    histogram.count.assign(counts.begin(), counts.end());
+    histogram.count.resize(histogram.at.size(), 1.0);
+    histogram.samples = std::accumulate(histogram.count.begin(), histogram.count.end(), 0.0);
     return histogram;
 }
 

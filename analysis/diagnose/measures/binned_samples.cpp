@@ -16,6 +16,17 @@ constexpr std::size_t drive_blocks = 16;
 
 namespace gyrolog {
 
+namespace {
+
+struct BinTotals {
+    double at = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    double count = 0.0;
+};
+
+}  // namespace
+
 Edges equal_ranges(const std::vector<float>& at) {
     const auto [least, most] = std::ranges::minmax(at);
     Edges edges{};
@@ -45,17 +56,31 @@ ValueBins by_value(const Observation& observation, std::size_t axis, const std::
                    const Edges& edges) {
     ValueBins bins;
     const std::vector<float>& white = observation.axis(axis).whitened;
+    // What drives a sensor changes slowly: neighbours mostly share a bin.
+    std::size_t bin = 0;
+    BinTotals here;
+    const auto put_down = [&] {
+        bins.at[bin] += here.at;
+        bins.sum[bin] += here.sum;
+        bins.squares[bin] += here.squares;
+        bins.count[bin] += here.count;
+        here = {};
+    };
     for (std::size_t slot = 0; slot < white.size(); ++slot) {
         if (!observation.present()[slot]) { continue; }
-        std::size_t bin = 0;
-        for (const float edge : edges) { bin += std::size_t{at[slot] >= edge}; }
+        const bool is_below = bin > 0 && !(at[slot] >= edges[bin - 1]);
+        if (is_below || (bin < edges.size() && at[slot] >= edges[bin])) {
+            put_down();
+            bin = static_cast<std::size_t>(std::ranges::upper_bound(edges, at[slot]) - edges.begin());
+        }
         const auto value = static_cast<double>(white[slot]);
-        bins.at[bin] += static_cast<double>(at[slot]);
-        bins.sum[bin] += value;
-        bins.squares[bin] += square(value);
-        bins.count[bin] += 1.0;
+        here.at += static_cast<double>(at[slot]);
+        here.sum += value;
+        here.squares += square(value);
+        here.count += 1.0;
     }
-    for (std::size_t bin = 0; bin < resolution::value_bins; ++bin) {
+    put_down();
+    for (bin = 0; bin < resolution::value_bins; ++bin) {
         const double nearest = static_cast<double>(edges[std::min(bin, edges.size() - 1)]);
         bins.at[bin] = bins.count[bin] > 0.0 ? bins.at[bin] / bins.count[bin] : nearest;
         if (bins.count[bin] <= resolution::samples_of_bin_least) { bins.count[bin] = 0.0; }
