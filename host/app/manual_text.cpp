@@ -190,7 +190,8 @@ for what is slow. One report says what both found. 24 h at 1 kHz take less than 
 in motion the beginning is diagnosed. `--average 10` looks at means of ten samples only.
 
 `--sensor accelerometer` holds the accelerometer at rest against the model: a recording in which it
-is turned or moved is refused, and `--still auto` takes the longest part at rest of one.
+is turned or moved is refused, and `--still auto` takes the longest part at rest of one. So is a gyro
+that is turned for more than a tenth of the time without a reference (`ref_x_dps` ... or `ref_qw` ...).
 
 If the reference is an orientation (`ref_qw` ... `ref_qz`), its rates are far noisier than the
 sensor. The sensor's noise is then judged at its longest rest, and how it answers to the motion in

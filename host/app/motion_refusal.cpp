@@ -10,11 +10,15 @@
 
 #include <fmt/format.h>
 
+#include "analysis/diagnose/likelihood/prediction.hpp"
+#include "analysis/diagnose/measures/unreferenced_motion.hpp"
 #include "analysis/numerics/robust_spread.hpp"
 #include "analysis/recording/block_means.hpp"
+#include "analysis/recording/recording_part.hpp"
 #include "analysis/recording/still_runs.hpp"
 #include "analysis/simulate/accelerometer_as_gyro.hpp"
 #include "host/app/denoise_knowledge.hpp"
+#include "host/app/quantity.hpp"
 
 namespace gyrolog {
 namespace {
@@ -51,6 +55,21 @@ double share_beyond(const std::vector<std::vector<BlockMean>>& axes, double most
     return static_cast<double>(beyond.size()) / static_cast<double>(blocks);
 }
 
+// What can be done with a gyro that was turned.
+std::string advice_on_rest(const Recording& recording, const std::string& path) {
+    const TimeSpan still = still_part_of(recording);
+    const double still_s = still.to_s - still.from_s;
+    if (!(still_s > 0.0)) { return "nowhere does it rest for a few seconds"; }
+    if (const auto refusal = diagnosis_refusal(part_of(recording, still))) {
+        return fmt::format("its longest part at rest, from {:.6g} s to {:.6g} s, {}", still.from_s,
+                           still.to_s, *refusal);
+    }
+    return fmt::format(
+        "`gyrolog diagnose {} --still auto ...` judges its longest part at rest, {} from "
+        "{:.6g} s on; --from and --to take another",
+        path, format_duration(still_s), still.from_s);
+}
+
 }  // namespace
 
 Status refuse_moving_accelerometer(const Recording& as_gyro, const std::string& path,
@@ -70,6 +89,17 @@ Status refuse_moving_accelerometer(const Recording& as_gyro, const std::string& 
                              "recording it is turned or moved by more than {:g} g; --still auto takes the "
                              "longest part at rest, --from and --to a part that is named",
                              path, 100.0 * share, options.rest_most_g)};
+}
+
+Status refuse_unreferenced_motion(const Recording& recording, const SensorModel& model,
+                                  const std::string& path, const MotionRefusalOptions& options) {
+    const double share = share_turned(recording, model);
+    if (share <= options.touched_most) { return {}; }
+    return Error{
+        ErrorCode::failed,
+        fmt::format("'{}': the gyro was turned for {:.0f} % of the time, and without a reference (columns "
+                    "ref_x_dps ... or ref_qw ...) nothing tells what it should have shown: {}",
+                    path, 100.0 * share, advice_on_rest(recording, path))};
 }
 
 Status refuse_motion(const AnalysisReport& report, const Recording& recording, const std::string& path,

@@ -6,6 +6,7 @@
 #include "analysis/noise/analyze.hpp"
 #include "analysis/recording/disturbances.hpp"
 #include "analysis/recording/recording.hpp"
+#include "analysis/simulate/sensor_model.hpp"
 #include "host/base/result.hpp"
 
 namespace gyrolog {
@@ -29,5 +30,10 @@ Status refuse_motion(const AnalysisReport& report, const Recording& recording, c
 // for longer than a touch: nothing says what it should have shown then.
 Status refuse_moving_accelerometer(const Recording& as_gyro, const std::string& path,
                                    const MotionRefusalOptions& options = {});
+
+// Error: failed where a gyro without a reference was turned for longer than a touch (share_turned()): its
+// motion is no error of the sensor's, and nothing tells it from one. It says what judges the part at rest.
+Status refuse_unreferenced_motion(const Recording& recording, const SensorModel& model,
+                                  const std::string& path, const MotionRefusalOptions& options = {});
 
 }  // namespace gyrolog

@@ -88,10 +88,13 @@ Result<ModelFile> read_plain_model(const Recording& recording, SensorKind sensor
     const SensorUnit unit = sensor == SensorKind::gyro ? SensorUnit::dps() : unit_of_accelerometer_as_gyro();
     std::optional<PlainModel> plain = plain_model(recording);
     if (!plain) {
-        return Error{ErrorCode::failed,
-                     fmt::format("'{}' has no part of four seconds in which nothing turns, for --auto "
-                                 "to take white noise and bias from: give a --model",
-                                 path)};
+        return Error{
+            ErrorCode::failed,
+            fmt::format(
+                "'{}' has no part of four seconds in which nothing turns, for --auto "
+                "to take white noise and bias from: give a --model, and where it was turned a reference "
+                "(columns ref_x_dps ... or ref_qw ...)",
+                path)};
     }
     ModelFile file;
     std::vector<std::string> noise;
@@ -211,6 +214,17 @@ Status check_rest(const DiagnosisInput& read, const RecordingInput& input) {
     return {};
 }
 
+// Of a gyro.
+Status check_turns(const DiagnosisInput& read, const SensorModel& model, const RecordingInput& input) {
+    if (input.sensor != SensorKind::gyro) { return {}; }
+    for (const auto& recording : {read.samples, read.means}) {
+        if (recording != nullptr) {
+            GYROLOG_CHECK(refuse_unreferenced_motion(*recording, model, input.path));
+        }
+    }
+    return {};
+}
+
 // Before the gyro is diagnosed for minutes.
 Status check_accelerometer(const RecordingDiagnosisRequest& request) {
     const RecordingInput input = input_of(request, SensorKind::accelerometer);
@@ -235,6 +249,7 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
     GYROLOG_CHECK(check_rest(read, input));
     if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, sensor, request.recording_path)); }
     complete_from(*read.samples, file);
+    GYROLOG_CHECK(check_turns(read, file.model, input));
     whole.rate_hz = file.model.rate_hz;
     DiagnosisInput second;
     if (!request.holdout_path.empty()) {
@@ -242,6 +257,7 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
         input.part = {};
         GYROLOG_TRY(second, read_for_diagnosis(input, read));
         GYROLOG_CHECK(check_rest(second, input));
+        GYROLOG_CHECK(check_turns(second, file.model, input));
     }
     std::optional<ProgressLine> progress(std::in_place, console);
     DiagnosisOptions options = options_of(*progress, request);

@@ -158,15 +158,41 @@ TEST_F(DiagnoseCommand, AnswersWhatAPersonAsks) {
     EXPECT_EQ(diagnose({recording, "--model", model, "--ask", heater, "--json", heater}), ExitCode::usage);
 }
 
-TEST_F(DiagnoseCommand, WarnsOfASensorThatWasTurnedWithoutAReference) {
+TEST_F(DiagnoseCommand, RefusesAtOnceASensorThatWasTurnedWithoutAReference) {
     SensorModel swung = typical_mpu9250();
     write_recording_of(swung);
     ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-"}), ExitCode::ok);
-    EXPECT_THAT(err.str(), Not(HasSubstr("seems to have been turned")));
+    EXPECT_THAT(err.str(), Not(HasSubstr("turned")));
     swung.effects.push_back({"tone", {}, {{"f_hz", 0.7}, {"amplitude_dps", 20.0}}, ""});
     write_recording_of(swung);
-    ASSERT_EQ(diagnose({recording, "--model", model, "--simulations", "20", "--json", "-"}), ExitCode::ok);
-    EXPECT_THAT(err.str(), HasSubstr("the sensor seems to have been turned"));
+    ASSERT_EQ(diagnose({recording, "--model", model, "--json", "-"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("the gyro was turned for 100 % of the time, and without a reference"));
+    EXPECT_THAT(err.str(), HasSubstr("nowhere does it rest"));
+
+    // It is turned from pose to pose after half a minute.
+    SimulationRequest request;
+    request.samples = 6000;
+    Recording turned = simulate_recording(typical_mpu9250(), request);
+    Column& x = turned.columns.front();
+    std::vector<double> values = x.values();
+    for (std::size_t row = 3000; row < values.size(); ++row) { values[row] += row % 600 < 200 ? 0.8 : 0.0; }
+    x = {"gx", "rad/s", std::move(values)};
+    ASSERT_TRUE(write_recording_csv(turned, recording).ok());
+    for (const std::vector<std::string>& by :
+         {std::vector<std::string>{"--auto"}, std::vector<std::string>{"--model", model}}) {
+        std::vector<std::string> arguments{recording, "--json", "-"};
+        arguments.insert(arguments.end(), by.begin(), by.end());
+        EXPECT_EQ(diagnose(arguments), ExitCode::failed);
+        EXPECT_THAT(err.str(), HasSubstr("the gyro was turned for "));
+        EXPECT_THAT(err.str(),
+                    HasSubstr("--still auto ...` judges its longest part at rest, 30 s from 0 s on"));
+    }
+    ASSERT_EQ(diagnose({recording, "--auto", "--still", "auto", "--simulations", "20", "--json", "-"}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_THAT(err.str(), Not(HasSubstr("turned")));
+    EXPECT_EQ(diagnose({recording, "--auto", "--from", "28", "--to", "50"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("samples; a diagnosis needs at least 2048"));
 }
 
 TEST_F(DiagnoseCommand, SaysThatALineOfTheModelIsNotInTheRecording) {
