@@ -56,11 +56,16 @@ double share_beyond(const std::vector<std::vector<BlockMean>>& axes, double most
 }
 
 // What can be done with a gyro that was turned.
-std::string advice_on_rest(const Recording& recording, const std::string& path) {
+std::string advice_on_rest(const Recording& recording, const SensorModel& model, const std::string& path,
+                           const MotionRefusalOptions& options) {
     const TimeSpan still = still_part_of(recording);
     const double still_s = still.to_s - still.from_s;
-    if (!(still_s > 0.0)) { return "nowhere does it rest for a few seconds"; }
-    if (const auto refusal = diagnosis_refusal(part_of(recording, still))) {
+    const Recording rest = part_of(recording, still);
+    // What swings all the time is nowhere less still than elsewhere.
+    if (!(still_s > 0.0) || share_turned(rest, model) > options.touched_most) {
+        return "nowhere does it rest for a few seconds";
+    }
+    if (const auto refusal = diagnosis_refusal(rest)) {
         return fmt::format("its longest part at rest, from {:.6g} s to {:.6g} s, {}", still.from_s,
                            still.to_s, *refusal);
     }
@@ -99,7 +104,7 @@ Status refuse_unreferenced_motion(const Recording& recording, const SensorModel&
         ErrorCode::failed,
         fmt::format("'{}': the gyro was turned for {:.0f} % of the time, and without a reference (columns "
                     "ref_x_dps ... or ref_qw ...) nothing tells what it should have shown: {}",
-                    path, 100.0 * share, advice_on_rest(recording, path))};
+                    path, 100.0 * share, advice_on_rest(recording, model, path, options))};
 }
 
 Status refuse_motion(const AnalysisReport& report, const Recording& recording, const std::string& path,

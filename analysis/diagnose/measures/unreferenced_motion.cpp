@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <set>
@@ -15,6 +16,13 @@
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/gyro_rest.hpp"
+
+namespace gyrolog::resolution {
+
+// Of white noise beside what is slow.
+constexpr std::size_t resting_difference_order = 3;
+
+}  // namespace gyrolog::resolution
 
 namespace gyrolog {
 
@@ -59,8 +67,7 @@ std::int64_t rows_of_second(const Recording& recording) {
 double white_variance(const Recording& recording, const Column& column, const AxisModel& model) {
     std::vector<Segment> rest = segments_within(recording.segments, recording.rate_hz, gyro_rest(recording));
     if (rest.empty()) { rest = recording.segments; }
-    constexpr std::size_t order = 3;  // what is slow drops out
-    return std::max(square(neighbour_scatter(column, rest, order)),
+    return std::max(square(neighbour_scatter(column, rest, resolution::resting_difference_order)),
                     square(model.noise.N_rad_per_sqrt_s) * recording.rate_hz);
 }
 
