@@ -204,6 +204,7 @@ struct GapDomain {
 // (calibration/reference_error.hpp).
 struct ReferenceQuality {
     bool is_orientation = false;
+    std::size_t gyros = 0;            // others of an array, that it is a mean of; 0: none
     bool is_known_at_rest = false;    // otherwise its error is not known without the sensor's noise
     std::size_t samples_per_row = 1;  // that a rate of the reference is a mean of
     // One sigma of such a rate, by axis: in the tenth of the time where it is least, and where it is most. If

@@ -100,6 +100,7 @@ Recording means_of(const Recording& recording, std::size_t samples) {
     means.name = recording.name;
     means.rate_hz = recording.rate_hz / number;
     means.samples_per_row = recording.samples_per_row * samples;
+    means.reference_gyros = recording.reference_gyros;
     if (recording.nominal_rate_hz) { means.nominal_rate_hz = *recording.nominal_rate_hz / number; }
     if (recording.rate_sd_hz) { means.rate_sd_hz = *recording.rate_sd_hz / number; }
     means.dropouts = recording.dropouts;

@@ -70,6 +70,7 @@ struct Recording {
     std::string name;
     double rate_hz = 0.0;                   // of rows; estimated from the stamps, or given
     std::size_t samples_per_row = 1;        // that each row is the mean of
+    std::size_t reference_gyros = 0;        // of an array, that ref_x ... are a mean of; 0: none
     std::optional<double> nominal_rate_hz;  // what the device or the user said
     std::optional<double> rate_sd_hz;       // one sigma of the estimate
     std::optional<double> stamp_jitter_s;   // one sigma of the stamps about the fitted grid

@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "host/app/command.hpp"
@@ -17,6 +18,7 @@ namespace gyrolog {
 namespace {
 
 constexpr unsigned threads_most = 1024;
+constexpr int gyro_most = 999'999;
 constexpr int average_most = 100'000;
 
 struct DiagnoseOptions {
@@ -26,6 +28,8 @@ struct DiagnoseOptions {
     std::string horizon = "1h";
     bool is_plain = false;
     std::string sensor = "gyro";
+    std::optional<unsigned long> unit;
+    std::string reference;
 };
 
 ExitCode diagnose_recordings(Console& console, const DiagnoseOptions& options) {
@@ -37,6 +41,7 @@ ExitCode diagnose_recordings(Console& console, const DiagnoseOptions& options) {
     const auto run = [&](Console& own, const std::string& recording, bool as_line) {
         RecordingDiagnosisRequest one = request;
         one.sensors = sensors_named(options.sensor);
+        one.unit = {options.unit, !options.reference.empty()};
         one.recording_path = recording;
         if (as_line) { one.json_path = "-"; }
         return diagnose_recording_to_files(own, one);
@@ -70,6 +75,9 @@ ExitCode diagnose_either(Console& console, DiagnoseOptions& options) {
     }
     if (!request.asked_paths.empty() && (options.sensor != "gyro" || request.average > 1)) {
         return wrong("--ask is for the gyro's samples as they are: without --sensor and --average");
+    }
+    if (options.unit && options.sensor != "gyro") {
+        return wrong("--gyro is for the gyro: without --sensor");
     }
     return diagnose_recordings(console, options);
 }
@@ -155,11 +163,20 @@ Action setup_diagnose(CLI::App& app) {
         ->check(CLI::IsMember({"gyro", "accelerometer", "all"}))
         ->type_name("SENSOR")
         ->capture_default_str();
+    app.add_option("--gyro", options->unit, "Which gyro of an array: 2 is gx2, gy2, gz2")
+        ->type_name("N")
+        ->check(whole_number(0, gyro_most));
+    app.add_option("--reference", options->reference,
+                   "others: what the array's other gyros say of the motion is the reference of --gyro")
+        ->type_name("others")
+        ->check(CLI::IsMember({"others"}))
+        ->needs(app.get_option("--gyro"));
     add_part_options(app, request.part);
     for (const char* of_recordings :
-         {"--auto",  "--verbose", "--unnamed", "--holdout", "--ask",     "--average", "--simulations",
-          "--seed",  "--threads", "--lsb-dps", "--rate",    "--columns", "--unit",    "--acc-unit",
-          "--lsb-g", "--sensor",  "--from",    "--to",      "--still",   "--jsonl"}) {
+         {"--auto",        "--verbose",  "--unnamed", "--holdout", "--ask",  "--average",
+          "--simulations", "--seed",     "--threads", "--lsb-dps", "--rate", "--columns",
+          "--unit",        "--acc-unit", "--lsb-g",   "--sensor",  "--gyro", "--reference",
+          "--from",        "--to",       "--still",   "--jsonl"}) {
         curve->excludes(app.get_option(of_recordings));
     }
     return [options](Console& console) { return diagnose_either(console, *options); };

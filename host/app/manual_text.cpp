@@ -199,6 +199,10 @@ means of 50 ms. If it is a rate (`ref_x_dps` ...) and the model has no `ref_nois
 that of its samples where the sensor rests. The report states the reference's error, delay and
 bandwidth first.
 
+Of an array (`gx1_dps`, `gx2_dps` ...) `--gyro 2` takes one gyro, and `--reference others` makes the
+others its reference: their mean, each brought to the median response of all, so that a fault of one
+is named for that one alone. What most of them share does not show.
+
 analysis/METHODS.md has how often the answer is right on recordings whose effect the program is not
 told.
 

@@ -202,6 +202,7 @@ RecordingInput input_of(const RecordingDiagnosisRequest& request, SensorKind sen
     input.sensor = sensor;
     input.samples_per_row = request.average;
     input.part = request.part;
+    input.unit = request.unit;
     input.text = request.text;
     return input;
 }

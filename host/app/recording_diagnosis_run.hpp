@@ -13,6 +13,7 @@
 #include "host/app/console.hpp"
 #include "host/app/exit_code.hpp"
 #include "host/app/part_choice.hpp"
+#include "host/app/recording_input.hpp"
 #include "host/app/text_options.hpp"
 #include "host/base/result.hpp"
 
@@ -34,6 +35,7 @@ struct RecordingDiagnosisRequest {
     std::optional<double> lsb_dps;
     std::optional<double> lsb_g{};
     Sensors sensors = Sensors::gyro;
+    UnitChoice unit{};  // of an array
     PartChoice part{};  // of the recording, not of the second one
     TextChoice text{};
     std::size_t average = 1;  // samples of which means are looked at

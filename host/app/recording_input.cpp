@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/denoise/array_reference.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/noise/sensor_columns.hpp"
 #include "host/app/sensor_choice.hpp"
@@ -187,9 +188,23 @@ Status check_scale(Recording& recording, double lsb_dps, const std::string& path
 
 }  // namespace
 
+namespace {
+
+Result<Recording> take_unit(Recording recording, const UnitChoice& choice, const std::string& path) {
+    if (!choice.unit) { return recording; }
+    UnitOfArray taken = choice.is_against_others ? unit_against_others(recording, *choice.unit)
+                                                 : unit_of_array(recording, *choice.unit);
+    if (taken.failure.empty()) { return std::move(taken.recording); }
+    return Error{ErrorCode::failed, fmt::format("'{}' {}", path, taken.failure)};
+}
+
+}  // namespace
+
 Result<Recording> read_recording(const RecordingInput& input) {
     GYROLOG_TRY(TimedRecording timed, read_timed_recording(input));
-    return recording_of_sensor(std::move(timed.recording), input.sensor, input.path);
+    GYROLOG_TRY(Recording recording,
+                recording_of_sensor(std::move(timed.recording), input.sensor, input.path));
+    return take_unit(std::move(recording), input.unit, input.path);
 }
 
 namespace {

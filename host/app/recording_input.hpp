@@ -17,6 +17,12 @@
 
 namespace gyrolog {
 
+// Of an array.
+struct UnitChoice {
+    std::optional<unsigned long> unit{};  // the one that is taken for the gyro (array_reference.hpp)
+    bool is_against_others = false;       // the others are its reference
+};
+
 struct RecordingInput {
     std::string path;
     std::optional<double> rate_hz;  // overrides the file's own
@@ -34,13 +40,14 @@ struct RecordingInput {
     std::string_view instead_of_gyro = "`--sensor accelerometer` takes that";
     TextChoice text{};  // what the columns of text are where their names do not say it
     PartChoice part{};
+    UnitChoice unit{};  // read_recording() takes it
     // The accelerometer: read_recording() gives it as accelerometer_as_gyro() has it.
     SensorKind sensor = SensorKind::gyro;
 };
 
 // Errors: those of load_capture(), read_recording_file(), take_part() and recording_of_sensor(), and
 // invalid_argument where counts, scaled by lsb_dps, are rates that no gyro has, and where a gyro is needed
-// and there is an accelerometer alone.
+// and there is an accelerometer alone; failed where the array does not have what `unit` asks for.
 Result<Recording> read_recording(const RecordingInput& input);
 
 // The same with the times of its part at rest, for a file that is read more than once.

@@ -179,13 +179,15 @@ Json noise_refits_json(const Diagnosis& diagnosis) {
 
 Json reference_json(const Diagnosis& diagnosis) {
     const ReferenceQuality& reference = *diagnosis.reference;
-    Json json{{"of", reference.is_orientation ? "orientation" : "rates"},
+    const char* rates = reference.gyros > 0 ? "units" : "rates";
+    Json json{{"of", reference.is_orientation ? "orientation" : rates},
               {"samples_per_row", reference.samples_per_row}};
     for (const std::size_t axis : diagnosis.axes) {
         const Span& error_rad_s = reference.error_rad_s.at(axis);
         json["error_dps"][axis_names.at(axis)] = {error_rad_s.from * deg_per_rad,
                                                   error_rad_s.to * deg_per_rad};
     }
+    if (reference.gyros > 0) { json["gyros"] = reference.gyros; }
     json["latency_s"] = reference.latency_s;
     json["latency_sd_s"] = reference.latency_sd_s;
     json["bandwidth_hz"] = reference.bandwidth_hz;

@@ -248,6 +248,21 @@ std::vector<std::string> left_items(const Diagnosis& diagnosis) {
     return items;
 }
 
+// What others of its kind cannot tell. Empty of another reference.
+std::string gyros_sentence(std::size_t gyros) {
+    if (gyros == 0) { return {}; }
+    if (gyros == 1) {
+        return "The reference is the array's one other gyro: which of the two is off nobody can tell, and "
+               "what "
+               "both share, such as a scale error or a delay, does not show. ";
+    }
+    return fmt::format(
+        "The reference is the mean of the array's {} other gyros, each brought to the median response of "
+        "all: "
+        "what most of them share, such as a scale error or a delay, does not show. ",
+        gyros);
+}
+
 // What the sensor is judged by. Empty where a model states it.
 std::string reference_sentence(const Diagnosis& diagnosis) {
     if (!diagnosis.reference) { return {}; }
@@ -264,14 +279,17 @@ std::string reference_sentence(const Diagnosis& diagnosis) {
     const std::string row = reference.samples_per_row == 1
                                 ? "a sample"
                                 : fmt::format("a mean of {} samples", reference.samples_per_row);
-    return fmt::format(
-        "The {} off by {} (one sigma of {}{}), and follow the sensor up to {:.2g} Hz. The sensor is {} ms {} "
-        "them: which of the two is late nobody can tell.{}",
-        reference.is_orientation ? "rates of the orientation are" : "reference rates are", listed(errors),
-        row, reference.is_known_at_rest ? ", where the sensor rests" : "", reference.bandwidth_hz,
-        with_uncertainty(1e3 * std::fabs(reference.latency_s), 1e3 * reference.latency_sd_s),
-        reference.latency_s < 0.0 ? "ahead of" : "behind",
-        reference.is_known_at_rest ? "" : " What is noise of the sensor shows at rest only.");
+    return gyros_sentence(reference.gyros) +
+           fmt::format(
+               "The {} off by {} (one sigma of {}{}), and follow the sensor up to {:.2g} Hz. The sensor is "
+               "{} ms {} "
+               "them: which of the two is late nobody can tell.{}",
+               reference.is_orientation ? "rates of the orientation are" : "reference rates are",
+               listed(errors), row, reference.is_known_at_rest ? ", where the sensor rests" : "",
+               reference.bandwidth_hz,
+               with_uncertainty(1e3 * std::fabs(reference.latency_s), 1e3 * reference.latency_sd_s),
+               reference.latency_s < 0.0 ? "ahead of" : "behind",
+               reference.is_known_at_rest ? "" : " What is noise of the sensor shows at rest only.");
 }
 
 std::string heading_text(const Diagnosis& diagnosis) {

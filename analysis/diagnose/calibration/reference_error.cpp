@@ -81,14 +81,16 @@ bool changes_noise_alone(const EffectModel& entry) {
 
 enum class AngleNoise { none, as_seen };
 
-// Noise as large as all that is left, and no other.
-SensorModel with_noise_of(const Observation& left, SensorModel model, AngleNoise angle) {
+// Noise as large as all that is left, and no other but the drift.
+SensorModel with_noise_of(const Observation& left, SensorModel model, AngleNoise angle, double drift_rel) {
     std::erase_if(model.effects, changes_noise_alone);
     for (const std::size_t axis : left.prediction().axes()) {
         AxisModel& of_axis = model.axes[axis];
-        const double ramp_rad_s2 = of_axis.noise.R_rad_per_s2;
+        const NoiseCoefficients before = of_axis.noise;
         of_axis.noise = {};
-        of_axis.noise.R_rad_per_s2 = ramp_rad_s2;
+        of_axis.noise.R_rad_per_s2 = before.R_rad_per_s2;
+        of_axis.noise.B_rad_per_s = drift_rel * before.B_rad_per_s;
+        of_axis.noise.K_rad_per_s_sqrt_s = drift_rel * before.K_rad_per_s_sqrt_s;
         of_axis.sd_rel.clear();
         const AngleAndWhite seen = angle_and_white(left.prediction(), left.axis(axis));
         const bool is_white = angle == AngleNoise::none;
@@ -190,9 +192,10 @@ double bandwidth_hz(const Observation& left) {
 // Reads the error from what is left of the rows.
 class ErrorReader {
 public:
-    ErrorReader(std::shared_ptr<const Recording> rows, std::uint64_t seed)
+    ErrorReader(std::shared_ptr<const Recording> rows, std::uint64_t seed, double drift_rel = 0.0)
         : rows_(std::move(rows)),
           seed_(seed),
+          drift_rel_(drift_rel),
           slots_(static_cast<std::size_t>(std::max(2.0, std::round(resolution::level_s * rows_->rate_hz)))) {}
 
     // What is left with this model, its gains and its latency as the recording has them.
@@ -205,7 +208,7 @@ public:
 
     SensorModel with_density(SensorModel model, AngleNoise angle) const {
         const Observation all = left_by(model);
-        model = with_noise_of(all, std::move(model), angle);
+        model = with_noise_of(all, std::move(model), angle, drift_rel_);
         const Observation left = left_by(model);
         const auto prediction = std::make_shared<const Prediction>(left.prediction());
         const auto density =
@@ -253,6 +256,7 @@ public:
 private:
     std::shared_ptr<const Recording> rows_;
     std::uint64_t seed_;
+    double drift_rel_;
     std::size_t slots_;
 };
 
@@ -269,8 +273,8 @@ double most_error_rad_s(const ReferenceQuality& quality) {
 }  // namespace
 
 WithReferenceError with_reference_error(SensorModel model, const std::shared_ptr<const Recording>& rows,
-                                        std::uint64_t seed) {
-    const ErrorReader reader(rows, seed);
+                                        std::uint64_t seed, double drift_rel) {
+    const ErrorReader reader(rows, seed, drift_rel);
     const ReferenceQuality quality =
         reader.quality(reader.left_by(reader.with_density(model, AngleNoise::as_seen)));
     // A sensor does not follow the error of its reference: what acts on it is the rate without, as far as

@@ -21,9 +21,10 @@ struct WithReferenceError {
     ReferenceQuality quality;
 };
 
-// `rows` has a reference rate, and no diagnosis_refusal().
+// `rows` has a reference rate, and no diagnosis_refusal(). `drift_rel`: B and K of what is left, of the
+// model's: some densities at the lowest frequencies do not tell a drift. 0: what is left does not drift.
 WithReferenceError with_reference_error(SensorModel model, const std::shared_ptr<const Recording>& rows,
-                                        std::uint64_t seed);
+                                        std::uint64_t seed, double drift_rel = 0.0);
 
 // What the rows tell of a reference rate whose noise is known by axis, and is the model's.
 ReferenceQuality quality_of_rates(const SensorModel& model, const std::shared_ptr<const Recording>& rows,

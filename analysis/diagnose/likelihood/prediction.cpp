@@ -159,7 +159,8 @@ std::vector<float> cosines_of(const std::vector<float>& values, CosineTransform&
 std::optional<std::string> diagnosis_refusal(const Recording& recording) {
     if (axes_of(recording).empty()) {
         return "has no angular rate of an axis x, y or z in a known scale: columns gx_dps, gy_dps, gz_dps "
-               "(raw counts need a model with their lsb, and arrays or angles cannot be diagnosed)";
+               "(raw counts need a model with their lsb, --gyro takes one of an array, and angles cannot be "
+               "diagnosed)";
     }
     if (recording.rows() < resolution::diagnosable_samples_min) {
         return "has " + std::to_string(recording.rows()) + " samples; a diagnosis needs at least " +

@@ -82,14 +82,20 @@ std::shared_ptr<const Recording> shared_means(const Recording& recording) {
     return std::make_shared<const Recording>(means_against_orientation(recording));
 }
 
+// Of the model's: that of the judged gyro and of the mean of others of its kind. No other reference drifts.
+double drift_against(const Recording& recording) {
+    const auto gyros = static_cast<double>(recording.reference_gyros);
+    return gyros > 0.0 ? std::sqrt(1.0 + 1.0 / gyros) : 0.0;
+}
+
 // `model`: of the recording's rows; `rows`: those, or means of them against the angle turned.
 std::optional<Diagnosis> diagnose_answer(const Recording& recording,
                                          const std::shared_ptr<const Recording>& rows,
                                          const SensorModel& model, const std::string& model_name,
                                          DiagnosisOptions options) {
     const std::size_t samples = rows->samples_per_row / recording.samples_per_row;
-    WithReferenceError error =
-        with_reference_error(model_of_means(model, samples, recording.rate_hz), rows, options.seed);
+    WithReferenceError error = with_reference_error(model_of_means(model, samples, recording.rate_hz), rows,
+                                                    options.seed, drift_against(recording));
     options.noise_of = Prediction::NoiseOf::reference_too;
     std::optional<Diagnosis> pass = diagnose(rows, error.model, model_name, options);
     if (!pass) { return std::nullopt; }
@@ -123,6 +129,15 @@ std::optional<Diagnosis> diagnose_against_orientation(const std::shared_ptr<cons
     if (options.holdout) { options.holdout = shared_means(*options.holdout); }
     auto diagnosis = diagnose_in_two_passes(recording, means, model, model_name, options);
     if (diagnosis) { diagnosis->reference->is_orientation = true; }
+    return diagnosis;
+}
+
+// Gyros have noise of all the kinds that the judged one has.
+std::optional<Diagnosis> diagnose_against_units(const std::shared_ptr<const Recording>& recording,
+                                                const SensorModel& model, const std::string& model_name,
+                                                const DiagnosisOptions& options) {
+    auto diagnosis = diagnose_in_two_passes(recording, recording, model, model_name, options);
+    if (diagnosis) { diagnosis->reference->gyros = recording->reference_gyros; }
     return diagnosis;
 }
 
@@ -162,6 +177,9 @@ std::optional<Diagnosis> diagnose_in_motion(const std::shared_ptr<const Recordin
         return diagnosis_refusal(*means)
                    ? diagnose(recording, model, model_name, options)
                    : diagnose_against_orientation(recording, means, model, model_name, options);
+    }
+    if (recording->reference_gyros > 0) {
+        return diagnose_against_units(recording, model, model_name, options);
     }
     const ReferenceNoise noise =
         model.ref_noise_rad_s > 0.0 ? ReferenceNoise{} : reference_noise_at_rest(*recording);

@@ -1,6 +1,7 @@
 // A sensor that moves against a reference of which no model says how good it is.
 //
-// Rates whose noise is known well from a rest (reference_noise.hpp) are a reference that is known. Against
+// Rates whose noise is known well from a rest (reference_noise.hpp) are a reference that is known, but for
+// those of other gyros of an array (array_reference.hpp), which drift and hum as the judged one does. Against
 // any other the sensor is judged in two passes, if it rests for long enough: at its longest rest, where its
 // noise shows; and over the whole recording, in rows, where how it answers to the motion does. The error of
 // the reference is read from the rows first (calibration/reference_error.hpp). Against an orientation (ref_qw

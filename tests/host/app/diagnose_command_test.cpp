@@ -195,6 +195,69 @@ TEST_F(DiagnoseCommand, RefusesAtOnceASensorThatWasTurnedWithoutAReference) {
     EXPECT_THAT(err.str(), HasSubstr("samples; a diagnosis needs at least 2048"));
 }
 
+// Three gyros that swing about x, the second by 3 % too much; at rest first.
+void write_array(const std::string& path) {
+    constexpr std::size_t rows = 6000;
+    Recording still;
+    still.rate_hz = 100.0;
+    still.segments = {{0, rows, 0}};
+    for (const char* name : {"gx", "gy", "gz", "ref_x", "ref_y", "ref_z"}) {
+        still.columns.push_back({name, "rad/s", std::vector<double>(rows, 0.0)});
+    }
+    std::vector<double> swing(rows, 0.0);
+    for (std::size_t row = 2500; row < rows; ++row) {
+        swing[row] = std::sin(0.03 * static_cast<double>(row - 2500));
+    }
+    still.columns[3].data = std::move(swing);
+    const auto world = std::make_shared<const RecordedWorld>(std::make_shared<const Recording>(still));
+    Recording array;
+    for (std::size_t gyro = 1; gyro <= 3; ++gyro) {
+        SensorModel sensor = typical_mpu9250();
+        if (gyro == 2) { sensor.effects.push_back({"scale_factor", {"x"}, {{"eps", 0.03}}, ""}); }
+        SimulationRequest request;
+        request.like = world;
+        request.seed = gyro;
+        Recording one = simulate_recording(sensor, request);
+        std::erase_if(one.columns, [](const Column& column) { return !column.name.starts_with('g'); });
+        for (Column& column : one.columns) { column.name += std::to_string(gyro); }
+        if (gyro == 1) {
+            array = std::move(one);
+            continue;
+        }
+        std::ranges::move(one.columns, std::back_inserter(array.columns));
+    }
+    ASSERT_TRUE(write_recording_csv(array, path).ok());
+}
+
+TEST_F(DiagnoseCommand, JudgesAGyroOfAnArrayAgainstTheOthers) {
+    write_array(recording);
+    ASSERT_EQ(diagnose({recording, "--model", model, "--gyro", "2", "--reference", "others", "--simulations",
+                        "20", "--json", folder.path("d.json")}),
+              ExitCode::ok)
+        << err.str();
+    EXPECT_THAT(out.str(), HasSubstr("the array's 2 other gyros"));
+    const json answer = json::parse(read_whole_file(folder.path("d.json")));
+    EXPECT_EQ(answer["reference"]["of"], "units");
+    EXPECT_EQ(answer["reference"]["gyros"], 2);
+    ASSERT_EQ(answer["causes"].size(), 1U) << answer["causes"];
+    EXPECT_EQ(answer["causes"][0]["effect"], "scale_factor");
+    EXPECT_NEAR(answer["causes"][0]["params"]["eps"].get<double>(), 0.03, 0.003);
+
+    EXPECT_EQ(diagnose({recording, "--model", model}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("--gyro takes one of an array"));
+    EXPECT_EQ(diagnose({recording, "--model", model, "--gyro", "2"}), ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("the gyro was turned for "));
+    EXPECT_EQ(diagnose({recording, "--model", model, "--gyro", "7", "--reference", "others"}),
+              ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("has no gyro 7: its gyros are 1, 2, 3"));
+    EXPECT_EQ(diagnose({recording, "--model", model, "--reference", "others"}), ExitCode::usage);
+    EXPECT_EQ(diagnose({recording, "--model", model, "--gyro", "2", "--sensor", "all"}), ExitCode::usage);
+    write_recording_of(typical_mpu9250());
+    EXPECT_EQ(diagnose({recording, "--model", model, "--gyro", "1", "--reference", "others"}),
+              ExitCode::failed);
+    EXPECT_THAT(err.str(), HasSubstr("has no array of gyros"));
+}
+
 TEST_F(DiagnoseCommand, SaysThatALineOfTheModelIsNotInTheRecording) {
     SensorModel humming = typical_mpu9250();
     humming.effects.push_back({"tone", {}, {{"f_hz", 31.0}, {"amplitude_dps", 0.05}}, ""});
