@@ -41,9 +41,9 @@ struct DecisionOptions {
 
     // A share: all, but for what spikes or a thermometer's coarse steps spoil.
     double nearly_all = 0.9;
-    // Times: a telegraph shows at least so many dwell times, and what is called periodic so many periods: the
-    // mean of eight independent ones is known to a third, which is seen.
-    double repetitions_least = 8.0;
+    // Times: a telegraph shows at least so many dwell times, and what is called periodic so many periods. The
+    // mean of as many independent ones is just seen.
+    constexpr double repetitions_least() const { return seen_sigma * seen_sigma; }
 
     // A factor by which an estimate may leave the plausible range of the effect's definition.
     double beyond_plausible = 2.0;
@@ -59,8 +59,6 @@ struct DecisionOptions {
     double same_line_resolutions = 10.0;
     // Ratio of the axes' gains to a noise that they share; below, it is one axis' own.
     double gain_ratio_least = 0.3;
-    // Of a step of the converter: printed decimals lie this near to its grid.
-    double on_grid_tolerance = 0.05;
     // Relative: a step that is coarser than the model's by less is the model's; of two axes, a tenth of it.
     double same_step_rel = 0.02;
     // Relative: a smooth distribution of the samples' changes departs by this from its parabola.

@@ -27,12 +27,7 @@ std::size_t fast_length(std::size_t most) {
 
 template <typename Real>
 struct CosineTransform::Plan {
-    explicit Plan(std::size_t length)
-        : reordered(length),
-          spectrum(length),
-          turn(length / 2 + 1),
-          to_spectrum(dft_of(length, 0)),
-          from_spectrum(dft_of(length, CV_HAL_DFT_INVERSE | CV_HAL_DFT_SCALE)) {
+    explicit Plan(std::size_t length) : reordered(length), spectrum(length), turn(length / 2 + 1) {
         for (std::size_t k = 0; k < turn.size(); ++k) {
             const double angle =
                 -std::numbers::pi * static_cast<double>(k) / (2.0 * static_cast<double>(length));
@@ -48,7 +43,7 @@ struct CosineTransform::Plan {
             reordered[i] = values[2 * i];
             reordered[n - 1 - i] = values[2 * i + 1];
         }
-        apply(*to_spectrum, reordered, spectrum);
+        to_spectrum.apply(reordered, spectrum);
         // turn_k V_k = (C_k - i C_{n-k}) / 1, C_k = sum x cos(...): both halves from one product.
         const Real scale = std::sqrt(Real{2} / static_cast<Real>(n));
         values[0] = spectrum[0] / std::sqrt(static_cast<Real>(n));
@@ -71,7 +66,7 @@ struct CosineTransform::Plan {
             spectrum[2 * k] = c.imag();
         }
         spectrum[n - 1] = std::sqrt(Real{2}) * scale * values[n / 2];
-        apply(*from_spectrum, spectrum, reordered);
+        from_spectrum.apply(spectrum, reordered);
         for (std::size_t i = 0; i < n / 2; ++i) {
             values[2 * i] = reordered[i];
             values[2 * i + 1] = reordered[n - 1 - i];
@@ -79,20 +74,28 @@ struct CosineTransform::Plan {
     }
 
     // cv::dft() makes its tables anew each time.
-    static cv::Ptr<cv::hal::DFT1D> dft_of(std::size_t length, int flags) {
-        return cv::hal::DFT1D::create(static_cast<int>(length), 1, cv::DataType<Real>::depth,
-                                      flags | CV_HAL_DFT_REAL_OUTPUT);
-    }
+    class Dft {
+    public:
+        explicit Dft(int flags) : flags_(flags) {}
 
-    static void apply(cv::hal::DFT1D& dft, const std::vector<Real>& from, std::vector<Real>& to) {
-        dft.apply(reinterpret_cast<const uchar*>(from.data()), reinterpret_cast<uchar*>(to.data()));
-    }
+        void apply(const std::vector<Real>& from, std::vector<Real>& to) {
+            if (!dft_) {
+                dft_ = cv::hal::DFT1D::create(static_cast<int>(from.size()), 1, cv::DataType<Real>::depth,
+                                              flags_ | CV_HAL_DFT_REAL_OUTPUT);
+            }
+            dft_->apply(reinterpret_cast<const uchar*>(from.data()), reinterpret_cast<uchar*>(to.data()));
+        }
+
+    private:
+        int flags_;
+        cv::Ptr<cv::hal::DFT1D> dft_;
+    };
 
     std::vector<Real> reordered;
     std::vector<Real> spectrum;            // as OpenCV packs it: Re V_0, Re V_1, Im V_1, ... Re V_{n/2}
     std::vector<std::complex<Real>> turn;  // exp(-i pi k / 2n)
-    cv::Ptr<cv::hal::DFT1D> to_spectrum;
-    cv::Ptr<cv::hal::DFT1D> from_spectrum;
+    Dft to_spectrum{0};
+    Dft from_spectrum{CV_HAL_DFT_INVERSE | CV_HAL_DFT_SCALE};
 };
 
 CosineTransform::CosineTransform(std::size_t length) : plan_(std::make_unique<Plan<double>>(length)) {}

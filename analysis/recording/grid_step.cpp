@@ -14,8 +14,6 @@ namespace {
 
 // A converter's steps are looked for among so many different values at most.
 constexpr std::size_t most_steps = 1U << 16U;
-// Of a step: how far printed decimals may put a value from its place on the grid.
-constexpr double grid_tolerance = 0.05;
 
 // Values on a grid come again and again: of most of them this tells sooner than a tree that they are known.
 class RecentValues {
@@ -61,7 +59,7 @@ double grid_step(std::span<const double> values) {
     for (auto high = std::next(different.begin()); high != different.end(); ++high) {
         const double distance = *high - *different.begin();
         const double steps = std::round(distance / refined);
-        if (std::abs(distance - steps * refined) > grid_tolerance * refined) { return 0.0; }
+        if (std::abs(distance - steps * refined) > on_grid_tolerance * refined) { return 0.0; }
         refined = distance / steps;
     }
     return range / std::round(range / refined);

@@ -7,9 +7,11 @@
 
 namespace gyrolog {
 
-// The step that all values are whole multiples of apart, to the rounding of printed decimals (a twentieth of
-// the step). 0: there is none, or there are fewer than four different values, or values hardly repeat. NaN is
-// passed over.
+// Of the step: how far the rounding of printed decimals may put a value from its place on the grid.
+inline constexpr double on_grid_tolerance = 0.05;
+
+// The step that all values are whole multiples of apart, to that tolerance. 0: there is none, or there are
+// fewer than four different values, or values hardly repeat. NaN is passed over.
 double grid_step(std::span<const double> values);
 
 // Of a column's values, in its unit: of counts their scale.

@@ -43,7 +43,7 @@ Changes count_changes(const Column& column, const Recording& recording, double c
                         std::fabs(static_cast<double>(data[row]) - static_cast<double>(data[row - 1])) / code;
                     const double codes = std::round(step);
                     if (codes >= static_cast<double>(resolution::codes_max)) { continue; }
-                    if (std::fabs(step - codes) > decisions.on_grid_tolerance) {
+                    if (std::fabs(step - codes) > on_grid_tolerance) {
                         changes.off_grid += 1.0;
                     } else if (codes > 0.0) {
                         changes.of_codes[static_cast<std::size_t>(codes)] += 1.0;
@@ -145,8 +145,7 @@ private:
         }
         const Changes changes = count_changes(column, recording, step_rad_s / std::fabs(column.scale));
         if (changes.on_grid <= decisions.nearly_all * (changes.on_grid + changes.off_grid)) { return {}; }
-        const double chance =
-            expected_rad_s > 0.0 ? expected_rad_s / step_rad_s : 2.0 * decisions.on_grid_tolerance;
+        const double chance = expected_rad_s > 0.0 ? expected_rad_s / step_rad_s : 2.0 * on_grid_tolerance;
         return {step_rad_s, changes.on_grid * -std::log(chance)};
     }
 

@@ -142,7 +142,7 @@ private:
         double best_gain = 0.0;
         Point best;
         const double longest_s = std::min(resolution::correlation_to_s,
-                                          0.4 * prediction_->duration_s() / decisions.repetitions_least);
+                                          0.4 * prediction_->duration_s() / decisions.repetitions_least());
         double tau_s = resolution::correlation_from_s / resolution::correlation_ratio;
         while (tau_s * resolution::correlation_ratio < longest_s) {
             tau_s *= resolution::correlation_ratio;
@@ -195,7 +195,7 @@ private:
         };
         return inside("amplitude_dps", at.distance * deg_per_rad) && inside("dwell_high_s", at.high_s) &&
                inside("dwell_low_s", at.low_s) && at.correlation_s() * prediction_->rate_hz() > 1.0 &&
-               std::max(at.high_s, at.low_s) * decisions.repetitions_least < prediction_->duration_s();
+               std::max(at.high_s, at.low_s) * decisions.repetitions_least() < prediction_->duration_s();
     }
 
     Averages averages_for(const Observation& observation, std::size_t axis, const Telegraph& telegraph,

@@ -101,7 +101,7 @@ struct Runs {
 // At random that is rare.
 std::optional<Runs> random_runs(const std::vector<double>& distances, const Excess& excess) {
     const auto count = static_cast<double>(distances.size());
-    if (count < decisions.repetitions_least) { return std::nullopt; }
+    if (count < decisions.repetitions_least()) { return std::nullopt; }
     const double period = 1.0 / excess.eps;
     const double near = 1.0 + decisions.seen_sigma * period * excess.eps_sd / excess.eps;
     double in_beat = 0.0;

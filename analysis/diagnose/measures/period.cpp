@@ -48,7 +48,7 @@ GapCurve period_curve(const Observation& observation, std::size_t axis) {
     const double sd = std::sqrt(squares / static_cast<double>(lags - resolution::period_least));
     GapCurve curve{&measures::period, axis, axis, {}, {}};
     for (std::size_t from = resolution::period_least; from < resolution::period_most; from *= 2) {
-        if (static_cast<double>(lags) / static_cast<double>(2 * from) < decisions.repetitions_least) {
+        if (static_cast<double>(lags) / static_cast<double>(2 * from) < decisions.repetitions_least()) {
             break;
         }
         double most = 0.0;
