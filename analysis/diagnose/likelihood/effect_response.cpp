@@ -2,17 +2,12 @@
 
 #include <algorithm>
 
+#include "analysis/diagnose/likelihood/hole_filling.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 
 namespace gyrolog {
 
 namespace {
-
-std::vector<float> response_cosines(std::vector<double>& work, std::size_t kept, CosineTransform& transform) {
-    transform.forward(work);
-    work[0] = 0.0;
-    return {work.begin(), work.begin() + static_cast<std::ptrdiff_t>(kept)};
-}
 
 std::array<std::vector<float>, 3> simulated_response(const Prediction& prediction, const EffectModel& effect,
                                                      bool slow) {
@@ -43,7 +38,8 @@ std::array<std::vector<float>, 3> simulated_response(const Prediction& predictio
         for (std::size_t slot = 0; slot < work.size(); ++slot) {
             work[slot] = static_cast<double>(changed[axis][slot]) - static_cast<double>(before[slot]);
         }
-        cosines[axis] = response_cosines(work, kept, *transform);
+        cosines[axis] = response_cosines(prediction, axis, work, *transform);
+        cosines[axis].resize(kept);
     }
     return cosines;
 }

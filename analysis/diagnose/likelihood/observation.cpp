@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/likelihood/hole_filling.hpp"
 #include "analysis/diagnose/likelihood/lag_course.hpp"
 #include "analysis/diagnose/likelihood/stand_ins.hpp"
 #include "analysis/diagnose/likelihood/white_share.hpp"
@@ -14,12 +15,6 @@
 
 namespace gyrolog::resolution {
 
-// How many samples on either side say what the level in a hole is: so many that what they have in common with
-// the stand-ins is slower than the white noise reaches.
-constexpr std::size_t level_samples = 256;
-// Stand-ins farther apart tell nothing of each other. Behind a filter of 5 Hz at 100 Hz the weight there is
-// 1e-12 of the nearest one's, beside flicker noise 2e-3.
-constexpr std::size_t stand_in_lags = 64;
 // Coefficients. Their mean square tells the power of slow noise to a quarter, sqrt(2 / 32) of a normal
 // variable's.
 constexpr double level_coefficients = 32.0;
@@ -81,63 +76,12 @@ std::vector<Segment> placed_rows(const Prediction& prediction, const Recording& 
     return placed;
 }
 
-double mean_of_present(const std::vector<float>& values, const std::vector<bool>& present, std::size_t from,
-                       bool backwards) {
-    double sum = 0.0;
-    double count = 0.0;
-    const std::size_t reach = 2 * resolution::level_samples;
-    for (std::size_t i = 0; i < reach && count < static_cast<double>(resolution::level_samples); ++i) {
-        if (backwards ? i > from : from + i >= values.size()) { break; }
-        const std::size_t slot = backwards ? from - i : from + i;
-        if (!present[slot]) { continue; }
-        sum += static_cast<double>(values[slot]);
-        count += 1.0;
-    }
-    return count > 0.0 ? sum / count : std::nan("");
-}
-
-// Between the levels on either side of every hole a straight line, with the model's white noise on it.
+// With the model's white noise on it.
 void draw_first_guesses(const Prediction& prediction, std::size_t axis, std::vector<float>& values,
                         const std::vector<bool>& present, std::uint64_t seed) {
     const double sd = std::sqrt(prediction.parts(axis).back().sum() * prediction.rate_hz());
     const RandomStream noise = derived_stream(seed, RandomPurpose::stand_ins, axis);
-    const std::size_t length = values.size();
-    for (std::size_t begin = 0; begin < length;) {
-        if (present[begin]) {
-            ++begin;
-            continue;
-        }
-        std::size_t end = begin;
-        while (end < length && !present[end]) { ++end; }
-        double before = begin > 0 ? mean_of_present(values, present, begin - 1, true) : std::nan("");
-        double after = end < length ? mean_of_present(values, present, end, false) : std::nan("");
-        if (std::isnan(before)) { before = std::isnan(after) ? 0.0 : after; }
-        if (std::isnan(after)) { after = before; }
-        // Next to a short hole both levels are those of one place.
-        const bool is_short = end - begin <= resolution::level_samples;
-        for (std::size_t slot = begin; slot < end; ++slot) {
-            const double share =
-                is_short ? 0.5 : static_cast<double>(slot - begin + 1) / static_cast<double>(end - begin + 1);
-            values[slot] = static_cast<float>(before + share * (after - before) + sd * noise.normal(slot));
-        }
-        begin = end;
-    }
-}
-
-// Returns the mean.
-double take_mean_off(std::vector<float>& values, const std::vector<bool>& present) {
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (std::size_t slot = 0; slot < values.size(); ++slot) {
-        if (!present[slot]) { continue; }
-        sum += static_cast<double>(values[slot]);
-        ++count;
-    }
-    const auto mean = static_cast<float>(count > 0 ? sum / static_cast<double>(count) : 0.0);
-    for (std::size_t slot = 0; slot < values.size(); ++slot) {
-        if (present[slot]) { values[slot] -= mean; }
-    }
-    return static_cast<double>(mean);
+    join_holes(values, present, [&](std::size_t slot) { return sd * noise.normal(slot); });
 }
 
 // Moves the parameters of the model's uncertain responses to their most likely values under the density; what
@@ -173,37 +117,6 @@ void take_off(const UncertainMean& uncertain, const std::vector<double>& fit, st
     }
 }
 
-// Divides the coefficients by divisor_of(the variance that the noise gives them).
-template <typename Values, typename Divisor>
-void divide_by_bin(const Prediction& prediction, const std::vector<double>& density, Values& cosines,
-                   Divisor divisor_of) {
-    const SpectralBins& bins = prediction.bins();
-    cosines[0] = 0;
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-        const double divisor = divisor_of(density[i] * prediction.rate_hz());
-        // Coefficients of which the half has no bin go with the next one's.
-        const std::size_t first = i == 0 ? 1 : bins[i - 1].end;
-        const std::size_t end = i + 1 == bins.size() ? cosines.size() : bins[i].end;
-        for (std::size_t k = first; k < end; ++k) {
-            cosines[k] = static_cast<typename Values::value_type>(static_cast<double>(cosines[k]) / divisor);
-        }
-    }
-}
-
-// The product of the inverse of the noise's covariance with the residual, by slot.
-std::vector<double> weighted_residual(const Prediction& prediction, const std::vector<double>& density,
-                                      const std::vector<float>& cosines, CosineTransform& transform) {
-    std::vector<double> weighted(cosines.begin(), cosines.end());
-    divide_by_bin(prediction, density, weighted, [](double variance) { return variance; });
-    transform.inverse(weighted);
-    return weighted;
-}
-
-InverseCovariance inverse_covariance_of(const Prediction& prediction, const std::vector<double>& density) {
-    return inverse_covariance(prediction.bins(), density, prediction.rate_hz(), prediction.length(),
-                              resolution::stand_in_lags);
-}
-
 // The mean power of the bins around this one, as few as have level_coefficients.
 double power_around(const SpectralBins& bins, const std::vector<double>& power, std::size_t bin) {
     double sum = bins[bin].count() * power[bin];
@@ -221,11 +134,12 @@ double power_around(const SpectralBins& bins, const std::vector<double>& power, 
 
 // The noise that was fitted; at rest, where the recording has more slow noise, that. Expected without it,
 // stand-ins would be outliers beside a drift that no cause explains yet. Where the sensor moves, a slow
-// residual may be an answer to the motion that the model has wrong, and does not go on in a hole as noise
-// does.
-std::vector<double> density_of_expectation(const Prediction& prediction, const AxisObservation& seen) {
+// residual may be an answer to the motion that the model has wrong, does not go on in a hole as noise does,
+// and is no noise to fit: then the model's, by which a response is filled in, too (hole_filling.hpp).
+std::vector<double> density_of_expectation(const Prediction& prediction, std::size_t axis,
+                                           const AxisObservation& seen) {
+    if (prediction.moves()) { return density_of_model(prediction, axis); }
     std::vector<double> density = seen.density;
-    if (prediction.moves()) { return density; }
     const SpectralBins& bins = prediction.bins();
     const double slow_hz = 0.5 * prediction.rate_hz() / static_cast<double>(resolution::stand_in_lags);
     for (std::size_t i = 0; i < bins.size() && bins[i].f_hz < slow_hz; ++i) {
@@ -239,8 +153,8 @@ void fill_holes(const Prediction& prediction, std::size_t axis, AxisObservation&
                 const std::vector<std::size_t>& missing, CosineTransform& transform, std::uint64_t seed) {
     std::vector<float> cosines = seen.cosines;
     take_off(prediction.uncertain(axis), seen.uncertain_fit, cosines);
-    const std::vector<double> density = density_of_expectation(prediction, seen);
-    draw_stand_ins(seen.residual_rad_s, missing, weighted_residual(prediction, density, cosines, transform),
+    const std::vector<double> density = density_of_expectation(prediction, axis, seen);
+    draw_stand_ins(seen.residual_rad_s, missing, weighted_values(prediction, density, cosines, transform),
                    inverse_covariance_of(prediction, density),
                    inverse_covariance_of(prediction, seen.density),
                    derived_stream(seed, RandomPurpose::stand_ins, axis));
@@ -394,10 +308,9 @@ void Observation::observe(std::size_t axis, const Observation* completed, Cosine
         draw_first_guesses(prediction, axis, residual, present_, seed_);
     }
     fit_model(axis, transform);
-    // What stands in for a sample has noise like that which was fitted, and follows the motion as the samples
-    // do.
+    // What stands in for a sample has noise like that which was fitted.
     const bool is_filled = missing_.empty() || completed != nullptr;
-    const int rounds = is_filled ? 0 : uncertain.empty() ? 1 : 2;
+    const int rounds = is_filled ? 0 : filling_rounds(prediction, axis);
     for (int round = 0; round < rounds; ++round) {
         fill_holes(prediction, axis, seen, missing_, transform, seed_);
         fit_model(axis, transform);
@@ -421,7 +334,7 @@ double stand_ins_nats(const Observation& observation, std::size_t axis) {
     const AxisObservation& seen = observation.axis(axis);
     const TransformPool::Lease transform = prediction.transform();
     return stand_ins_log_density_nats(observation.missing(),
-                                      weighted_residual(prediction, seen.density, seen.cosines, *transform),
+                                      weighted_values(prediction, seen.density, seen.cosines, *transform),
                                       inverse_covariance_of(prediction, seen.density));
 }
 

@@ -139,6 +139,13 @@ void draw_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
     }
 }
 
+void expect_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
+                      std::span<const double> weighted, const InverseCovariance& expectation) {
+    take_steps(
+        values, slots, expectation, [&](std::size_t slot) { return -weighted[slot]; },
+        [](std::size_t) { return 0.0; });
+}
+
 double stand_ins_log_density_nats(std::span<const std::size_t> slots, std::span<const double> weighted,
                                   const InverseCovariance& inverse) {
     double nats = 0.0;

@@ -32,6 +32,10 @@ void draw_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
                     std::span<const double> weighted, const InverseCovariance& expectation,
                     const InverseCovariance& scatter, const RandomStream& noise);
 
+// The function sets the expectation alone: x_M - C_MM^-1 (C x)_M, linear in all values.
+void expect_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
+                      std::span<const double> weighted, const InverseCovariance& expectation);
+
 // The function returns the logarithm of the density of the values of `slots` given all others, in nats and
 // without the factors 1 / sqrt(2 pi).
 double stand_ins_log_density_nats(std::span<const std::size_t> slots, std::span<const double> weighted,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
+#include "analysis/diagnose/likelihood/hole_filling.hpp"
 #include "analysis/diagnose/likelihood/mean_regression.hpp"
 #include "analysis/simulate/chain.hpp"
 #include "analysis/simulate/effect.hpp"
@@ -128,9 +129,7 @@ private:
                     slope[slot] =
                         (static_cast<double>(answer[axis][slot]) - static_cast<double>(before[slot])) / step;
                 }
-                transform->forward(slope);
-                slope[0] = 0.0;
-                slopes[axis].emplace_back(slope.begin(), slope.end());
+                slopes[axis].push_back(response_cosines(prediction, axis, std::move(slope), *transform));
             }
         }
         const std::size_t count = places_.size();

@@ -1,0 +1,150 @@
+#include "analysis/diagnose/likelihood/hole_filling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "analysis/numerics/cosine_transform.hpp"
+
+namespace gyrolog::resolution {
+
+// How many samples on either side say what the level in a hole is: so many that what they have in common with
+// the stand-ins is slower than the white noise reaches.
+constexpr std::size_t level_samples = 256;
+
+}  // namespace gyrolog::resolution
+
+namespace gyrolog {
+
+namespace {
+
+double mean_of_present(const std::vector<float>& values, const std::vector<bool>& present, std::size_t from,
+                       bool backwards) {
+    double sum = 0.0;
+    double count = 0.0;
+    const std::size_t reach = 2 * resolution::level_samples;
+    for (std::size_t i = 0; i < reach && count < static_cast<double>(resolution::level_samples); ++i) {
+        if (backwards ? i > from : from + i >= values.size()) { break; }
+        const std::size_t slot = backwards ? from - i : from + i;
+        if (!present[slot]) { continue; }
+        sum += static_cast<double>(values[slot]);
+        count += 1.0;
+    }
+    return count > 0.0 ? sum / count : std::nan("");
+}
+
+// Of the recording, by slot.
+std::vector<bool> present_slots(const Prediction& prediction) {
+    std::vector<bool> present(prediction.length(), false);
+    const std::vector<Segment>& segments = prediction.world().recording().segments;
+    for (const Segment& segment : segments) {
+        const auto begin = static_cast<std::size_t>(segment.first_index - segments.front().first_index);
+        const std::size_t end = std::min(begin + segment.count, present.size());
+        for (std::size_t slot = begin; slot < end; ++slot) { present[slot] = true; }
+    }
+    return present;
+}
+
+std::vector<float> response_coefficients(const std::vector<float>& values, CosineTransform& transform) {
+    std::vector<double> work(values.begin(), values.end());
+    transform.forward(work);
+    work[0] = 0.0;
+    return {work.begin(), work.end()};
+}
+
+void expect_in_holes(const Prediction& prediction, std::size_t axis, const std::vector<bool>& present,
+                     std::vector<float>& values, CosineTransform& transform) {
+    std::vector<std::size_t> missing;
+    for (std::size_t slot = 0; slot < present.size(); ++slot) {
+        if (!present[slot]) { missing.push_back(slot); }
+    }
+    join_holes(values, present, [](std::size_t) { return 0.0; });
+    const std::vector<double> density = density_of_model(prediction, axis);
+    const InverseCovariance inverse = inverse_covariance_of(prediction, density);
+    for (int round = 0; round < filling_rounds(prediction, axis); ++round) {
+        const std::vector<float> cosines = response_coefficients(values, transform);
+        expect_stand_ins(values, missing, weighted_values(prediction, density, cosines, transform), inverse);
+    }
+}
+
+}  // namespace
+
+void join_holes(std::vector<float>& values, const std::vector<bool>& present,
+                const std::function<double(std::size_t slot)>& beside) {
+    const std::size_t length = values.size();
+    for (std::size_t begin = 0; begin < length;) {
+        if (present[begin]) {
+            ++begin;
+            continue;
+        }
+        std::size_t end = begin;
+        while (end < length && !present[end]) { ++end; }
+        double before = begin > 0 ? mean_of_present(values, present, begin - 1, true) : std::nan("");
+        double after = end < length ? mean_of_present(values, present, end, false) : std::nan("");
+        if (std::isnan(before)) { before = std::isnan(after) ? 0.0 : after; }
+        if (std::isnan(after)) { after = before; }
+        // Next to a short hole both levels are those of one place.
+        const bool is_short = end - begin <= resolution::level_samples;
+        for (std::size_t slot = begin; slot < end; ++slot) {
+            const double share =
+                is_short ? 0.5 : static_cast<double>(slot - begin + 1) / static_cast<double>(end - begin + 1);
+            values[slot] = static_cast<float>(before + share * (after - before) + beside(slot));
+        }
+        begin = end;
+    }
+}
+
+double take_mean_off(std::vector<float>& values, const std::vector<bool>& present) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t slot = 0; slot < values.size(); ++slot) {
+        if (!present[slot]) { continue; }
+        sum += static_cast<double>(values[slot]);
+        ++count;
+    }
+    const auto mean = static_cast<float>(count > 0 ? sum / static_cast<double>(count) : 0.0);
+    for (std::size_t slot = 0; slot < values.size(); ++slot) {
+        if (present[slot]) { values[slot] -= mean; }
+    }
+    return static_cast<double>(mean);
+}
+
+int filling_rounds(const Prediction& prediction, std::size_t axis) {
+    return prediction.uncertain(axis).empty() ? 1 : 2;
+}
+
+std::vector<double> density_of_model(const Prediction& prediction, std::size_t axis) {
+    std::vector<double> density;
+    for (const SpectralParts& parts : prediction.parts(axis)) { density.push_back(parts.sum()); }
+    return density;
+}
+
+std::vector<double> weighted_values(const Prediction& prediction, const std::vector<double>& density,
+                                    std::span<const float> cosines, CosineTransform& transform) {
+    std::vector<double> weighted(cosines.begin(), cosines.end());
+    divide_by_bin(prediction, density, weighted, [](double variance) { return variance; });
+    transform.inverse(weighted);
+    return weighted;
+}
+
+InverseCovariance inverse_covariance_of(const Prediction& prediction, const std::vector<double>& density) {
+    return inverse_covariance(prediction.bins(), density, prediction.rate_hz(), prediction.length(),
+                              resolution::stand_in_lags);
+}
+
+std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
+                                    std::vector<double> values, CosineTransform& transform) {
+    const bool has_holes = prediction.world().recording().segments.size() > 1;
+    if (!has_holes || !prediction.moves()) {
+        transform.forward(values);
+        values[0] = 0.0;
+        return {values.begin(), values.end()};
+    }
+    const std::vector<bool> present = present_slots(prediction);
+    std::vector<float> filled(values.begin(), values.end());
+    take_mean_off(filled, present);
+    expect_in_holes(prediction, axis, present, filled, transform);
+    return response_coefficients(filled, transform);
+}
+
+}  // namespace gyrolog
