@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
+#include "analysis/simulate/recorded_orientation.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
 namespace gyrolog {
@@ -71,26 +73,33 @@ void RecordedWorld::read_reference() {
     if (has_reference_ && !without.empty()) {
         warnings_.push_back("no reference rate of axis " + without + ": taken as not turning");
     }
-    std::array<const Column*, 4> parts{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        parts[i] = recording_->find(std::string("ref_q") + "wxyz"[i]);
-        if (parts[i] == nullptr && !has_reference_) { return; }
+    if (!has_reference_) {
+        if (!has_orientation(*recording_)) { return; }
+        read_orientation_rate();
     }
-    if (!has_reference_) { read_orientation_rate(parts); }
     drop_empty(rate_rad_s_, "the reference rate");
     stand_still_where_long_unknown();
     join_unknown(rate_rad_s_, "the reference rate");
     has_reference_ = std::ranges::any_of(rate_rad_s_, [](const Track& track) { return !track.empty(); });
 }
 
-void RecordedWorld::read_orientation_rate(const std::array<const Column*, 4>& parts) {
+bool RecordedWorld::reference_changes() const {
+    const auto changes_in = [](const Track& track, const Segment& segment) {
+        const auto begin = track.begin() + static_cast<std::ptrdiff_t>(segment.first);
+        const auto end = begin + static_cast<std::ptrdiff_t>(segment.count);
+        return std::adjacent_find(begin, end, std::not_equal_to()) != end;
+    };
+    return std::ranges::any_of(rate_rad_s_, [&](const Track& track) {
+        return !track.empty() && std::ranges::any_of(recording_->segments, [&](const Segment& segment) {
+            return changes_in(track, segment);
+        });
+    });
+}
+
+void RecordedWorld::read_orientation_rate() {
     for (Track& track : rate_rad_s_) { track.resize(recording_->rows()); }
     for (const Segment& segment : recording_->segments) {
-        std::vector<Quaternion> orientation(segment.count);
-        for (std::size_t k = 0; k < segment.count; ++k) {
-            for (std::size_t i = 0; i < 4; ++i) { orientation[k][i] = parts[i]->value(segment.first + k); }
-        }
-        const auto rates = orientation_rate(orientation, recording_->rate_hz);
+        const auto rates = orientation_rate(recorded_orientation(*recording_, segment), recording_->rate_hz);
         for (std::size_t k = 0; k < segment.count; ++k) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 rate_rad_s_[axis][segment.first + k] = rates[k][axis];

@@ -42,6 +42,8 @@ public:
     const std::vector<double>& rate_rad_s(std::size_t axis) const { return rate_rad_s_[axis]; }
     // One value a row: the rate of an axis is unknown there for longer than it is joined. Empty: nowhere.
     const std::vector<bool>& is_long_unknown() const { return is_long_unknown_; }
+    // Between rows that follow each other without a hole.
+    bool reference_changes() const;
     bool has_specific_force() const { return has_specific_force_; }
 
     // With a reference, or an accelerometer.
@@ -63,7 +65,7 @@ private:
     void read_specific_force();
     void read_temperature();
     void smooth_temperature(std::span<const Knot> known);
-    void read_orientation_rate(const std::array<const Column*, 4>& parts);
+    void read_orientation_rate();
     void drop_empty(std::array<Track, 3>& tracks, const std::string& what);
     void stand_still_where_long_unknown();
     void join_unknown(std::array<Track, 3>& tracks, const std::string& what);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/noise/sensor_columns.hpp"
 #include "analysis/recording/grid.hpp"
 #include "analysis/simulate/chain.hpp"
+#include "analysis/simulate/force_world.hpp"
+#include "analysis/simulate/recorded_orientation.hpp"
 #include "analysis/simulate/resting_accelerometer.hpp"
 
 namespace gyrolog {
@@ -17,6 +20,18 @@ std::uint64_t slots_of(const Recording& recording) {
 }
 
 bool is_gyro(const Column& column) { return column.name.starts_with('g'); }
+
+bool poses_accelerometer(const SimulationRequest& request) {
+    return request.accelerometer_in_poses && request.like && has_orientation(request.like->recording()) &&
+           std::ranges::none_of(request.like->recording().columns, [](const Column& column) {
+               return is_of(SensorKind::accelerometer, column);
+           });
+}
+
+std::shared_ptr<const World> world_of_poses(const Recording& like) {
+    return std::make_shared<const ForceWorld>(
+        std::make_shared<const RecordedWorld>(std::make_shared<const Recording>(with_force_at_rest(like))));
+}
 
 double nanoseconds(double t_s) { return std::floor(t_s * 1e9 + 0.5) / 1e9; }
 
@@ -184,12 +199,17 @@ RecordingSimulator::RecordingSimulator(const SensorModel& model, const Simulatio
         samples_ = samples_ == 0 ? all : std::min(samples_, all);
     }
     rows_.reserve(block_samples);
+    if (model.accelerometer) { start_accelerometer(model, request); }
+}
+
+void RecordingSimulator::start_accelerometer(const SensorModel& model, const SimulationRequest& request) {
     const bool at_rest = !like_ && (world_ == nullptr || !world_->moves());
-    if (model.accelerometer && at_rest) {
-        const SensorModel sensor = resting_accelerometer(model);
-        accelerometer_.emplace(sensor, rate_hz_, accelerometer_seed(request.seed));
-        accelerometer_lsb_m_s2_ = converter_steps_rad_s(sensor);
-    }
+    if (!at_rest && !poses_accelerometer(request)) { return; }
+    const SensorModel sensor = at_rest ? resting_accelerometer(model)
+                                       : without_what_is_recorded(exposed_accelerometer(model), *like_);
+    const auto world = at_rest ? nullptr : world_of_poses(like_->recording());
+    accelerometer_.emplace(sensor, rate_hz_, accelerometer_seed(request.seed), world);
+    accelerometer_lsb_m_s2_ = converter_steps_rad_s(sensor);
 }
 
 void RecordingSimulator::take_own_rows(std::size_t count, const SampleBlock& block) {
@@ -229,8 +249,9 @@ void RecordingSimulator::add_segment_row(Recording& piece, std::int64_t index) c
 
 bool RecordingSimulator::simulates_temperature() const { return !like_ || !like_->has_temperature(); }
 
-bool RecordingSimulator::is_simulated_temperature(const Column& column) const {
-    return column.name == "temp" && simulates_temperature();
+bool RecordingSimulator::is_simulated(const Column& column) const {
+    if (column.name == "temp") { return simulates_temperature(); }
+    return is_gyro(column) || (accelerometer_ && is_of(SensorKind::accelerometer, column));
 }
 
 std::vector<std::string> RecordingSimulator::simulated_columns() const {
@@ -238,8 +259,7 @@ std::vector<std::string> RecordingSimulator::simulated_columns() const {
     Recording empty;
     make_columns(empty);
     for (const Column& column : empty.columns) {
-        const bool simulated = !like_ || is_gyro(column) || is_simulated_temperature(column);
-        if (simulated) { names.push_back(column.name); }
+        if (!like_ || is_simulated(column)) { names.push_back(column.name); }
     }
     return names;
 }
@@ -257,7 +277,7 @@ void RecordingSimulator::make_columns(Recording& piece) const {
     if (simulates_temperature()) { piece.columns.push_back(real_column("temp", "degC")); }
     if (like_) {
         for (const Column& column : like_->recording().columns) {
-            if (is_gyro(column) || is_simulated_temperature(column)) { continue; }
+            if (is_simulated(column)) { continue; }
             Column empty = {column.name, column.unit, {}, column.scale, column.offset, column.source_unit};
             if (!column.is_counts()) { empty.data = std::vector<double>{}; }
             piece.columns.push_back(std::move(empty));
@@ -320,7 +340,7 @@ void RecordingSimulator::fill_like(Recording& piece) const {
         if (!like.t_s.empty()) { piece.t_s.push_back(like.t_s[row.like_row]); }
     }
     for (Column& column : piece.columns) {
-        if (is_gyro(column) || is_simulated_temperature(column)) { continue; }
+        if (is_simulated(column)) { continue; }
         std::visit(
             [&](auto& data) {
                 const auto& all = std::get<std::decay_t<decltype(data)>>(like.find(column.name)->data);
@@ -333,7 +353,7 @@ void RecordingSimulator::fill_like(Recording& piece) const {
 
 void RecordingSimulator::fill_temperature(const SampleBlock& block, Recording& piece) const {
     for (Column& column : piece.columns) {
-        if (!is_simulated_temperature(column)) { continue; }
+        if (column.name != "temp" || !is_simulated(column)) { continue; }
         auto& data = std::get<std::vector<double>>(column.data);
         data.resize(rows_.size());
         for (std::size_t i = 0; i < rows_.size(); ++i) { data[i] = block.temperature_C[rows_[i].place]; }

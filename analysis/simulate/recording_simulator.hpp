@@ -24,6 +24,10 @@ struct SimulationRequest {
     std::optional<double> rate_hz{};              // in place of the model's; not with `like`
     std::shared_ptr<const World> world{};         // none: at rest; not with `like`
     std::shared_ptr<const RecordedWorld> like{};  // its rows, time stamps and columns other than gyros
+    // With a `like` that has an orientation and no accelerometer: ax ay az of the model's, which shows
+    // gravity in each pose as if the sensor rested there (recorded_orientation.hpp). What accelerates it in
+    // between nobody knows.
+    bool accelerometer_in_poses = false;
 };
 
 // Of a simulation like a recording: what its stamps and its temperature have in them does not act again.
@@ -46,7 +50,8 @@ public:
     // Columns: gx gy gz, counts where the model has an lsb; temp. At rest, ax ay az where the model has an
     // accelerometer. In a moving world ref_x ref_y ref_z with the reference's noise, ax ay az with
     // acc_noise_m_s2 and nothing else. With `like`: its own columns in place of
-    // these, as they are, and the simulated temperature only if it has none.
+    // these, as they are, and the simulated temperature only if it has none; ax ay az as the request has
+    // it.
     bool next(Recording& piece);
 
     // Of those: what is simulated, not taken over.
@@ -63,7 +68,8 @@ private:
     };
 
     bool simulates_temperature() const;
-    bool is_simulated_temperature(const Column& column) const;
+    bool is_simulated(const Column& column) const;
+    void start_accelerometer(const SensorModel& model, const SimulationRequest& request);
     void take_own_rows(std::size_t count, const SampleBlock& block);
     void take_like_rows(std::int64_t begin, std::size_t count, const SampleBlock& block);
     void add_segment_row(Recording& piece, std::int64_t index) const;

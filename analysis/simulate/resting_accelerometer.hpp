@@ -8,6 +8,10 @@
 
 namespace gyrolog {
 
+// A sensor whose simulated rate, in a world whose rates are specific forces (force_world.hpp), is that of the
+// model's accelerometer in m/s^2. `model` has an accelerometer.
+SensorModel exposed_accelerometer(const SensorModel& model);
+
 // A sensor whose simulated rate, at rest, is the specific force in m/s^2 of the model's accelerometer, its z
 // axis upward: its bias is the model's and M times gravity. `model` has an accelerometer.
 SensorModel resting_accelerometer(const SensorModel& model);

@@ -231,6 +231,7 @@ ExitCode make_text(Console& console, const SimulateOptions& options, Story& stor
         auto like = read_like(options, story);
         if (!like.ok()) { return fail(like.error()); }
         story.like = request.like = std::move(like).value();
+        request.accelerometer_in_poses = true;
     } else {
         request.rate_hz = options.rate_hz;
     }

@@ -13,6 +13,7 @@
 #include "analysis/recording/recording_part.hpp"
 #include "analysis/simulate/gyro_rest.hpp"
 #include "analysis/simulate/orientation_rate.hpp"
+#include "analysis/simulate/recorded_orientation.hpp"
 #include "analysis/simulate/reference_noise.hpp"
 
 namespace gyrolog::resolution {
@@ -26,26 +27,13 @@ constexpr double row_against_orientation_s = 0.05;
 namespace gyrolog {
 namespace {
 
-constexpr std::array<const char*, 4> orientation_columns = {"ref_qw", "ref_qx", "ref_qy", "ref_qz"};
-
 bool is_of_reference(const Column& column) { return column.name.starts_with("ref_"); }
-
-std::vector<Quaternion> orientation_of(const Recording& recording, const Segment& segment) {
-    std::vector<Quaternion> orientation(segment.count);
-    for (std::size_t part = 0; part < orientation_columns.size(); ++part) {
-        const Column& column = *recording.find(orientation_columns.at(part));
-        for (std::size_t i = 0; i < segment.count; ++i) {
-            orientation[i].at(part) = column.value(segment.first + i);
-        }
-    }
-    return orientation;
-}
 
 Recording with_turn_rates(Recording recording) {
     std::array<std::vector<double>, 3> rates;
     for (std::vector<double>& rate : rates) { rate.resize(recording.rows()); }
     for (const Segment& segment : recording.segments) {
-        const auto turned = turn_rate(orientation_of(recording, segment), recording.rate_hz);
+        const auto turned = turn_rate(recorded_orientation(recording, segment), recording.rate_hz);
         for (std::size_t i = 0; i < segment.count; ++i) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 rates.at(axis)[segment.first + i] = turned[i].at(axis);
@@ -156,9 +144,7 @@ std::optional<Diagnosis> diagnose_against_rates(const std::shared_ptr<const Reco
 }  // namespace
 
 bool moves_against_orientation(const Recording& recording) {
-    return std::ranges::all_of(orientation_columns,
-                               [&](const char* name) { return recording.find(name) != nullptr; }) &&
-           std::ranges::none_of(axis_names, [&](const char* axis) {
+    return has_orientation(recording) && std::ranges::none_of(axis_names, [&](const char* axis) {
                return recording.find(std::string("ref_") + axis) != nullptr;
            });
 }
