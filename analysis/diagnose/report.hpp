@@ -56,6 +56,7 @@ struct Place {
     bool temperature = false;
     bool acceleration = false;
     std::optional<Span> rate_rad_s;       // sizes of the reference rate
+    std::optional<Span> force_m_s2;       // of an accelerometer: of the specific force
     std::optional<Span> amplitude_sigma;  // sizes of the whitened samples, in standard deviations
     std::string structure;                // "duplicated_samples", "timestamp_gaps", ...: diagnosis.md
 };
@@ -63,6 +64,7 @@ struct Place {
 // A finding is the best that one effect can do for one observation.
 struct Finding {
     std::string effect;
+    SensorKind sensor = SensorKind::gyro;  // whose words tell of it
     // These entries are to be added to the model: one entry for all axes that share their parameters.
     std::vector<EffectModel> entries;
     // Standard deviations, by entry, of the parameters that were fitted.

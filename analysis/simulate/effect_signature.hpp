@@ -93,6 +93,7 @@ struct EffectSignature {
 
     bool needs_temperature = false;
     bool needs_reference = false;
+    bool needs_change = false;  // of the reference: what shows nothing where that is constant
     bool needs_specific_force = false;
     bool whole_sensor = false;  // acts on all axes alike, whatever the entry says
 
@@ -140,6 +141,10 @@ struct EffectSignature {
     std::string_view words{};
     std::string_view noun{};
     std::string_view decided_by{};
+    // The same of an accelerometer, where those speak of rates.
+    std::string_view force_words{};
+    std::string_view force_noun{};
+    std::string_view force_decided_by{};
 };
 
 }  // namespace gyrolog

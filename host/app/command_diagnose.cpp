@@ -158,8 +158,9 @@ Action setup_diagnose(CLI::App& app) {
     add_text_options(app, request.text);
     app.add_option("--lsb-dps", request.lsb_dps, lsb_dps_help)->type_name("DPS")->check(positive_number());
     app.add_option("--lsb-g", request.lsb_g, lsb_g_help)->type_name("G")->check(positive_number());
-    app.add_option("--sensor", options->sensor,
-                   "Which sensor: gyro, accelerometer (at rest), or all that the model has")
+    app.add_option(
+           "--sensor", options->sensor,
+           "Which sensor: gyro, accelerometer (at rest, or in known poses), or all that the model has")
         ->check(CLI::IsMember({"gyro", "accelerometer", "all"}))
         ->type_name("SENSOR")
         ->capture_default_str();

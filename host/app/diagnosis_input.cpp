@@ -108,7 +108,12 @@ Result<Read> read_samples(RecordingInput input, std::size_t most) {
     Read read{std::move(samples).value()};
     read.is_long = slots(read.samples) > most;
     if (read.is_long) { read.samples = first_slots(std::move(read.samples), most); }
-    if (auto refusal = refused(read.samples, input.path)) { return *std::move(refusal); }
+    if (auto refusal = refused(read.samples, input.path)) {
+        if (input.sensor == SensorKind::accelerometer && moves(read.samples)) {
+            refusal->message += "; " + read.samples.warnings.back();
+        }
+        return *std::move(refusal);
+    }
     read.samples = with_known_motion(std::move(read.samples));
     if (auto refusal = refused(read.samples, input.path)) {
         refusal->message += "; " + read.samples.warnings.back();

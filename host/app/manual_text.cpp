@@ -103,7 +103,8 @@ An accelerometer in the recording (in text `ax_g ay_g az_g`, also `_m_s2`, `_lsb
 reported beside the gyro, by the same methods: N, B and K in ug, m/s/sqrt(h) and SI, and instead of
 a bias the size of gravity and the tilt, since one position does not tell the bias. JSON has it as
 `accelerometer`, with `mean` in the place of `bias`; its figure is `night.accelerometer.png` beside
-`night.png`, and the model has an `accelerometer`, which `simulate` plays at rest. With `--sensor
+`night.png`, and the model has an `accelerometer`, which `simulate` plays at rest, or in the poses of
+a recording (`--like`) that has an orientation and no accelerometer. With `--sensor
 accelerometer`, `compare`, `diagnose` and `denoise` look at it in the gyro's place, with numbers in
 g; `diagnose --sensor all` at both, and says which causes both have at the same place: a line, an
 instant, lost or repeated frames. analysis/METHODS.md has each estimator's definition, source and
@@ -189,9 +190,14 @@ at rest: its first 900 000 samples one by one for what is fast, and all of it in
 for what is slow. One report says what both found. 24 h at 1 kHz take less than 1 GB. Of a recording
 in motion the beginning is diagnosed. `--average 10` looks at means of ten samples only.
 
-`--sensor accelerometer` holds the accelerometer at rest against the model: a recording in which it
-is turned or moved is refused, and `--still auto` takes the longest part at rest of one. So is a gyro
-that is turned for more than a tenth of the time without a reference (`ref_x_dps` ... or `ref_qw` ...).
+`--sensor accelerometer` holds the accelerometer at rest against the model. If it is set down in
+several poses and the recording has its orientation (`ref_qw` ... `ref_qz`, sensor to world, z
+upward), it is judged in these poses against gravity: scale factor, misalignment, nonlinearity and
+bias show there, and what is between the rests is left out. Six faces of 20 s each tell a scale
+factor to 0.004 % where the noise is 150 ug/sqrt(Hz); edges tell it from a cubic error. Without an
+orientation a recording in which it is turned or moved is refused; `--still auto` takes the longest
+part at rest of one, and `gyrolog calibrate` needs none. A gyro that is turned for more than a
+tenth of the time without a reference (`ref_x_dps` ... or `ref_qw` ...) is refused likewise.
 
 If the reference is an orientation (`ref_qw` ... `ref_qz`), its rates are far noisier than the
 sensor. The sensor's noise is then judged at its longest rest, and how it answers to the motion in

@@ -75,25 +75,35 @@ std::string advice_on_rest(const Recording& recording, const SensorModel& model,
         path, format_duration(still_s), still.from_s);
 }
 
-}  // namespace
-
-Status refuse_moving_accelerometer(const Recording& as_gyro, const std::string& path,
-                                   const MotionRefusalOptions& options) {
+// Of the recording.
+double share_moved(const Recording& as_gyro, const MotionRefusalOptions& options) {
     const auto instants = std::max<std::int64_t>(1, std::llround(options.mean_s * as_gyro.rate_hz));
     std::vector<std::vector<BlockMean>> axes;
     for (const char* axis : axis_names) {
         const Column* column = as_gyro.find(std::string("g") + axis);
         if (column != nullptr) { axes.push_back(block_means(*column, as_gyro.segments, instants)); }
     }
-    if (axes.empty() || axes.front().empty()) { return {}; }
-    const double share =
-        share_beyond(axes, options.rest_most_g / unit_of_accelerometer_as_gyro().per_column_unit);
-    if (share <= options.touched_most) { return {}; }
-    return Error{ErrorCode::failed,
-                 fmt::format("'{}': an accelerometer is diagnosed at rest only, and for {:.0f} % of the "
-                             "recording it is turned or moved by more than {:g} g; --still auto takes the "
-                             "longest part at rest, --from and --to a part that is named",
-                             path, 100.0 * share, options.rest_most_g)};
+    if (axes.empty() || axes.front().empty()) { return 0.0; }
+    return share_beyond(axes, options.rest_most_g / unit_of_accelerometer_as_gyro().per_column_unit);
+}
+
+}  // namespace
+
+bool is_moved(const Recording& as_gyro, const MotionRefusalOptions& options) {
+    return share_moved(as_gyro, options) > options.touched_most;
+}
+
+Status refuse_moving_accelerometer(const Recording& as_gyro, const std::string& path,
+                                   const MotionRefusalOptions& options) {
+    if (exposure_of(as_gyro) == Exposure::known || !is_moved(as_gyro, options)) { return {}; }
+    return Error{
+        ErrorCode::failed,
+        fmt::format("'{}': for {:.0f} % of the recording the accelerometer is turned or moved by more "
+                    "than {:g} g, and nothing tells what it should have shown: columns ref_qw ref_qx "
+                    "ref_qy ref_qz (orientation, sensor to world) tell it for the poses in which it "
+                    "rests, and `gyrolog calibrate` does without them; --still auto takes the "
+                    "longest part at rest, --from and --to a part that is named",
+                    path, 100.0 * share_moved(as_gyro, options), options.rest_most_g)};
 }
 
 Status refuse_unreferenced_motion(const Recording& recording, const SensorModel& model,

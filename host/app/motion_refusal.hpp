@@ -26,8 +26,12 @@ struct MotionRefusalOptions {
 Status refuse_motion(const AnalysisReport& report, const Recording& recording, const std::string& path,
                      const std::string& result, const MotionRefusalOptions& options = {});
 
-// Error: failed where an accelerometer, presented as a gyro (accelerometer_as_gyro.hpp), was turned or moved
-// for longer than a touch: nothing says what it should have shown then.
+// An accelerometer, presented as a gyro (accelerometer_as_gyro.hpp), was turned or moved for longer than a
+// touch.
+bool is_moved(const Recording& as_gyro, const MotionRefusalOptions& options = {});
+
+// Error: failed where such an accelerometer is_moved() and the recording does not tell the forces either:
+// then nothing says what it should have shown.
 Status refuse_moving_accelerometer(const Recording& as_gyro, const std::string& path,
                                    const MotionRefusalOptions& options = {});
 

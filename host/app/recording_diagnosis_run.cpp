@@ -200,6 +200,7 @@ RecordingInput input_of(const RecordingDiagnosisRequest& request, SensorKind sen
     RecordingInput input{request.recording_path, request.rate_hz, request.lsb_dps};
     input.lsb_g = request.lsb_g;
     input.sensor = sensor;
+    input.in_known_poses = true;
     input.samples_per_row = request.average;
     input.part = request.part;
     input.unit = request.unit;
@@ -226,6 +227,19 @@ Status check_turns(const DiagnosisInput& read, const SensorModel& model, const R
     return {};
 }
 
+// What is found against known forces is not judged where they are not known, nor the other way round.
+Status check_exposure(const Recording& first, const Recording& second, const RecordingInput& second_input) {
+    if (second_input.sensor != SensorKind::accelerometer || exposure_of(first) == exposure_of(second)) {
+        return {};
+    }
+    const bool is_posed = exposure_of(first) == Exposure::known;
+    return Error{ErrorCode::failed,
+                 fmt::format("--holdout '{}': the accelerometer {}, and that of the recording {}: take two "
+                             "recordings of one kind",
+                             second_input.path, is_posed ? "rests in one pose" : "is set down in known poses",
+                             is_posed ? "is set down in known poses" : "rests in one pose")};
+}
+
 // Before the gyro is diagnosed for minutes.
 Status check_accelerometer(const RecordingDiagnosisRequest& request) {
     const RecordingInput input = input_of(request, SensorKind::accelerometer);
@@ -241,13 +255,14 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
     // What a plain model of an accelerometer is put in has a gyro of which nothing is known.
     SensorModel whole;
     whole.full_scale_rad_s = whole.saturation_rad_s = no_range_rad_s;
-    if (!is_plain) {
-        whole = source->file.model;
-        GYROLOG_TRY(file, model_of_sensor(source->file, sensor, request.model_path));
-    }
     RecordingInput input = input_of(request, sensor);
     GYROLOG_TRY(const DiagnosisInput read, read_for_diagnosis(input));
     GYROLOG_CHECK(check_rest(read, input));
+    const Exposure exposure = exposure_of(*read.samples);
+    if (!is_plain) {
+        whole = source->file.model;
+        GYROLOG_TRY(file, model_of_sensor(source->file, sensor, request.model_path, exposure));
+    }
     if (is_plain) { GYROLOG_TRY(file, read_plain_model(*read.samples, sensor, request.recording_path)); }
     complete_from(*read.samples, file);
     GYROLOG_CHECK(check_turns(read, file.model, input));
@@ -259,6 +274,7 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
         GYROLOG_TRY(second, read_for_diagnosis(input, read));
         GYROLOG_CHECK(check_rest(second, input));
         GYROLOG_CHECK(check_turns(second, file.model, input));
+        GYROLOG_CHECK(check_exposure(*read.samples, *second.samples, input));
     }
     std::optional<ProgressLine> progress(std::in_place, console);
     DiagnosisOptions options = options_of(*progress, request);
@@ -274,7 +290,7 @@ Result<Diagnosis> diagnose_with(Console& console, const RecordingDiagnosisReques
     append_new(diagnosis->warnings, file.notes);
     append_warnings(diagnosis->warnings, second);
     return sensor == SensorKind::gyro ? *std::move(diagnosis)
-                                      : diagnosis_of_accelerometer(*std::move(diagnosis), whole);
+                                      : diagnosis_of_accelerometer(*std::move(diagnosis), whole, exposure);
 }
 
 // Nothing without a path.

@@ -9,6 +9,8 @@
 #include "analysis/denoise/array_reference.hpp"
 #include "analysis/noise/noise_model.hpp"
 #include "analysis/noise/sensor_columns.hpp"
+#include "analysis/simulate/recorded_orientation.hpp"
+#include "host/app/motion_refusal.hpp"
 #include "host/app/sensor_choice.hpp"
 #include "host/base/counted.hpp"
 #include "host/formats/recording_file.hpp"
@@ -186,10 +188,6 @@ Status check_scale(Recording& recording, double lsb_dps, const std::string& path
     return {};
 }
 
-}  // namespace
-
-namespace {
-
 Result<Recording> take_unit(Recording recording, const UnitChoice& choice, const std::string& path) {
     if (!choice.unit) { return recording; }
     UnitOfArray taken = choice.is_against_others ? unit_against_others(recording, *choice.unit)
@@ -202,9 +200,14 @@ Result<Recording> take_unit(Recording recording, const UnitChoice& choice, const
 
 Result<Recording> read_recording(const RecordingInput& input) {
     GYROLOG_TRY(TimedRecording timed, read_timed_recording(input));
-    GYROLOG_TRY(Recording recording,
-                recording_of_sensor(std::move(timed.recording), input.sensor, input.path));
-    return take_unit(std::move(recording), input.unit, input.path);
+    if (!input.in_known_poses || input.sensor == SensorKind::gyro || !has_orientation(timed.recording)) {
+        GYROLOG_TRY(Recording recording,
+                    recording_of_sensor(std::move(timed.recording), input.sensor, input.path));
+        return take_unit(std::move(recording), input.unit, input.path);
+    }
+    GYROLOG_TRY(Recording seen, recording_of_sensor(timed.recording, input.sensor, input.path));
+    if (!is_moved(seen)) { return seen; }
+    return accelerometer_in_poses(std::move(timed.recording), input.path);
 }
 
 namespace {

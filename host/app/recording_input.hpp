@@ -43,9 +43,13 @@ struct RecordingInput {
     UnitChoice unit{};  // read_recording() takes it
     // The accelerometer: read_recording() gives it as accelerometer_as_gyro() has it.
     SensorKind sensor = SensorKind::gyro;
+    // One that is turned, of a recording that tells its orientation: its rests alone, against the forces
+    // there.
+    bool in_known_poses = false;
 };
 
-// Errors: those of load_capture(), read_recording_file(), take_part() and recording_of_sensor(), and
+// Errors: those of load_capture(), read_recording_file(), take_part(), recording_of_sensor() and
+// accelerometer_in_poses(), and
 // invalid_argument where counts, scaled by lsb_dps, are rates that no gyro has, and where a gyro is needed
 // and there is an accelerometer alone; failed where the array does not have what `unit` asks for.
 Result<Recording> read_recording(const RecordingInput& input);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "host/formats/effect_words.hpp"
 #include "host/formats/json.hpp"
 #include "host/formats/noise_json.hpp"
@@ -29,6 +30,7 @@ Json place_json(const Place& place) {
     if (place.temperature) { json["temperature"] = true; }
     if (place.acceleration) { json["acceleration"] = true; }
     put_span(json, "rate_dps", place.rate_rad_s, deg_per_rad);
+    put_span(json, "force_g", place.force_m_s2, 1.0 / standard_gravity_m_s2);
     put_span(json, "amplitude_sigma", place.amplitude_sigma);
     if (!place.structure.empty()) { json["structure"] = place.structure; }
     return json;

@@ -21,8 +21,9 @@
 //   unnamed                  what was modelled without an effect: [{form, axes, where, share}]; form:
 //                            "density", "drift", "temperature", "rate", "level", "masked"
 //   left                     what nothing describes, the largest first: [{where, size}], size in floors
-//   where                    axes, freq_hz, tau_s, time_s, temperature, acceleration, rate_dps,
-//                            amplitude_sigma, structure: those that apply. Beside a key `axes` without axes
+//   where                    axes, freq_hz, tau_s, time_s, temperature, acceleration, rate_dps (of an
+//                            accelerometer force_g), amplitude_sigma, structure: those that apply. Beside a
+//                            key `axes` without axes
 //   gap_before, gap_named, gap_after        {value, floor, lo, hi} of the model, with the causes, and with
 //   the
 //                            unnamed forms as well: in units of the distance between two simulations

@@ -187,11 +187,15 @@ std::string better_shape_sentence(const BetterShape& better) {
 }
 
 // What was modelled without an effect.
-std::string words_of_form(const std::string& form) {
+std::string words_of_form(const Unnamed& unnamed) {
+    const std::string& form = unnamed.form;
     if (form == "density") { return "a spectrum"; }
     if (form == "drift") { return "a course in time"; }
     if (form == "temperature") { return "a mean that goes with the temperature"; }
-    if (form == "rate") { return "a mean that goes with the rate"; }
+    if (form == "rate") {
+        return unnamed.where.force_m_s2 ? "a mean that goes with the force"
+                                        : "a mean that goes with the rate";
+    }
     if (form == "level") { return "a level of the noise over time"; }
     if (form == "masked") { return "stretches that were left out as disturbances"; }
     return form;
@@ -199,7 +203,7 @@ std::string words_of_form(const std::string& form) {
 
 std::string unnamed_text(const Unnamed& unnamed) {
     const std::string place = place_text(unnamed.where);
-    return fmt::format("without a name, {}{}: {} of the gap", words_of_form(unnamed.form),
+    return fmt::format("without a name, {}{}: {} of the gap", words_of_form(unnamed),
                        place.empty() ? "" : " (" + place + ")", percent_text(unnamed.share));
 }
 
@@ -313,7 +317,7 @@ std::string unnamed_sentence(const Diagnosis& diagnosis) {
     if (diagnosis.unnamed.empty()) { return {}; }
     const Unnamed& most = *std::ranges::max_element(diagnosis.unnamed, {}, &Unnamed::share);
     return wrapped_text(
-        "", fmt::format("{} on {} that no known effect has makes {} of the gap", words_of_form(most.form),
+        "", fmt::format("{} on {} that no known effect has makes {} of the gap", words_of_form(most),
                         axes_text(most.where.axes), percent_text(most.share)));
 }
 

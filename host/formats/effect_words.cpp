@@ -219,6 +219,20 @@ struct Stem {
 constexpr std::array stems = {Stem{"arw", "arw_scale"}, Stem{"flicker", "flicker_missing"},
                               Stem{"line", "tone"}, Stem{"rrw", "rrw_missing"}};
 
+bool speaks_of_forces(const Finding& finding) { return finding.sensor == SensorKind::accelerometer; }
+
+std::string_view words_of(const EffectSignature* signature, const Finding& finding) {
+    if (signature == nullptr) { return {}; }
+    return speaks_of_forces(finding) && !signature->force_words.empty() ? signature->force_words
+                                                                        : signature->words;
+}
+
+std::string_view noun_of(const EffectSignature* signature, const Finding& finding) {
+    if (signature == nullptr) { return {}; }
+    return speaks_of_forces(finding) && !signature->force_noun.empty() ? signature->force_noun
+                                                                       : signature->noun;
+}
+
 // With places for values; the effect's name where nothing else is known.
 std::string noun_of(const Finding& finding) {
     const std::string_view name = finding.effect;
@@ -227,8 +241,8 @@ std::string noun_of(const Finding& finding) {
     std::vector<std::string_view> effects{name, other == stems.end() ? stem : other->effect};
     for (const EffectModel& entry : finding.entries) { effects.emplace_back(entry.effect); }
     for (const std::string_view effect : effects) {
-        const EffectSignature* signature = signature_of(effect);
-        if (signature != nullptr && !signature->noun.empty()) { return std::string(signature->noun); }
+        const std::string_view noun = noun_of(signature_of(effect), finding);
+        if (!noun.empty()) { return std::string(noun); }
     }
     return fmt::format("`{}`", finding.entries.empty() ? finding.effect : finding.entries.front().effect);
 }
@@ -309,9 +323,8 @@ std::string filled_words(std::string_view template_words, const Finding& finding
 }
 
 std::string effect_words(const Finding& finding) {
-    const EffectSignature* signature = signature_of(finding.effect);
-    if (signature == nullptr || signature->words.empty()) { return finding.effect; }
-    return filled_words(signature->words, finding);
+    const std::string_view words = words_of(signature_of(finding.effect), finding);
+    return words.empty() ? finding.effect : filled_words(words, finding);
 }
 
 std::string cause_words(const Cause& cause) {
@@ -332,9 +345,8 @@ namespace {
 
 // In the order of the words; those that an entry has.
 std::vector<std::string> named_params(const Finding& finding) {
-    const EffectSignature* signature = signature_of(finding.effect);
     std::vector<std::string> names;
-    for (const std::string& words : {signature == nullptr ? std::string() : std::string(signature->words),
+    for (const std::string& words : {std::string(words_of(signature_of(finding.effect), finding)),
                                      noun_of(finding), std::string("{factor}")}) {
         for (const std::string& name : params_in(words)) {
             if (has_value(finding, name) && std::ranges::count(names, name) == 0) { names.push_back(name); }

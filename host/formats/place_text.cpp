@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "analysis/noise/noise_model.hpp"
+#include "analysis/recording/standard_gravity.hpp"
 #include "host/formats/effect_words.hpp"
 #include "host/formats/uncertain_number.hpp"
 
@@ -45,6 +46,11 @@ std::string place_text(const Place& place) {
     if (place.rate_rad_s) {
         parts.push_back(fmt::format("rates of {:.3g} to {:.3g} deg/s", place.rate_rad_s->from * deg_per_rad,
                                     place.rate_rad_s->to * deg_per_rad));
+    }
+    if (place.force_m_s2) {
+        parts.push_back(fmt::format("forces of {:.3g} to {:.3g} g",
+                                    place.force_m_s2->from / standard_gravity_m_s2,
+                                    place.force_m_s2->to / standard_gravity_m_s2));
     }
     if (place.amplitude_sigma) {
         parts.push_back(fmt::format("samples {:.2g} to {:.2g} standard deviations off",

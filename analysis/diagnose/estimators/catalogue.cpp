@@ -151,6 +151,9 @@ std::string lacking(const EffectSignature& signature, const Prediction& predicti
         return "the recording has no temperature";
     }
     if (signature.needs_reference && !prediction.moves()) { return "the recording has no reference rate"; }
+    if (signature.needs_change && !prediction.world().reference_changes()) {
+        return "the reference is constant wherever it is known";
+    }
     if (!prediction.noise_is_sensors() && !row_of(evidence_method(signature, prediction)).is_beside_noise) {
         return "the error of the reference hides the sensor's noise";
     }

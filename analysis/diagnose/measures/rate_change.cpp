@@ -30,7 +30,8 @@ const Measure measures::delay_course{.name = "delay over time",
                                      .least_sd = 1.0};
 
 void add_rate_change_curves(const Observation& observation, std::size_t axis, std::vector<GapCurve>& curves) {
-    if (!observation.prediction().moves()) { return; }
+    // Beside a hole the world turns along a straight line to what is behind it: no change that is known.
+    if (!observation.prediction().world().reference_changes()) { return; }
     const std::vector<float>& change = observation.prediction().response_change_rad_s2(axis);
     if (!varies(change)) { return; }
     curves.push_back(mean_curve(measures::acceleration, axis, axis,

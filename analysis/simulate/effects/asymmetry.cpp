@@ -30,6 +30,7 @@ constexpr EffectSignature asymmetry_signature = {
     .words = "The two directions have different gains, by {gain} either way",
     .noun = "a gain that differs with the direction by {gain}",
     .decided_by = "the same plateaus in both directions, and slow reversals",
+    .force_decided_by = "rests at many angles between each axis upward and downward",
 };
 
 }  // namespace

@@ -45,6 +45,8 @@ constexpr EffectSignature dead_zone_signature = {
     .words = "Rates up to {width_dps} have no answer",
     .noun = "a dead zone of {width_dps}",
     .decided_by = "slow reversals through zero rate",
+    .force_words = "Forces up to {width_dps} have no answer",
+    .force_decided_by = "rests in which each axis is a little off level, to both sides",
 };
 
 }  // namespace

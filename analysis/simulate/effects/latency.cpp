@@ -34,6 +34,7 @@ constexpr EffectSignature latency_signature = {
     .method = EvidenceMethod::response,
     .place = PlaceKind::rate,
     .needs_reference = true,
+    .needs_change = true,
     .whole_sensor = true,
     .trials = latency_trials,
     .words = "The sensor is {delay_s} late",

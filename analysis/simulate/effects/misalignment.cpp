@@ -50,6 +50,8 @@ constexpr EffectSignature misalignment_signature = {
     .words = "The axis picks up rates about other axes: {from_x} of x, {from_y} of y, {from_z} of z",
     .noun = "cross-axis terms",
     .decided_by = "plateaus of several rates about one axis after the other",
+    .force_words = "The axis picks up forces along other axes: {from_x} of x, {from_y} of y, {from_z} of z",
+    .force_decided_by = "rests with each axis upward, downward and at several angles between",
 };
 
 }  // namespace

@@ -36,6 +36,7 @@ constexpr EffectSignature nonlinearity_signature = {
     .words = "The gain is not linear: {quadratic} even and {cubic} odd error at full scale",
     .noun = "an error of linearity",
     .decided_by = "plateaus of many rates of both signs up to full scale",
+    .force_decided_by = "rests at many angles between each axis upward and downward",
 };
 
 }  // namespace

@@ -41,6 +41,10 @@ constexpr EffectSignature rrw_missing_signature = {
     .words = "The output wanders: a rate random walk of {K_dps_sqrt_hz} is missing in the model",
     .noun = "a rate random walk of {K_dps_sqrt_hz}",
     .decided_by = "a still recording of {length} at a steady temperature",
+    .force_words =
+        "The output wanders: an acceleration random walk of {K_dps_sqrt_hz} is missing in the "
+        "model",
+    .force_noun = "an acceleration random walk of {K_dps_sqrt_hz}",
 };
 
 }  // namespace

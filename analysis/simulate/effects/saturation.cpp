@@ -62,6 +62,7 @@ constexpr EffectSignature saturation_signature = {
     .words = "The output is clipped at {limit_dps}",
     .noun = "a limit at {limit_dps}",
     .decided_by = "plateaus of both signs up to full scale",
+    .force_decided_by = "forces of both signs up to full scale, which gravity alone is not",
 };
 
 }  // namespace

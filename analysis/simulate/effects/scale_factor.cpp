@@ -24,6 +24,7 @@ constexpr EffectSignature scale_factor_signature = {
     .words = "The scale factor is off by {eps}",
     .noun = "a scale factor error of {eps}",
     .decided_by = "plateaus of several rates of both signs about one axis after the other",
+    .force_decided_by = "rests with each axis upward, downward and at several angles between",
 };
 
 }  // namespace

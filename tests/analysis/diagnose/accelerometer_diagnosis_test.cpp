@@ -1,8 +1,13 @@
 #include "analysis/diagnose/accelerometer_diagnosis.hpp"
 
+#include <string>
+#include <string_view>
+
 #include <gtest/gtest.h>
 
+#include "analysis/recording/standard_gravity.hpp"
 #include "analysis/simulate/accelerometer_as_gyro.hpp"
+#include "analysis/simulate/chain.hpp"
 
 namespace gyrolog {
 namespace {
@@ -67,6 +72,35 @@ TEST(AccelerometerDiagnosis, IsInGAndWithoutWhatMotionShows) {
     EXPECT_EQ(answer.untestable[0].effect, "temp_linear");
     ASSERT_EQ(answer.corrected.accelerometer->effects.size(), 1U);
     EXPECT_TRUE(answer.corrected.effects.empty());
+}
+
+TEST(AccelerometerDiagnosis, InKnownPosesSpeaksOfForces) {
+    SensorModel model = typical_mpu9250();
+    model.accelerometer.emplace();
+    Place where;
+    where.rate_rad_s = Span{0.0, standard_gravity_m_s2 * accelerometer_rad_s_per_m_s2};
+    Diagnosis as_gyro = with_cause_at("misalignment", where);
+    const std::string_view plateaus = find_effect("misalignment")->signature->decided_by;
+    as_gyro.causes[0].decided_by = plateaus;
+    as_gyro.next_recordings = {"to tell misalignment from scale_factor: " + std::string(plateaus)};
+    as_gyro.untestable = {{"latency", "constant"}, {"g_sensitivity", "no specific force"}};
+    as_gyro.domains.emplace_back();
+    as_gyro.domains[0].name = "rate about x";
+    as_gyro.domains[0].x_name = "reference rate (deg/s)";
+    as_gyro.domains[0].x = {standard_gravity_m_s2 * accelerometer_rad_s_per_m_s2 * deg_per_rad};
+    as_gyro.corrected = accelerometer_as_gyro(model, Exposure::known);
+    const Diagnosis answer = diagnosis_of_accelerometer(as_gyro, model, Exposure::known);
+    const Finding& finding = answer.causes[0].finding;
+    EXPECT_EQ(finding.sensor, SensorKind::accelerometer);
+    EXPECT_FALSE(finding.where.rate_rad_s);
+    EXPECT_NEAR(finding.where.force_m_s2->to, standard_gravity_m_s2, 1e-12);
+    EXPECT_TRUE(answer.causes[0].decided_by.starts_with("rests with each axis upward"));
+    EXPECT_TRUE(answer.next_recordings[0].starts_with("to tell misalignment from scale_factor: rests with"));
+    ASSERT_EQ(answer.untestable.size(), 1U);
+    EXPECT_EQ(answer.untestable[0].effect, "latency");
+    EXPECT_EQ(answer.domains[0].name, "force along x");
+    EXPECT_EQ(answer.domains[0].x_name, "known force (g)");
+    EXPECT_NEAR(answer.domains[0].x[0], 1.0, 1e-12);
 }
 
 }  // namespace

@@ -107,6 +107,36 @@ TEST(AccelerometerAsGyro, RowsWithoutAValueAreMissing) {
     ASSERT_FALSE(seen->warnings.empty());
 }
 
+TEST(AccelerometerAsGyro, ForcesThatARecordingTellsAreItsReference) {
+    SimulationRequest request;
+    request.samples = 100;
+    Recording whole = simulate_recording(six_axes(), request);
+    EXPECT_EQ(exposure_of(*accelerometer_as_gyro(whole)), Exposure::upright);
+    whole.columns.push_back({"ref_ay", "m/s^2", std::vector<double>(whole.rows(), -3.0)});
+    whole.columns.push_back({"ref_x", "rad/s", std::vector<double>(whole.rows(), 1.0)});
+    const Recording seen = *accelerometer_as_gyro(whole);
+    EXPECT_EQ(exposure_of(seen), Exposure::known);
+    EXPECT_EQ(seen.find("ref_x"), nullptr);
+    ASSERT_NE(seen.find("ref_y"), nullptr);
+    EXPECT_EQ(seen.find("ref_y")->unit, "rad/s");
+    EXPECT_NEAR(seen.find("ref_y")->value(7), -3.0 * accelerometer_rad_s_per_m_s2, 1e-12);
+}
+
+// What is known of the forces tells bias and gravity apart, and needs the matrix.
+TEST(AccelerometerAsGyro, OfKnownForcesHasItsMatrixAndNoGravityInItsBias) {
+    SensorModel model = six_axes();
+    model.accelerometer->sd_abs = {{"M", 1e-3}};
+    SensorModel as_gyro = accelerometer_as_gyro(model, Exposure::known);
+    EXPECT_EQ(as_gyro.M, model.accelerometer->M);
+    EXPECT_EQ(as_gyro.sd_abs.at("M"), 1e-3);
+    EXPECT_NEAR(as_gyro.axes[2].bias_rad_s, 0.1 * accelerometer_rad_s_per_m_s2, 1e-12);
+    EXPECT_FALSE(accelerometer_as_gyro(model).sd_abs.contains("M"));
+    as_gyro.axes[2].bias_rad_s = 0.3 * accelerometer_rad_s_per_m_s2;
+    EXPECT_NEAR(with_accelerometer_of(model, as_gyro, Exposure::known).accelerometer->axes[2].bias_rad_s, 0.3,
+                1e-12);
+    EXPECT_EQ(with_accelerometer_of(model, as_gyro).accelerometer->axes[2].bias_rad_s, 0.1);
+}
+
 TEST(AccelerometerEffect, NamesAreThoseOfTheOtherSensor) {
     EXPECT_EQ(accelerometer_param_name("c1_dps_per_C"), "c1_g_per_C");
     EXPECT_EQ(accelerometer_param_name("K_dps_sqrt_hz"), "K_g_sqrt_hz");
