@@ -23,8 +23,9 @@ namespace {
 
 constexpr double quiet_block_s = 1.0;
 
-// By number: of each axis that the unit has, its letter and column.
-using Units = std::map<unsigned long, std::map<std::string, const Column*>>;
+// Of each axis that a unit has, by its letter.
+using Axes = std::map<std::string, const Column*>;
+using Units = std::map<unsigned long, Axes>;  // by number
 
 Units units_of(const Recording& recording) {
     Units units;
@@ -54,7 +55,7 @@ std::string why_no_unit(const Units& units, unsigned long unit) {
 
 bool is_gyro(const Column& column) { return column.name.starts_with('g'); }
 
-Recording with_gyro(const Recording& recording, const std::map<std::string, const Column*>& axes) {
+Recording with_gyro(const Recording& recording, const Axes& axes) {
     Recording one = recording;
     std::erase_if(one.columns, is_gyro);
     std::size_t place = 0;
@@ -314,6 +315,68 @@ private:
 
 bool is_reference(const Column& column) { return column.name.starts_with("ref_"); }
 
+Units with_axes_of(Units units, const Axes& of_unit) {
+    std::erase_if(units, [&](const auto& other) {
+        return std::ranges::any_of(of_unit,
+                                   [&](const auto& axis) { return !other.second.contains(axis.first); });
+    });
+    return units;
+}
+
+// Empty where they do.
+std::string why_others_tell_nothing(const Recording& recording, const Units& units, unsigned long unit) {
+    if (std::ranges::any_of(recording.columns, is_reference)) {
+        return "has a reference already (columns ref_...): leave --reference out";
+    }
+    if (std::string failure = why_no_unit(units, unit); !failure.empty()) { return failure; }
+    for (const auto& [number, axes] : units) {
+        const auto has_scale = [](const auto& axis) { return axis.second->unit == "rad/s"; };
+        if (!std::ranges::all_of(axes, has_scale)) {
+            return "has gyros in counts of no known scale: give it with --lsb-dps";
+        }
+    }
+    if (with_axes_of(units, units.at(unit)).size() > 1) { return {}; }
+    return "has no gyro beside gyro " + std::to_string(unit) +
+           " with the same axes: a reference of others needs one at least (columns gx2_dps ..., two or more "
+           "tell which of all is off)";
+}
+
+Recording rows_where_known(const Recording& recording, const Axes& axes) {
+    return rows_of(recording, segments_where(recording.segments, [&](std::size_t row) {
+                       return std::ranges::all_of(
+                           axes, [&](const auto& axis) { return std::isfinite(axis.second->value(row)); });
+                   }));
+}
+
+// Of the rows that are known of the first.
+std::vector<Unit> units_with_first(const Recording& known, const Units& units, unsigned long first,
+                                   const std::vector<std::string>& axes) {
+    std::vector<Unit> all;
+    for (const auto& [number, columns] : units) {
+        const auto place = number == first ? all.begin() : all.end();
+        all.insert(place, {number, signals_of(with_gyro(known, columns), axes), {}, {}});
+    }
+    return all;
+}
+
+// And leaves the rows out of which it is not known.
+void put_reference_in(Recording& judged, const std::vector<std::string>& axes,
+                      const std::vector<std::vector<double>>& reference_rad_s) {
+    const std::vector<Segment> told = segments_where(judged.segments, [&](std::size_t row) {
+        return std::ranges::all_of(reference_rad_s,
+                                   [&](const auto& rate_rad_s) { return std::isfinite(rate_rad_s[row]); });
+    });
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+        judged.columns.push_back({"ref_" + axes[axis], "rad/s", reference_rad_s[axis], 1.0, 0.0, "rad_s"});
+    }
+    const std::size_t all_rows = judged.rows();
+    judged = rows_of(judged, told);
+    if (judged.rows() == all_rows) { return; }
+    judged.warnings.push_back("another gyro is missing or at the end of its range in " +
+                              std::to_string(all_rows - judged.rows()) + " of " + std::to_string(all_rows) +
+                              " samples: they are left out");
+}
+
 }  // namespace
 
 UnitOfArray unit_of_array(const Recording& recording, unsigned long unit) {
@@ -324,69 +387,20 @@ UnitOfArray unit_of_array(const Recording& recording, unsigned long unit) {
 
 UnitOfArray unit_against_others(const Recording& recording, unsigned long unit,
                                 const ArrayReferenceOptions& options) {
-    UnitOfArray judged;
-    if (std::ranges::any_of(recording.columns, is_reference)) {
-        judged.failure = "has a reference already (columns ref_...): leave --reference out";
-        return judged;
+    const Units units = units_of(recording);
+    if (std::string failure = why_others_tell_nothing(recording, units, unit); !failure.empty()) {
+        return {{}, std::move(failure)};
     }
-    Units units = units_of(recording);
-    judged.failure = why_no_unit(units, unit);
-    if (!judged.failure.empty()) { return judged; }
-    const auto of_unit = units.at(unit);
-    std::erase_if(units, [&](const auto& other) {
-        return std::ranges::any_of(of_unit,
-                                   [&](const auto& axis) { return !other.second.contains(axis.first); });
-    });
-    if (units.size() < 2) {
-        judged.failure = "has no gyro beside gyro " + std::to_string(unit) +
-                         " with the same axes: a reference of others needs one at least (columns gx2_dps "
-                         "..., two or more tell which of all is off)";
-        return judged;
-    }
-    std::vector<std::string> axes;
-    for (const auto& [axis, column] : of_unit) { axes.push_back(axis); }
-    // The judged unit's rows, with all gyros.
-    const auto unknown = [&](std::size_t row) {
-        return std::ranges::any_of(of_unit,
-                                   [&](const auto& axis) { return !std::isfinite(axis.second->value(row)); });
-    };
-    const Recording known = rows_of(
-        recording, segments_where(recording.segments, [&](std::size_t row) { return !unknown(row); }));
+    const Recording known = rows_where_known(recording, units.at(unit));
     const Units on_rows = units_of(known);
-    judged.recording = with_gyro(known, on_rows.at(unit));
-    std::vector<Unit> all;
-    for (const auto& [number, columns] : units) {
-        const Recording one = with_gyro(known, on_rows.at(number));
-        for (const std::string& axis : axes) {
-            if (one.find("g" + axis)->unit == "rad/s") { continue; }
-            judged.failure = "has gyros in counts of no known scale: give it with --lsb-dps";
-            return judged;
-        }
-        const auto place = number == unit ? all.begin() : all.end();
-        all.insert(place, {number, signals_of(one, axes), {}, {}});
-    }
-    judged.recording.reference_gyros = all.size() - 1;
-    Array array(judged.recording, axes, std::move(all), options);
+    const Units alike = with_axes_of(on_rows, on_rows.at(unit));
+    std::vector<std::string> axes;
+    for (const auto& [axis, column] : alike.at(unit)) { axes.push_back(axis); }
+    UnitOfArray judged{with_gyro(known, alike.at(unit)), ""};
+    judged.recording.reference_gyros = alike.size() - 1;
+    Array array(judged.recording, axes, units_with_first(known, alike, unit, axes), options);
     judged.failure = array.failure();
-    if (!judged.failure.empty()) { return judged; }
-    std::vector<std::vector<double>> reference = array.reference();
-    const auto is_told = [&](std::size_t row) {
-        return std::ranges::all_of(reference,
-                                   [&](const auto& rate_rad_s) { return std::isfinite(rate_rad_s[row]); });
-    };
-    const std::vector<Segment> told = segments_where(judged.recording.segments, is_told);
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-        judged.recording.columns.push_back(
-            {"ref_" + axes[axis], "rad/s", reference[axis], 1.0, 0.0, "rad_s"});
-    }
-    const std::size_t all_rows = judged.recording.rows();
-    judged.recording = rows_of(judged.recording, told);
-    const std::size_t left_out = all_rows - judged.recording.rows();
-    if (left_out > 0) {
-        judged.recording.warnings.push_back("another gyro is missing or at the end of its range in " +
-                                            std::to_string(left_out) + " of " + std::to_string(all_rows) +
-                                            " samples: they are left out");
-    }
+    if (judged.failure.empty()) { put_reference_in(judged.recording, axes, array.reference()); }
     return judged;
 }
 

@@ -81,17 +81,27 @@ bool changes_noise_alone(const EffectModel& entry) {
 
 enum class AngleNoise { none, as_seen };
 
-// Noise as large as all that is left, and no other but the drift.
-SensorModel with_noise_of(const Observation& left, SensorModel model, AngleNoise angle, double drift_rel) {
+// B and K of what is left, over the model's: of the judged gyro, and of the mean of others of its kind where
+// these are the reference. Other references do not drift.
+double drift_rel(const Recording& rows) {
+    const auto gyros = static_cast<double>(rows.reference_gyros);
+    return gyros > 0.0 ? std::sqrt(1.0 + 1.0 / gyros) : 1.0;
+}
+
+// Noise as large as all that is left, and the drift, which some densities at the lowest frequencies do not
+// tell.
+SensorModel with_noise_of(const Observation& left, SensorModel model, AngleNoise angle) {
+    const double drift = drift_rel(left.recording());
     std::erase_if(model.effects, changes_noise_alone);
     for (const std::size_t axis : left.prediction().axes()) {
         AxisModel& of_axis = model.axes[axis];
         const NoiseCoefficients before = of_axis.noise;
         of_axis.noise = {};
         of_axis.noise.R_rad_per_s2 = before.R_rad_per_s2;
-        of_axis.noise.B_rad_per_s = drift_rel * before.B_rad_per_s;
-        of_axis.noise.K_rad_per_s_sqrt_s = drift_rel * before.K_rad_per_s_sqrt_s;
-        of_axis.sd_rel.clear();
+        of_axis.noise.B_rad_per_s = drift * before.B_rad_per_s;
+        of_axis.noise.K_rad_per_s_sqrt_s = drift * before.K_rad_per_s_sqrt_s;
+        std::erase_if(of_axis.sd_rel,
+                      [](const auto& entry) { return entry.first == "N" || entry.first == "Q"; });
         const AngleAndWhite seen = angle_and_white(left.prediction(), left.axis(axis));
         const bool is_white = angle == AngleNoise::none;
         const double white_rad2_per_s =
@@ -192,10 +202,9 @@ double bandwidth_hz(const Observation& left) {
 // Reads the error from what is left of the rows.
 class ErrorReader {
 public:
-    ErrorReader(std::shared_ptr<const Recording> rows, std::uint64_t seed, double drift_rel = 0.0)
+    ErrorReader(std::shared_ptr<const Recording> rows, std::uint64_t seed)
         : rows_(std::move(rows)),
           seed_(seed),
-          drift_rel_(drift_rel),
           slots_(static_cast<std::size_t>(std::max(2.0, std::round(resolution::level_s * rows_->rate_hz)))) {}
 
     // What is left with this model, its gains and its latency as the recording has them.
@@ -208,7 +217,7 @@ public:
 
     SensorModel with_density(SensorModel model, AngleNoise angle) const {
         const Observation all = left_by(model);
-        model = with_noise_of(all, std::move(model), angle, drift_rel_);
+        model = with_noise_of(all, std::move(model), angle);
         const Observation left = left_by(model);
         const auto prediction = std::make_shared<const Prediction>(left.prediction());
         const auto density =
@@ -256,7 +265,6 @@ public:
 private:
     std::shared_ptr<const Recording> rows_;
     std::uint64_t seed_;
-    double drift_rel_;
     std::size_t slots_;
 };
 
@@ -273,8 +281,8 @@ double most_error_rad_s(const ReferenceQuality& quality) {
 }  // namespace
 
 WithReferenceError with_reference_error(SensorModel model, const std::shared_ptr<const Recording>& rows,
-                                        std::uint64_t seed, double drift_rel) {
-    const ErrorReader reader(rows, seed, drift_rel);
+                                        std::uint64_t seed) {
+    const ErrorReader reader(rows, seed);
     const ReferenceQuality quality =
         reader.quality(reader.left_by(reader.with_density(model, AngleNoise::as_seen)));
     // A sensor does not follow the error of its reference: what acts on it is the rate without, as far as

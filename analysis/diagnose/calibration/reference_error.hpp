@@ -13,18 +13,17 @@
 namespace gyrolog {
 
 // The model whose noise is that of the samples about the reference, by axis: white noise with a density and a
-// course over time of its own, read from what is left of the rows when any gains and one latency are taken
-// off, by generalised least squares. So it holds the sensor's noise as well, and nothing is known of either
-// alone.
+// course over time of its own beside the model's B and K, read from what is left of the rows when any gains
+// and one latency are taken off, by generalised least squares. So it holds the sensor's noise as well, and
+// nothing is known of either alone.
 struct WithReferenceError {
     SensorModel model;
     ReferenceQuality quality;
 };
 
-// `rows` has a reference rate, and no diagnosis_refusal(). `drift_rel`: B and K of what is left, of the
-// model's: some densities at the lowest frequencies do not tell a drift. 0: what is left does not drift.
+// `rows` has a reference rate, and no diagnosis_refusal().
 WithReferenceError with_reference_error(SensorModel model, const std::shared_ptr<const Recording>& rows,
-                                        std::uint64_t seed, double drift_rel = 0.0);
+                                        std::uint64_t seed);
 
 // What the rows tell of a reference rate whose noise is known by axis, and is the model's.
 ReferenceQuality quality_of_rates(const SensorModel& model, const std::shared_ptr<const Recording>& rows,

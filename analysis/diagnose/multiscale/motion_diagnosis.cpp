@@ -70,20 +70,14 @@ std::shared_ptr<const Recording> shared_means(const Recording& recording) {
     return std::make_shared<const Recording>(means_against_orientation(recording));
 }
 
-// Of the model's: that of the judged gyro and of the mean of others of its kind. No other reference drifts.
-double drift_against(const Recording& recording) {
-    const auto gyros = static_cast<double>(recording.reference_gyros);
-    return gyros > 0.0 ? std::sqrt(1.0 + 1.0 / gyros) : 0.0;
-}
-
 // `model`: of the recording's rows; `rows`: those, or means of them against the angle turned.
 std::optional<Diagnosis> diagnose_answer(const Recording& recording,
                                          const std::shared_ptr<const Recording>& rows,
                                          const SensorModel& model, const std::string& model_name,
                                          DiagnosisOptions options) {
     const std::size_t samples = rows->samples_per_row / recording.samples_per_row;
-    WithReferenceError error = with_reference_error(model_of_means(model, samples, recording.rate_hz), rows,
-                                                    options.seed, drift_against(recording));
+    WithReferenceError error =
+        with_reference_error(model_of_means(model, samples, recording.rate_hz), rows, options.seed);
     options.noise_of = Prediction::NoiseOf::reference_too;
     std::optional<Diagnosis> pass = diagnose(rows, error.model, model_name, options);
     if (!pass) { return std::nullopt; }

@@ -344,8 +344,12 @@ TEST(DiagnosisText, StatesTheReferenceBeforeTheSensorIsJudged) {
     Diagnosis diagnosis = known();
     diagnosis.axes = {0};
     diagnosis.passes = {{30.0, 8'571, 1, Verdict::none, 0.4, true}, {200.0, 4'000, 14, Verdict::known, 1e-9}};
-    diagnosis.reference = {true,   false,  14, {Span{0.5 * rad_per_deg, 2.0 * rad_per_deg}},
-                           4.5e-3, 0.1e-3, 7.3};
+    diagnosis.reference = ReferenceQuality{.is_orientation = true,
+                                           .samples_per_row = 14,
+                                           .error_rad_s = {Span{0.5 * rad_per_deg, 2.0 * rad_per_deg}},
+                                           .latency_s = 4.5e-3,
+                                           .latency_sd_s = 0.1e-3,
+                                           .bandwidth_hz = 7.3};
     const std::string text = joined(diagnosis_text(diagnosis));
     const std::size_t at = text.find(
         "reference: The rates of the orientation are off by 0.5 to 2 deg/s on x (one sigma of a mean of 14 "
@@ -368,7 +372,11 @@ TEST(DiagnosisText, StatesTheNoiseOfReferenceRates) {
     Diagnosis diagnosis = known();
     diagnosis.axes = {0, 1};
     const Span noise_rad_s{0.05 * rad_per_deg, 0.05 * rad_per_deg};
-    diagnosis.reference = {false, true, 1, {noise_rad_s, Span{}}, -2.0e-3, 0.1e-3, 12.0};
+    diagnosis.reference = ReferenceQuality{.is_known_at_rest = true,
+                                           .error_rad_s = {noise_rad_s},
+                                           .latency_s = -2.0e-3,
+                                           .latency_sd_s = 0.1e-3,
+                                           .bandwidth_hz = 12.0};
     EXPECT_THAT(joined(diagnosis_text(diagnosis)),
                 HasSubstr("reference: The reference rates are off by 0.05 deg/s on x (one sigma of a sample, "
                           "where the sensor rests), and follow the sensor up to 12 Hz. The sensor is 2.00 ± "
