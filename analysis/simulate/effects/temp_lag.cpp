@@ -92,8 +92,8 @@ constexpr EffectSignature temp_lag_signature = {
     .slow = true,
     .trials = temp_lag_trials,
     .words =
-        "The output follows the temperature late, {c1_dps_per_C} with a lag of {tau_s} and a play of "
-        "{play_C}",
+        "The output follows the temperature late, {c1_dps_per_C}[, with a lag of {tau_s}][, with a play of "
+        "{play_C}]",
     .noun = "a temperature coefficient of {c1_dps_per_C} that acts {tau_s} late",
     .decided_by = "one sweep of the temperature up and down by 5 degC or more",
 };

@@ -154,7 +154,7 @@ TEST(DiagnosisText, HasATableOfTheCausesWithSizeShareAndProbability) {
                           "left: "));
     EXPECT_THAT(joined(text),
                 HasSubstr("what the causes are 1. The output follows the temperature late, 0.0210 ± "
-                          "0.0020 deg/s per degC with a lag of 6.8 ± 1.0 min and a play of 0 degC. "
+                          "0.0020 deg/s per degC, with a lag of 6.8 ± 1.0 min. "
                           "This recording cannot tell it from `temp_linear`."));
     EXPECT_THAT(joined(text), HasSubstr("1. temp_lag: evidence 140 nats; `temp_linear` has 2.1 nats less"));
     EXPECT_THAT(text, Not(HasSubstr("may overlap")));

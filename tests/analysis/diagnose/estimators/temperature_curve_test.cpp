@@ -56,6 +56,17 @@ TEST(TemperatureCurve, CubicIsFoundWithItsCoefficients) {
     }
 }
 
+// A lag of hours is half an hour's integral of the temperature, as every longer one is.
+TEST(TemperatureCurve, LagsNoFartherBeyondWhatIsPlausibleThanOtherShapes) {
+    const SensorModel sensor =
+        with_effect(calibrated_sensor(), "temp_lag", {{"c1_dps_per_C", 0.2}, {"tau_s", 18'000.0}}, {"x"});
+    const auto recording = recorded(sensor, half_an_hour, 62, swept());
+    const auto finding = found(make_mean_response_estimator, "temp_lag", recording, calibrated_sensor());
+    ASSERT_TRUE(finding);
+    EXPECT_GT(evidence(finding), 20.0);
+    EXPECT_LE(finding->entries.front().params.at("tau_s"), 1800.0 * (1.0 + 1e-9));
+}
+
 // The weakest curve of each order that is clearly one: its last term alone has some tens of nats.
 TEST(TemperatureCurve, OfEachOrderIsItself) {
     const std::array<std::map<std::string, double>, 3> params = {
