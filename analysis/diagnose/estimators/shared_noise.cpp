@@ -42,6 +42,9 @@ struct Statistics {
     Span band_hz;
 };
 
+// What an axis shares with others is more than the white noise that it has, or part of that.
+enum class Shared { added, part_of_white };
+
 class SharedNoiseEstimator final : public Estimator {
 public:
     SharedNoiseEstimator(const EffectDefinition& effect, std::shared_ptr<const Prediction> prediction)
@@ -64,9 +67,13 @@ public:
         std::optional<AxesFit> best;
         for (const std::vector<std::size_t>& axes : axis_subsets(prediction_->axes())) {
             if (axes.size() < 2) { continue; }
-            for (const bool alike : {true, false}) {
-                std::optional<AxesFit> fit = fit_axes(observation, *statistics, axes, alike);
-                if (fit && (!best || fit->evidence_nats() > best->evidence_nats())) { best = std::move(fit); }
+            for (const Shared kind : {Shared::added, Shared::part_of_white}) {
+                for (const bool alike : {true, false}) {
+                    std::optional<AxesFit> fit = fit_axes(observation, *statistics, axes, kind, alike);
+                    if (fit && (!best || fit->evidence_nats() > best->evidence_nats())) {
+                        best = std::move(fit);
+                    }
+                }
             }
         }
         std::optional<Finding> finding = best_of(effect_, {}, 0.0, best);
@@ -79,13 +86,16 @@ public:
     }
 
 private:
-    // Of the freedom to choose axes, and gains alike or not.
-    double choice_cost_nats() const { return std::log(prediction_->axes().size() > 2 ? 8.0 : 2.0); }
+    // Of the freedom to choose axes, gains alike or not, and whether it is added.
+    double choice_cost_nats() const { return std::log(prediction_->axes().size() > 2 ? 16.0 : 4.0); }
 
     SensorModel with_effect_of_one() const {
         SensorModel model = prediction_->model();
         EffectModel entry{std::string(effect_.name), {}, {}, ""};
-        for (const EffectParam& param : effect_.params) { entry.params[std::string(param.name)] = 1.0; }
+        for (const EffectParam& param : effect_.params) {
+            const bool is_choice = param.range == EffectParam::Range::yes_no;
+            entry.params[std::string(param.name)] = is_choice ? 0.0 : 1.0;
+        }
         model.effects.push_back(std::move(entry));
         return model;
     }
@@ -219,11 +229,20 @@ private:
         return level_cost_nats(observation, axis, std::sqrt(own));
     }
 
-    double gain(const Observation& observation, const Statistics& sum, const Eigen::Vector3d& h) const {
+    // What a shared part gains by the axis' level.
+    static double level_gain_nats(const Observation& observation, const Statistics& sum, std::size_t axis,
+                                  Shared kind, double h) {
+        if (kind == Shared::added) {
+            return own_level_cost(observation, sum, axis, 0.0) - own_level_cost(observation, sum, axis, h);
+        }
+        return h * h < sum.white[static_cast<Eigen::Index>(axis)] ? 0.0 : minus_infinity;
+    }
+
+    double gain(const Observation& observation, const Statistics& sum, Shared kind,
+                const Eigen::Vector3d& h) const {
         double nats = correlation_likelihood(sum, h) - correlation_likelihood(sum, Eigen::Vector3d::Zero());
         for (const std::size_t axis : prediction_->axes()) {
-            nats += own_level_cost(observation, sum, axis, 0.0) -
-                    own_level_cost(observation, sum, axis, h[static_cast<Eigen::Index>(axis)]);
+            nats += level_gain_nats(observation, sum, axis, kind, h[static_cast<Eigen::Index>(axis)]);
         }
         return std::isnan(nats) ? minus_infinity : nats;
     }
@@ -242,7 +261,7 @@ private:
 
     // Alike: all axes have gain 1.
     std::optional<AxesFit> fit_axes(const Observation& observation, const Statistics& sum,
-                                    const std::vector<std::size_t>& axes, bool alike) const {
+                                    const std::vector<std::size_t>& axes, Shared kind, bool alike) const {
         std::vector<double> start = {0.0};
         double square = 0.0;
         for (std::size_t i = 1; i < axes.size(); ++i) {
@@ -261,18 +280,18 @@ private:
                 largest = std::max(largest, std::fabs(at[i]));
             }
             if (smallest < decisions.gain_ratio_least * largest) { return minus_infinity; }
-            return gain(observation, sum, shared(sum, axes, at));
+            return gain(observation, sum, kind, shared(sum, axes, at));
         };
         if (!std::isfinite(start[0]) || !std::isfinite(objective(start))) { return std::nullopt; }
         SimplexMaximum maximum = simplex_maximum(objective, start, -0.2, 1e-3);
         maximum = simplex_maximum(objective, maximum.at, 0.02, 1e-4);
         if (!(maximum.value > 0.0)) { return std::nullopt; }
-        return axes_fit(observation, sum, axes, maximum, objective);
+        return axes_fit(observation, sum, axes, kind, maximum, objective);
     }
 
     template <typename Objective>
     AxesFit axes_fit(const Observation& observation, const Statistics& sum,
-                     const std::vector<std::size_t>& axes, const SimplexMaximum& maximum,
+                     const std::vector<std::size_t>& axes, Shared kind, const SimplexMaximum& maximum,
                      const Objective& objective) const {
         const PeakCurvature curvature = peak_curvature(objective, maximum.at, maximum.value,
                                                        resolution::curvature_step, resolution::ratio_sd_most);
@@ -283,8 +302,7 @@ private:
         double levels = 0.0;
         for (const std::size_t axis : axes) {
             fit.gain_nats.push_back(
-                own_level_cost(observation, sum, axis, 0.0) -
-                own_level_cost(observation, sum, axis, h[static_cast<Eigen::Index>(axis)]));
+                level_gain_nats(observation, sum, axis, kind, h[static_cast<Eigen::Index>(axis)]));
             levels += fit.gain_nats.back();
         }
         fit.spectral_nats = fit.gain_nats;
@@ -299,6 +317,7 @@ private:
         const std::string name(density.name);
         fit.params[name] = std::exp(maximum.at[0]) * largest * deg_per_rad;
         fit.sd[name] = fit.params[name] * curvature.sd[0];
+        if (kind == Shared::part_of_white) { fit.params["part_of_white"] = 1.0; }
         const PlausibleRange of_density(density, fit.params[name]);
         std::vector<double> ranges = {of_density.width / fit.params[name]};
         for (std::size_t i = 0; maximum.at.size() > 1 && i < axes.size(); ++i) {

@@ -95,6 +95,31 @@ TEST(CommonMode, ReachesTheNamedAxesInProportionToTheirGains) {
     }
 }
 
+// The axis has as much white noise as before.
+TEST(CommonMode, ThatIsPartOfTheWhiteNoiseTakesItsPlace) {
+    const SensorModel own = white_model(0.01 * rad_per_deg);
+    const double share = 0.6;
+    const SensorModel model = with_effect(
+        own, "common_mode",
+        {{"N_dps_per_sqrt_hz", 0.01 * std::sqrt(share)}, {"gain_y", -1.0}, {"part_of_white", 1.0}},
+        {"x", "y"});
+    const Simulated out = simulate(model, rate_hz, 7, 40);
+    double both = 0.0;
+    double squares_x = 0.0;
+    double squares_y = 0.0;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        both += out.rate_rad_s[0][i] * out.rate_rad_s[1][i];
+        squares_x += out.rate_rad_s[0][i] * out.rate_rad_s[0][i];
+        squares_y += out.rate_rad_s[1][i] * out.rate_rad_s[1][i];
+    }
+    const auto count = static_cast<double>(out.size());
+    const double variance = 0.01 * 0.01 * rad_per_deg * rad_per_deg * rate_hz;
+    const double sigmas = 5.0 * std::sqrt(2.0 / count);
+    EXPECT_NEAR(squares_x / count / variance, 1.0, sigmas);
+    EXPECT_NEAR(squares_y / count / variance, 1.0, sigmas);
+    EXPECT_NEAR(both / count / variance, -share, sigmas);
+}
+
 TEST(Telegraph, HasTwoLevelsHalfItsAmplitudeFromZero) {
     const SensorModel model = with_effect(
         ideal_model(), "rtn", {{"amplitude_dps", 0.2}, {"dwell_high_s", 0.1}, {"dwell_low_s", 0.3}}, {"y"});

@@ -97,6 +97,30 @@ TEST(SharedNoiseEvidence, IsNoneForAxesThatAreLouderEachByItself) {
     EXPECT_GT(seen.evidence_nats("arw_scale", make_noise_spectrum_estimator), 20.0);
 }
 
+// A calibration of each axis by itself has the whole: nothing of it is too much.
+TEST(SharedNoiseEvidence, MayBePartOfTheNoiseThatTheAxesHave) {
+    const EffectModel part =
+        effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.002}, {"gain_y", -0.7}, {"part_of_white", 1.0}});
+    const auto seen = seen_effects(known_sensor(), {part}, half_hour, 57);
+    const auto found = seen.find("common_mode", make_shared_noise_estimator);
+    ASSERT_TRUE(found);
+    const auto& params = found->entries[0].params;
+    EXPECT_EQ(params.at("part_of_white"), 1.0);
+    EXPECT_NEAR(params.at("N_dps_per_sqrt_hz"), 0.002, 4.0 * found->sd[0].at("N_dps_per_sqrt_hz"));
+    EXPECT_GT(found->evidence_nats, 20.0);
+    SensorModel with_it = known_sensor();
+    with_it.effects = {found->entries[0]};
+    const auto beside = seen_with(with_it, seen.recording);
+    EXPECT_LT(beside.evidence_nats("arw_scale", make_noise_spectrum_estimator), 2.0);
+    EXPECT_LT(beside.evidence_nats("common_mode", make_shared_noise_estimator), 2.0);
+    // What is added is told from it.
+    const auto louder = seen_effects(
+        known_sensor(), {effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.002}})}, half_hour, 58);
+    const auto added = louder.find("common_mode", make_shared_noise_estimator);
+    ASSERT_TRUE(added);
+    EXPECT_FALSE(added->entries[0].params.contains("part_of_white"));
+}
+
 TEST(SharedNoiseEvidence, IsGoneOnceTheModelHasIt) {
     SensorModel model = known_sensor();
     model.effects.push_back(effect_entry("common_mode", {{"N_dps_per_sqrt_hz", 0.005}, {"gain_y", 0.5}}));
