@@ -561,6 +561,7 @@ std::vector<Disturbance> disturbances(const Recording& recording,
     }
     if (std::ranges::count(shortest.disturbed, true) == 0) { return {}; }
     std::vector<Course> courses;
+    courses.reserve(numbers.size());
     for (const Numbers& signal : numbers) {
         courses.push_back(
             course_of(signal.values, shortest.blocks, power_of_codes(signal.step), longest_share, options));
