@@ -135,7 +135,8 @@ InverseCovariance inverse_covariance_of(const Prediction& prediction, const std:
 std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
                                     std::vector<double> values, CosineTransform& transform) {
     const bool has_holes = prediction.world().recording().segments.size() > 1;
-    if (!has_holes || !prediction.moves()) {
+    // The model's uncertain responses end at each hole, and what is fitted beside them has to do so, too.
+    if (!has_holes || !prediction.moves() || !prediction.uncertain(axis).empty()) {
         transform.forward(values);
         values[0] = 0.0;
         return {values.begin(), values.end()};

@@ -66,8 +66,9 @@ std::vector<double> weighted_values(const Prediction& prediction, const std::vec
 InverseCovariance inverse_covariance_of(const Prediction& prediction, const std::vector<double>& density);
 
 // The function returns the cosine coefficients of a mean response on the axis, about its mean. `values`: by
-// slot; where the sensor moves, those in the holes of the recording do not matter. Where it rests they stay
-// as they are: what answers to nothing but time and temperature hardly changes over a hole.
+// slot; where the sensor moves, those in the holes of the recording do not matter. Where it rests, or where
+// the model is uncertain of responses of its own, they stay as they are: what answers to nothing but time and
+// temperature hardly changes over a hole.
 std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
                                     std::vector<double> values, CosineTransform& transform);
 
