@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "analysis/numerics/cosine_transform.hpp"
 
@@ -53,7 +54,7 @@ std::vector<float> response_coefficients(const std::vector<float>& values, Cosin
 }
 
 void expect_in_holes(const Prediction& prediction, std::size_t axis, const std::vector<bool>& present,
-                     std::vector<float>& values, CosineTransform& transform) {
+                     std::vector<float>& values, CosineTransform& transform, int rounds) {
     std::vector<std::size_t> missing;
     for (std::size_t slot = 0; slot < present.size(); ++slot) {
         if (!present[slot]) { missing.push_back(slot); }
@@ -61,7 +62,7 @@ void expect_in_holes(const Prediction& prediction, std::size_t axis, const std::
     join_holes(values, present, [](std::size_t) { return 0.0; });
     const std::vector<double> density = density_of_model(prediction, axis);
     const InverseCovariance inverse = inverse_covariance_of(prediction, density);
-    for (int round = 0; round < filling_rounds(prediction, axis); ++round) {
+    for (int round = 0; round < rounds; ++round) {
         const std::vector<float> cosines = response_coefficients(values, transform);
         expect_stand_ins(values, missing, weighted_values(prediction, density, cosines, transform), inverse);
     }
@@ -110,7 +111,7 @@ double take_mean_off(std::vector<float>& values, const std::vector<bool>& presen
 }
 
 int filling_rounds(const Prediction& prediction, std::size_t axis) {
-    return prediction.uncertain(axis).empty() ? 1 : 2;
+    return prediction.uncertain(axis).empty() ? 1 : resolution::rounds_beside_uncertain;
 }
 
 std::vector<double> density_of_model(const Prediction& prediction, std::size_t axis) {
@@ -134,9 +135,13 @@ InverseCovariance inverse_covariance_of(const Prediction& prediction, const std:
 
 std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
                                     std::vector<double> values, CosineTransform& transform) {
+    return response_cosines(prediction, axis, std::move(values), transform, filling_rounds(prediction, axis));
+}
+
+std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
+                                    std::vector<double> values, CosineTransform& transform, int rounds) {
     const bool has_holes = prediction.world().recording().segments.size() > 1;
-    // The model's uncertain responses end at each hole, and what is fitted beside them has to do so, too.
-    if (!has_holes || !prediction.moves() || !prediction.uncertain(axis).empty()) {
+    if (!has_holes || !prediction.moves()) {
         transform.forward(values);
         values[0] = 0.0;
         return {values.begin(), values.end()};
@@ -144,7 +149,7 @@ std::vector<float> response_cosines(const Prediction& prediction, std::size_t ax
     const std::vector<bool> present = present_slots(prediction);
     std::vector<float> filled(values.begin(), values.end());
     take_mean_off(filled, present);
-    expect_in_holes(prediction, axis, present, filled, transform);
+    expect_in_holes(prediction, axis, present, filled, transform, rounds);
     return response_coefficients(filled, transform);
 }
 

@@ -20,6 +20,7 @@ namespace resolution {
 // Stand-ins farther apart tell nothing of each other. Behind a filter of 5 Hz at 100 Hz the weight there is
 // 1e-12 of the nearest one's, beside flicker noise 2e-3.
 inline constexpr std::size_t stand_in_lags = 64;
+inline constexpr int rounds_beside_uncertain = 2;
 
 }  // namespace resolution
 
@@ -71,5 +72,8 @@ InverseCovariance inverse_covariance_of(const Prediction& prediction, const std:
 // temperature hardly changes over a hole.
 std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
                                     std::vector<double> values, CosineTransform& transform);
+// While the prediction's uncertain responses are made, filling_rounds() does not know of them yet.
+std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
+                                    std::vector<double> values, CosineTransform& transform, int rounds);
 
 }  // namespace gyrolog

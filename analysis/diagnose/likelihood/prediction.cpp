@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "analysis/diagnose/likelihood/denoised_reference.hpp"
+#include "analysis/diagnose/likelihood/hole_filling.hpp"
 #include "analysis/diagnose/likelihood/level_changes.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/chain.hpp"
@@ -206,6 +207,7 @@ Prediction::Prediction(std::shared_ptr<const RecordedWorld> world, const SensorM
     bins_ = spectral_bins(length_, rate_hz_, half_, *shared_->level_changes);
     if (moves()) { read_motion(); }
     expect_spectrum();
+    if (moves()) { read_uncertain_responses(); }
 }
 
 void Prediction::read_temperature() {
@@ -261,6 +263,15 @@ void Prediction::read_motion() {
     response_change_rad_s2_ = noise_free_response(*this, denoised, sooner);
     const std::array<std::vector<float>, 3> delayed = noise_free_response(*this, denoised, later);
 
+    for (const std::size_t axis : axes_) {
+        std::vector<float>& change = response_change_rad_s2_[axis];
+        for (std::size_t slot = 0; slot < length_; ++slot) {
+            change[slot] = (change[slot] - delayed[axis][slot]) / static_cast<float>(resolution::time_step_s);
+        }
+    }
+}
+
+void Prediction::read_uncertain_responses() {
     const TransformPool::Lease transform = this->transform();
     const double gain_sd = stated(model_.sd_abs, "M", 0.0);
     // One latency and one clock for all axes, each of which is fitted by itself: so much wider, all of them
@@ -274,13 +285,13 @@ void Prediction::read_motion() {
         if (is_shaped) { per_gain[from] = response_per_gain(from); }
     }
     for (const std::size_t axis : axes_) {
-        std::vector<float>& change = response_change_rad_s2_[axis];
-        for (std::size_t slot = 0; slot < length_; ++slot) {
-            change[slot] = (change[slot] - delayed[axis][slot]) / static_cast<float>(resolution::time_step_s);
-        }
+        const std::vector<float>& change = response_change_rad_s2_[axis];
         std::vector<UncertainResponse> uncertain;
         const auto take = [&](const std::vector<float>& values, double sd) {
-            if (sd > 0.0) { uncertain.push_back({cosines_of(values, *transform), sd}); }
+            if (!(sd > 0.0)) { return; }
+            uncertain.push_back({response_cosines(*this, axis, {values.begin(), values.end()}, *transform,
+                                                  resolution::rounds_beside_uncertain),
+                                 sd});
         };
         for (const std::size_t from : axes_) {
             take(is_shaped ? per_gain[from][axis] : true_rate_rad_s_[from], gain_sd);

@@ -131,6 +131,7 @@ private:
     void read_responses();
     std::vector<std::size_t> level_changes_of_recording() const;
     void read_motion();
+    void read_uncertain_responses();
     std::array<std::vector<float>, 3> response_per_gain(std::size_t from) const;
     void add_reference_noise();
     // Mean square of the factors on the axis' white noise.
