@@ -20,6 +20,7 @@ namespace resolution {
 // Stand-ins farther apart tell nothing of each other. Behind a filter of 5 Hz at 100 Hz the weight there is
 // 1e-12 of the nearest one's, beside flicker noise 2e-3.
 inline constexpr std::size_t stand_in_lags = 64;
+// A stand-in is expected once more after the model's uncertain responses have given way to the samples.
 inline constexpr int rounds_beside_uncertain = 2;
 
 }  // namespace resolution
@@ -67,9 +68,8 @@ std::vector<double> weighted_values(const Prediction& prediction, const std::vec
 InverseCovariance inverse_covariance_of(const Prediction& prediction, const std::vector<double>& density);
 
 // The function returns the cosine coefficients of a mean response on the axis, about its mean. `values`: by
-// slot; where the sensor moves, those in the holes of the recording do not matter. Where it rests, or where
-// the model is uncertain of responses of its own, they stay as they are: what answers to nothing but time and
-// temperature hardly changes over a hole.
+// slot; where the sensor moves, those in the holes of the recording do not matter. Where it rests they stay
+// as they are: what answers to nothing but time and temperature hardly changes over a hole.
 std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
                                     std::vector<double> values, CosineTransform& transform);
 // While the prediction's uncertain responses are made, filling_rounds() does not know of them yet.
