@@ -36,29 +36,27 @@ struct Gyro {
     Matrix3 M = identity_matrix;
 };
 
-Vector3 sum(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
 // O. Rodrigues' formula: the vector turned by the length of `turn_rad` about its direction.
 Vector3 turned(const Vector3& vector, const Vector3& turn_rad) {
     const double angle = norm(turn_rad);
     if (angle == 0.0) { return vector; }
     const Vector3 axis = scaled(turn_rad, 1.0 / angle);
     const double along = dot(axis, vector) * (1.0 - std::cos(angle));
-    return sum(sum(scaled(vector, std::cos(angle)), scaled(cross(axis, vector), std::sin(angle))),
-               scaled(axis, along));
+    return sum_of(sum_of(scaled(vector, std::cos(angle)), scaled(cross(axis, vector), std::sin(angle))),
+                  scaled(axis, along));
 }
 
 // Where the gyro sees gravity's direction end.
 Vector3 carried(const Gyro& gyro, const Matrix3& correction, const GravityMove& move) {
     const auto rate = [&](std::size_t row) {
-        const Vector3 zero = sum(gyro.bias, product(gyro.K, move.force_m_s2[row]));
+        const Vector3 zero = sum_of(gyro.bias, product(gyro.K, move.force_m_s2[row]));
         return product(correction, difference(move.measured_rad_s[row], zero));
     };
     Vector3 up = move.up_before;
     Vector3 last = rate(0);
     for (std::size_t row = 1; row < move.measured_rad_s.size(); ++row) {
         const Vector3 now = rate(row);
-        up = turned(up, scaled(sum(last, now), -0.5 * move.row_s));
+        up = turned(up, scaled(sum_of(last, now), -0.5 * move.row_s));
         last = now;
     }
     return up;
@@ -154,7 +152,7 @@ public:
         std::size_t n = 0;
         for (const MeanRate& mean : of_.means) {
             const Vector3 expected =
-                sum(g.bias, sum(product(g.K, mean.force_m_s2), product(g.M, mean.rate_rad_s)));
+                sum_of(g.bias, sum_of(product(g.K, mean.force_m_s2), product(g.M, mean.rate_rad_s)));
             const Vector3 error = difference(mean.measured_rad_s, expected);
             for (const double component : error) { write(values, n, component); }
         }

@@ -17,8 +17,6 @@
 namespace gyrolog {
 namespace {
 
-Vector3 sum_of(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
 // 0 of 0.
 Vector3 direction_of(const Vector3& vector) {
     const double length = norm(vector);

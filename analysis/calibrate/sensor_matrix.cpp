@@ -14,6 +14,8 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
 
 Vector3 difference(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
+Vector3 sum_of(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+
 Vector3 scaled(const Vector3& vector, double factor) {
     return {vector[0] * factor, vector[1] * factor, vector[2] * factor};
 }

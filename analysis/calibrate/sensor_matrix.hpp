@@ -11,6 +11,7 @@ double norm(const Vector3& vector);
 double dot(const Vector3& a, const Vector3& b);
 Vector3 cross(const Vector3& a, const Vector3& b);
 Vector3 difference(const Vector3& a, const Vector3& b);
+Vector3 sum_of(const Vector3& a, const Vector3& b);
 Vector3 scaled(const Vector3& vector, double factor);
 // Between two directions, 0 to pi; neither vector is 0.
 double angle_rad(const Vector3& a, const Vector3& b);

@@ -42,7 +42,7 @@ std::vector<std::string> axes_of(const Recording& recording) {
     return axes;
 }
 
-bool has_reference(const Recording& recording) {
+bool has_reference_rates(const Recording& recording) {
     return std::ranges::any_of(
         axis_names, [&](const char* axis) { return recording.find(std::string("ref_") + axis) != nullptr; });
 }
@@ -299,7 +299,7 @@ std::optional<Comparison> compare_with_model(std::shared_ptr<const Recording> re
     Comparison comparison;
     describe(*recording, comparison);
     comparison.other_name = model_name;
-    comparison.less_reference = has_reference(*recording);
+    comparison.less_reference = has_reference_rates(*recording);
     comparison.simulations = options.simulations;
     comparison.band_probability = band_probability(options.simulations);
     comparison.seed = options.seed;
@@ -314,7 +314,7 @@ Comparison compare_recordings(const Recording& recording, const Recording& other
     describe(recording, comparison);
     comparison.other_name = other.name;
     comparison.other_duration_s = other.segments.empty() ? 0.0 : other.duration_s();
-    comparison.less_reference = has_reference(recording) || has_reference(other);
+    comparison.less_reference = has_reference_rates(recording) || has_reference_rates(other);
     const std::vector<std::string> axes = axes_of(recording);
     const double alarms = false_alarms_a_part(parts_with_recording, axes.size());
     for (const std::string& axis : axes) {

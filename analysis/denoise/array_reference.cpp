@@ -313,8 +313,6 @@ private:
     std::vector<std::vector<double>> mean_;
 };
 
-bool is_reference(const Column& column) { return column.name.starts_with("ref_"); }
-
 Units with_axes_of(Units units, const Axes& of_unit) {
     std::erase_if(units, [&](const auto& other) {
         return std::ranges::any_of(of_unit,
@@ -325,7 +323,7 @@ Units with_axes_of(Units units, const Axes& of_unit) {
 
 // Empty where they do.
 std::string why_others_tell_nothing(const Recording& recording, const Units& units, unsigned long unit) {
-    if (std::ranges::any_of(recording.columns, is_reference)) {
+    if (has_reference(recording)) {
         return "has a reference already (columns ref_...): leave --reference out";
     }
     if (std::string failure = why_no_unit(units, unit); !failure.empty()) { return failure; }

@@ -8,6 +8,9 @@
 
 namespace gyrolog {
 
+// A motion that fades out is smooth over four samples.
+inline constexpr std::size_t order_beside_motion = 3;
+
 // One sigma of white noise: the root of the mean square of the differences of neighbours, of this order k,
 // over the sum of their squared coefficients, which is (2k)! / (k!)^2. A polynomial of a lower degree drops
 // out of them, and what is slow nearly does. The relative variance of the squared result from n differences

@@ -33,6 +33,12 @@ std::int64_t Recording::missing_samples() const {
            static_cast<std::int64_t>(rows());
 }
 
+bool is_reference(const Column& column) { return column.name.starts_with("ref_"); }
+
+bool has_reference(const Recording& recording) {
+    return std::ranges::any_of(recording.columns, is_reference);
+}
+
 Stops Recording::stops() const {
     Stops stops;
     for (const Dropout& hole : dropouts) {

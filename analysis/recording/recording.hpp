@@ -92,6 +92,10 @@ struct Recording {
     double duration_s() const;
 };
 
+// What tells the motion from outside: ref_x, ref_qw, ...
+bool is_reference(const Column& column);
+bool has_reference(const Recording& recording);
+
 // Each `samples`, at least one, of the grid in one row: their mean, of what is known of it. Where one of them
 // is missing the row is; causes of dropouts are as they were. No stamps are kept.
 Recording means_of(const Recording& recording, std::size_t samples);

@@ -29,9 +29,7 @@ std::vector<bool> widened(const std::vector<bool>& marked, std::size_t margin) {
 }  // namespace
 
 Recording with_known_motion(Recording recording, const KnownMotionOptions& options) {
-    const bool has_reference = std::ranges::any_of(
-        recording.columns, [](const Column& column) { return column.name.starts_with("ref_"); });
-    if (!has_reference) { return recording; }
+    if (!has_reference(recording)) { return recording; }
     const auto shared = std::make_shared<const Recording>(std::move(recording));
     const std::vector<bool> unknown = RecordedWorld(shared).is_long_unknown();
     if (unknown.empty()) { return *shared; }

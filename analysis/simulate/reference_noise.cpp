@@ -14,8 +14,6 @@ namespace gyrolog::resolution {
 
 // Of the gyro's: noise that adds a ten thousandth to its variance is not seen.
 constexpr double least_noise_rel = 0.01;
-// A motion that fades out is smooth over four samples.
-constexpr std::size_t difference_order = 3;
 // Times 1/n: the relative variance of a variance from n differences of that order (neighbour_scatter.hpp),
 // and from n samples.
 constexpr double by_differences = 4.6;
@@ -53,7 +51,7 @@ ReferenceNoise reference_noise_at_rest(const Recording& recording) {
         const Column* column = recording.find(std::string("ref_") + axis_names.at(axis));
         if (gyro == nullptr || column == nullptr || column->unit != "rad/s") { continue; }
         const double own = neighbour_scatter(*gyro, rest);
-        const double sd = neighbour_scatter(*column, rest, resolution::difference_order);
+        const double sd = neighbour_scatter(*column, rest, order_beside_motion);
         if (!(sd > resolution::least_noise_rel * own)) { continue; }
         noise.sd_rad_s.at(axis) = sd;
         const double share = sd * sd / (sd * sd + own * own);

@@ -22,11 +22,6 @@ constexpr double row_of_means_s = 0.1;
 // As far as one sensor's clock may stray.
 constexpr double same_rate_rel = 0.03;
 
-bool moves(const Recording& recording) {
-    return std::ranges::any_of(recording.columns,
-                               [](const Column& column) { return column.name.starts_with("ref_"); });
-}
-
 // The most of one row that still leaves enough rows for a diagnosis.
 std::string longest_average(std::size_t samples) {
     const std::size_t most = samples / resolution::diagnosable_samples_min;
@@ -109,7 +104,7 @@ Result<Read> read_samples(RecordingInput input, std::size_t most) {
     read.is_long = slots(read.samples) > most;
     if (read.is_long) { read.samples = first_slots(std::move(read.samples), most); }
     if (auto refusal = refused(read.samples, input.path)) {
-        if (input.sensor == SensorKind::accelerometer && moves(read.samples)) {
+        if (input.sensor == SensorKind::accelerometer && has_reference(read.samples)) {
             refusal->message += "; " + read.samples.warnings.back();
         }
         return *std::move(refusal);
@@ -169,7 +164,7 @@ Result<DiagnosisInput> read_for_diagnosis(const RecordingInput& whole) {
     if (input.samples_per_row > 1) { return read_for_one_pass(input); }
     GYROLOG_TRY(Read beginning, read_samples(input, resolution::beginning_max));
     if (!beginning.is_long) { return DiagnosisInput{shared(std::move(beginning.samples)), nullptr}; }
-    if (moves(beginning.samples)) { return read_for_one_pass(input); }
+    if (has_reference(beginning.samples)) { return read_for_one_pass(input); }
     const double samples = std::max(2.0, std::round(beginning.samples.rate_hz * row_of_means_s));
     GYROLOG_TRY(Means means, read_means(input, static_cast<std::size_t>(samples), beginning.samples));
     if (means.rows == nullptr) {

@@ -17,13 +17,6 @@
 #include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/gyro_rest.hpp"
 
-namespace gyrolog::resolution {
-
-// Of white noise beside what is slow.
-constexpr std::size_t resting_difference_order = 3;
-
-}  // namespace gyrolog::resolution
-
 namespace gyrolog {
 
 namespace {
@@ -53,11 +46,6 @@ double largest_swing_rad_s() {
     return 2.0 * decisions.beyond_plausible * amplitude->plausible_to * rad_per_deg;
 }
 
-bool has_reference(const Recording& recording) {
-    return std::ranges::any_of(recording.columns,
-                               [](const Column& column) { return column.name.starts_with("ref_"); });
-}
-
 // In seconds, or in rows where these are longer.
 std::int64_t rows_of_second(const Recording& recording) {
     return std::max<std::int64_t>(1, std::llround(recording.rate_hz));
@@ -67,7 +55,7 @@ std::int64_t rows_of_second(const Recording& recording) {
 double white_variance(const Recording& recording, const Column& column, const AxisModel& model) {
     std::vector<Segment> rest = segments_within(recording.segments, recording.rate_hz, gyro_rest(recording));
     if (rest.empty()) { rest = recording.segments; }
-    return std::max(square(neighbour_scatter(column, rest, resolution::resting_difference_order)),
+    return std::max(square(neighbour_scatter(column, rest, order_beside_motion)),
                     square(model.noise.N_rad_per_sqrt_s) * recording.rate_hz);
 }
 

@@ -27,8 +27,6 @@ constexpr double row_against_orientation_s = 0.05;
 namespace gyrolog {
 namespace {
 
-bool is_of_reference(const Column& column) { return column.name.starts_with("ref_"); }
-
 Recording with_turn_rates(Recording recording) {
     std::array<std::vector<double>, 3> rates;
     for (std::vector<double>& rate : rates) { rate.resize(recording.rows()); }
@@ -40,7 +38,7 @@ Recording with_turn_rates(Recording recording) {
             }
         }
     }
-    std::erase_if(recording.columns, is_of_reference);
+    std::erase_if(recording.columns, is_reference);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         recording.columns.push_back(
             {std::string("ref_") + axis_names.at(axis), "rad/s", std::move(rates.at(axis))});
@@ -53,7 +51,7 @@ std::shared_ptr<const Recording> longest_rest(const Recording& recording) {
     const TimeSpan still = gyro_rest(recording);
     if (!(still.to_s > still.from_s)) { return nullptr; }
     Recording rest = part_of(recording, still);
-    std::erase_if(rest.columns, is_of_reference);
+    std::erase_if(rest.columns, is_reference);
     if (diagnosis_refusal(rest)) { return nullptr; }
     return std::make_shared<const Recording>(std::move(rest));
 }
