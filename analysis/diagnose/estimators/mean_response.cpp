@@ -8,7 +8,6 @@
 #include "analysis/diagnose/estimators/axis_fits.hpp"
 #include "analysis/diagnose/estimators/gain_band.hpp"
 #include "analysis/diagnose/estimators/resolutions.hpp"
-#include "analysis/diagnose/estimators/spectral_range.hpp"
 #include "analysis/diagnose/estimators/trial_grid.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/effect_response.hpp"
@@ -353,14 +352,11 @@ private:
         return point;
     }
 
-    // As far beyond what is plausible as other estimators go, and as the trials do.
-    bool is_plausible(const TrialPoint& point) const {
+    // A time constant longer than the recording acts as every longer one does. The trials' own are allowed.
+    bool is_told(const TrialPoint& point) const {
         return std::ranges::all_of(point.values, [&](const TrialValues& trial) {
-            if (trial.count < 2 || trial.below_peak || is_choice(trial)) { return true; }
-            const SpectralRange range =
-                spectral_range(signature_, param_of(effect_, trial.param), prediction_->rate_hz());
-            const double value = point.params.at(std::string(trial.param));
-            return value >= std::min(range.least, trial.from) && value <= std::max(range.most, trial.to);
+            return !trial.param.ends_with("_s") ||
+                   point.params.at(std::string(trial.param)) <= std::max(prediction_->duration_s(), trial.to);
         });
     }
 
@@ -383,7 +379,7 @@ private:
     double evidence_at(const Observation& observation, const TrialPoint& from,
                        const std::vector<double>& steps) const {
         const TrialPoint point = moved(from, steps);
-        if (!is_plausible(point)) { return minus_infinity; }
+        if (!is_told(point)) { return minus_infinity; }
         if (effect_refusal(entry_of(with_linear(point.params)))) { return minus_infinity; }
         return evidence_at(observation, simulated(point));
     }
@@ -416,7 +412,7 @@ private:
                 std::vector<double> steps(count, 0.0);
                 steps[i] = *vertex;
                 const TrialPoint there_at = moved(trial.point, steps);
-                if (!is_plausible(there_at)) { continue; }
+                if (!is_told(there_at)) { continue; }
                 Trial better = simulated(there_at);
                 const double there = evidence_at(observation, better);
                 if (!(there > here)) { continue; }

@@ -1,7 +1,5 @@
-// The range in which a parameter of a noise spectrum, or of the shape of a mean response, is fitted.
+// The range in which a parameter of a noise spectrum is fitted.
 #pragma once
-
-#include <string_view>
 
 #include "analysis/simulate/effect.hpp"
 #include "analysis/simulate/effect_signature.hpp"
@@ -18,8 +16,5 @@ struct SpectralRange {
 // smaller than one that people meet. A filter whose corner lies beyond half of `rate_hz` is not seen as one:
 // what folds back makes the noise stronger, and hardly less white.
 SpectralRange spectral_range(const EffectSignature& signature, const EffectParam& param, double rate_hz);
-
-// Whether the parameter is one of the shape: the signature has trials of it.
-bool is_of_shape(const EffectSignature& signature, std::string_view param);
 
 }  // namespace gyrolog

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
-#include "analysis/diagnose/estimators/spectral_range.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/hole_filling.hpp"
 #include "analysis/diagnose/likelihood/mean_regression.hpp"
@@ -33,29 +31,12 @@ namespace gyrolog {
 
 namespace {
 
-// One fitted parameter, and the range of its size.
+// One fitted parameter.
 struct Parameter {
     std::size_t finding = 0;
     std::size_t entry = 0;
     std::string param;
-    double least = 0.0;
-    double most = std::numeric_limits<double>::infinity();
 };
-
-// A parameter of the shape goes no farther beyond its plausible range than it was found.
-Parameter fitted_parameter(const std::vector<Finding>& findings, std::size_t finding, std::size_t entry,
-                           const std::string& param, double rate_hz) {
-    Parameter fitted{finding, entry, param};
-    const EffectDefinition& effect = *find_effect(findings[finding].effect);
-    if (effect.signature == nullptr || !is_of_shape(*effect.signature, param)) { return fitted; }
-    const auto defined = std::ranges::find(effect.params, param, &EffectParam::name);
-    if (defined == effect.params.end()) { return fitted; }
-    const SpectralRange range = spectral_range(*effect.signature, *defined, rate_hz);
-    const double size = std::fabs(findings[finding].entries[entry].params.at(param));
-    fitted.least = std::min(range.least, size);
-    fitted.most = std::max(range.most, size);
-    return fitted;
-}
 
 double& value_at(std::vector<Finding>& findings, const Parameter& place) {
     return findings[place.finding].entries[place.entry].params.at(place.param);
@@ -82,9 +63,7 @@ public:
         : without_(without), recording_(std::move(recording)), seed_(seed), best_(std::move(findings)) {
         for (std::size_t f = 0; f < best_.size(); ++f) {
             for (std::size_t e = 0; e < best_[f].entries.size(); ++e) {
-                for (const auto& [name, sd] : best_[f].sd[e]) {
-                    places_.push_back(fitted_parameter(best_, f, e, name, without_.rate_hz()));
-                }
+                for (const auto& [name, sd] : best_[f].sd[e]) { places_.push_back({f, e, name}); }
             }
         }
     }
@@ -126,9 +105,8 @@ private:
             const double outwards = value < 0.0 ? -1.0 : 1.0;
             const double size = std::fabs(value);
             const double step = outwards * share * by[i];
-            const double wanted =
-                size + std::clamp(step, -resolution::falls_most * size, resolution::grows_most * size);
-            value = outwards * std::clamp(wanted, places_[i].least, places_[i].most);
+            value +=
+                outwards * std::clamp(step, -resolution::falls_most * size, resolution::grows_most * size);
         }
         return moved;
     }

@@ -166,6 +166,17 @@ TEST(MotionEvidence, OfALatencyWithinItsUncertaintyIsNone) {
     EXPECT_LT(found->evidence_nats, 2.0);
 }
 
+// A tracker may be late by five times what a sensor plausibly is.
+TEST(MotionEvidence, FindsALatencyFarBeyondTheTrials) {
+    const SensorModel model = moving_sensor();
+    const auto recording =
+        recorded(with_effect(model, "latency", {{"delay_s", 0.05}}, {}), 24'000, 41, world_without_rests());
+    const auto finding = found(make_mean_response_estimator, "latency", recording, model);
+    ASSERT_TRUE(finding);
+    EXPECT_NEAR(finding->entries.front().params.at("delay_s"), 0.05, 4.0 * finding->sd.front().at("delay_s"));
+    EXPECT_LT(finding->sd.front().at("delay_s"), 1e-3);
+}
+
 // Its lag looks like latency, what it takes off the motion like noise; only with it nothing else is left.
 TEST(MotionEvidence, OfALowPassIsThatAlone) { expect_low_pass_alone(world_with_rests()); }
 

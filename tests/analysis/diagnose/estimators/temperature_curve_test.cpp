@@ -57,7 +57,7 @@ TEST(TemperatureCurve, CubicIsFoundWithItsCoefficients) {
 }
 
 // A lag of hours is half an hour's integral of the temperature, as every longer one is.
-TEST(TemperatureCurve, LagsNoFartherBeyondWhatIsPlausibleThanOtherShapes) {
+TEST(TemperatureCurve, LagsByNoMoreThanTheRecordingIsLong) {
     const SensorModel sensor =
         with_effect(calibrated_sensor(), "temp_lag", {{"c1_dps_per_C", 0.2}, {"tau_s", 18'000.0}}, {"x"});
     const auto recording = recorded(sensor, half_an_hour, 62, swept());
