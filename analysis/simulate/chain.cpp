@@ -10,10 +10,9 @@ namespace gyrolog {
 
 namespace {
 
-constexpr ChainLink own(StageMaker make) { return {.own = make, .effect = nullptr}; }
-constexpr ChainLink effect(const EffectDefinition& definition) {
-    return {.own = nullptr, .effect = &definition};
-}
+constexpr ChainLink own(StageMaker make) { return {.own = make}; }
+constexpr ChainLink effect(const EffectDefinition& definition) { return {.effect = &definition}; }
+constexpr ChainLink timing_of(const EffectDefinition& definition) { return {.timing_of = &definition}; }
 
 constexpr ChainLink links[] = {
     // when a sample is taken, and what its stamp says
@@ -21,6 +20,7 @@ constexpr ChainLink links[] = {
     effect(dropped_effect),
     effect(clock_rate_effect),
     effect(latency_effect),
+    timing_of(stale_effect),
     effect(clock_jitter_effect),
     // what is there to be measured
     own(make_world),
@@ -139,11 +139,11 @@ Chain make_chain(const StageContext& nominal) {
             take(link.own(context));
             continue;
         }
+        const EffectDefinition& definition = link.effect != nullptr ? *link.effect : *link.timing_of;
+        const auto make = link.effect != nullptr ? definition.make : definition.make_timing;
         unsigned place = 0;
         for (const EffectModel& entry : context.model.effects) {
-            if (entry.effect == link.effect->name) {
-                take(link.effect->make(EffectUse(context, *link.effect, entry, place)));
-            }
+            if (entry.effect == definition.name) { take(make(EffectUse(context, definition, entry, place))); }
             ++place;
         }
     }

@@ -13,10 +13,11 @@
 
 namespace gyrolog {
 
-// One of the two is set.
+// One of the three is set.
 struct ChainLink {
     StageMaker own = nullptr;  // a part of every sensor
     const EffectDefinition* effect = nullptr;
+    const EffectDefinition* timing_of = nullptr;  // the effect's part before the world is asked
 };
 
 std::span<const ChainLink> signal_chain();

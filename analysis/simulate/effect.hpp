@@ -64,6 +64,11 @@ struct EffectDefinition {
     bool noise_only = false;
     // It moves, by a law, the moments at which the world is sampled, and does nothing else.
     bool timing_only = false;
+    // A part of it that acts before the world is asked, on the moments that the samples show.
+    std::unique_ptr<Stage> (*make_timing)(const EffectUse&) = nullptr;
+    // Those moments are known of an entry that has else no part in the noise-free answer. `world`: null where
+    // any will do.
+    bool (*timing_is_known)(const EffectModel&, const World* world) = nullptr;
     // The course that an entry needs, if it needs one.
     std::optional<EffectTable> table{};
     // Under this name a diagnosis models with it what no effect of the catalogue is; empty for others.
@@ -81,6 +86,7 @@ public:
         : context_(&context), definition_(&definition), effect_(&effect), place_(place) {}
 
     const StageContext& context() const { return *context_; }
+    const EffectModel& entry() const { return *effect_; }
     // The value given, or the parameter's own.
     double operator[](std::string_view param) const;
     // The value given, or `from_model` of a parameter that is marked so.

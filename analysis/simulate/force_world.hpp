@@ -19,6 +19,7 @@ public:
                 const std::array<std::span<double>, 3>& specific_force_m_s2) const override;
     bool has_temperature() const override { return world_->has_temperature(); }
     void temperature(std::span<const double> world_s, std::span<double> temperature_C) const override;
+    const UpdateBeat* recorded_beat() const override { return world_->recorded_beat(); }
 
 private:
     std::shared_ptr<const World> world_;

@@ -57,6 +57,7 @@ RecordedWorld::RecordedWorld(std::shared_ptr<const Recording> recording) : recor
     read_reference();
     read_specific_force();
     read_temperature();
+    beat_ = gyrolog::recorded_beat(*recording_);
 }
 
 void RecordedWorld::read_reference() {

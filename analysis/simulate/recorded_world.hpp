@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/recording/recording.hpp"
+#include "analysis/simulate/update_beat.hpp"
 #include "analysis/simulate/world.hpp"
 
 namespace gyrolog {
@@ -53,6 +55,7 @@ public:
                 const std::array<std::span<double>, 3>& specific_force_m_s2) const override;
     bool has_temperature() const override { return !temperature_C_.empty(); }
     void temperature(std::span<const double> world_s, std::span<double> temperature_C) const override;
+    const UpdateBeat* recorded_beat() const override { return beat_ ? &*beat_ : nullptr; }
 
 private:
     using Track = std::vector<double>;  // one value a row, no NaN; empty: not there
@@ -81,6 +84,7 @@ private:
     std::vector<Knot> temperature_C_;  // smooth
     bool has_reference_ = false;
     bool has_specific_force_ = false;
+    std::optional<UpdateBeat> beat_;
     std::vector<std::string> warnings_;
 };
 

@@ -7,6 +7,8 @@
 
 namespace gyrolog {
 
+class UpdateBeat;
+
 class World {
 public:
     virtual ~World() = default;
@@ -23,6 +25,9 @@ public:
     // False: the temperature is the simulator's to make up.
     virtual bool has_temperature() const = 0;
     virtual void temperature(std::span<const double> world_s, std::span<double> temperature_C) const = 0;
+
+    // The beat in which the sensor repeated itself that was there; null: the simulator's to draw.
+    virtual const UpdateBeat* recorded_beat() const { return nullptr; }
 };
 
 }  // namespace gyrolog

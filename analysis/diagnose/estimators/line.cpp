@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "analysis/diagnose/decision_options.hpp"
@@ -341,7 +342,7 @@ private:
     // comes out as it was seen.
     void refer_to_model(Finding& finding) const {
         SensorModel model =
-            without_noise(without_what_is_recorded(prediction_->model(), prediction_->world()));
+            without_noise(without_what_is_recorded(prediction_->model(), prediction_->world()), nullptr);
         model.full_scale_rad_s = model.saturation_rad_s = 1e6;
         for (EffectModel& entry : finding.entries) {
             const std::size_t axis = axis_of(entry);
@@ -366,7 +367,10 @@ private:
         return 0;
     }
 
-    double world_time_per_time(const SensorModel& model) const {
+    double world_time_per_time(SensorModel model) const {
+        // A beat of repeats moves single samples, and none in the mean.
+        std::erase_if(model.effects,
+                      [](const EffectModel& entry) { return find_effect(entry.effect)->noise_only; });
         SensorSimulator simulator(model, prediction_->rate_hz(), 1);
         const SampleBlock& first = simulator.next_block();
         return (first.world_s.back() - first.world_s.front()) * prediction_->rate_hz() /
@@ -379,6 +383,7 @@ private:
         SensorSimulator plain(without, prediction_->rate_hz(), 1);
         SensorSimulator changed(with, prediction_->rate_hz(), 1);
         double cc = 0.0, cs = 0.0, ss = 0.0, cy = 0.0, sy = 0.0;
+        double last = 0.0;
         for (std::size_t b = 0; b < resolution::response_blocks; ++b) {
             const SampleBlock& before = plain.next_block();
             const SampleBlock& after = changed.next_block();
@@ -389,6 +394,8 @@ private:
                 const double c = std::cos(angle);
                 const double s = std::sin(angle);
                 const double y = (after.rate_rad_s[axis][i] - before.rate_rad_s[axis][i]) * deg_per_rad;
+                // What repeats is not judged, and comes at phases of its own.
+                if (std::exchange(last, y) == y) { continue; }
                 cc += c * c;
                 cs += c * s;
                 ss += s * s;

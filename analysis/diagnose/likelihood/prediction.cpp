@@ -81,8 +81,10 @@ SensorModel plain(const SensorModel& model) {
 SensorModel faultless(const SensorModel& model) {
     SensorModel sensor = plain(model);
     sensor.latency_s = model.latency_s;
-    std::ranges::copy_if(model.effects, std::back_inserter(sensor.effects),
-                         [](const EffectModel& entry) { return find_effect(entry.effect)->timing_only; });
+    std::ranges::copy_if(model.effects, std::back_inserter(sensor.effects), [](const EffectModel& entry) {
+        const EffectDefinition& effect = *find_effect(entry.effect);
+        return effect.timing_only || effect.timing_is_known != nullptr;
+    });
     return sensor;
 }
 
@@ -103,8 +105,8 @@ bool shapes_the_motion(const SensorModel& model) {
 }
 
 // What changes the model's answer to a world, and nothing else.
-SensorModel noiseless_and_certain(const SensorModel& model) {
-    SensorModel noiseless = without_noise(model);
+SensorModel noiseless_and_certain(const SensorModel& model, const World& world) {
+    SensorModel noiseless = without_noise(model, &world);
     for (AxisModel& axis : noiseless.axes) { axis.sd_rel.clear(); }
     noiseless.sd_rel.clear();
     noiseless.sd_abs.clear();
@@ -173,7 +175,7 @@ std::optional<std::string> diagnosis_refusal(const Recording& recording) {
     return std::nullopt;
 }
 
-SensorModel without_noise(const SensorModel& model) {
+SensorModel without_noise(const SensorModel& model, const World* world) {
     SensorModel noiseless = model;
     for (AxisModel& axis : noiseless.axes) {
         const double ramp = axis.noise.R_rad_per_s2;
@@ -185,8 +187,11 @@ SensorModel without_noise(const SensorModel& model) {
     noiseless.temp_noise_C = 0.0;
     noiseless.ref_noise_rad_s = 0.0;
     noiseless.acc_noise_m_s2 = 0.0;
-    std::erase_if(noiseless.effects,
-                  [](const EffectModel& entry) { return find_effect(entry.effect)->noise_only; });
+    std::erase_if(noiseless.effects, [world](const EffectModel& entry) {
+        const EffectDefinition& effect = *find_effect(entry.effect);
+        const bool has_timing = effect.timing_is_known != nullptr && effect.timing_is_known(entry, world);
+        return effect.noise_only && !has_timing;
+    });
     return noiseless;
 }
 
@@ -433,7 +438,7 @@ std::array<std::vector<float>, 3> noise_free_response(const Prediction& predicti
 std::array<std::vector<float>, 3> noise_free_response(const Prediction& prediction,
                                                       std::shared_ptr<const RecordedWorld> world,
                                                       const SensorModel& model) {
-    const SensorModel answering = noiseless_and_certain(model);
+    const SensorModel answering = noiseless_and_certain(model, *world);
     return prediction.recent_responses().recall(
         world, answering, [&] { return simulated_answer(prediction, world, answering); });
 }

@@ -5,51 +5,98 @@
 #include "analysis/recording/recording.hpp"
 #include "analysis/simulate/effect_axes.hpp"
 #include "analysis/simulate/effects/effects.hpp"
+#include "analysis/simulate/update_beat.hpp"
 
 namespace gyrolog {
 
 namespace {
 
-// Whether a sample repeats the one before, asked for one after the other.
-class RepeatPattern {
+constexpr double alike_sigma = 3.0;
+
+bool is_whole_beat(const EffectModel& entry) {
+    const bool on_all = acts_on(entry, 0) && acts_on(entry, 1) && acts_on(entry, 2);
+    return on_all && EffectValues(entry)["run_length"] == 0.0;
+}
+
+// Null unless the world's beat is the entry's: both repeat as often, as far as chance would tell two numbers
+// of repeats apart.
+const UpdateBeat* recorded_beat_of(const EffectModel& entry, const World* world) {
+    const UpdateBeat* recorded = world != nullptr ? world->recorded_beat() : nullptr;
+    if (recorded == nullptr || !is_whole_beat(entry)) { return nullptr; }
+    const double eps = EffectValues(entry)["eps"];
+    const double sd_rel = 1.0 / std::sqrt(static_cast<double>(recorded->repeats()));
+    return std::fabs(recorded->eps() - eps) <= alike_sigma * sd_rel * eps ? recorded : nullptr;
+}
+
+UpdateBeat beat_of(const EffectUse& use) {
+    if (const UpdateBeat* recorded = recorded_beat_of(use.entry(), use.context().world)) { return *recorded; }
+    return {use["eps"], use.stream(0).uniform(0)};
+}
+
+// Polled faster than the sensor updates.
+class Beat {
 public:
-    explicit RepeatPattern(const EffectUse& use)
-        : draws_(use.stream(0)),
-          fresh_share_(1.0 - use["eps"]),
-          run_length_(use["run_length"]),
-          phase_(draws_.uniform(0)) {}
+    explicit Beat(const EffectUse& use) : beat_(beat_of(use)) {}
 
     bool repeats(std::uint64_t sample) {
-        const bool repeats = run_length_ > 0.0 ? is_in_run(sample) : is_in_beat(sample);
-        repeated_ = repeats && sample > 0;
-        return repeated_;
-    }
-
-private:
-    // Polled faster than the sensor updates.
-    bool is_in_beat(std::uint64_t sample) {
         const double before = update_;
-        update_ = std::floor(static_cast<double>(sample) * fresh_share_ + phase_);
+        update_ = beat_.at(sample).number;
         return update_ == before;
     }
 
-    // A Markov chain: a run ends after each of its samples with chance 1 / run_length, and the share of
-    // repeats is eps.
-    bool is_in_run(std::uint64_t sample) {
-        const double ends = 1.0 / std::max(run_length_, 1.0);
-        const double begins =
-            std::min(1.0, ends * (1.0 - fresh_share_) / std::max(fresh_share_, ends * 1e-9));
-        return draws_.uniform(sample + 1) < (repeated_ ? 1.0 - ends : begins);
-    }
-
-    RandomStream draws_;
-    double fresh_share_;
-    double run_length_;
-    double phase_;
+private:
+    UpdateBeat beat_;
     double update_ = -1.0;
-    bool repeated_ = false;
 };
 
+// A Markov chain: a run ends after each of its samples with chance 1 / run_length, and the share of repeats
+// is eps.
+class Runs {
+public:
+    explicit Runs(const EffectUse& use)
+        : draws_(use.stream(0)), ends_(1.0 / std::max(use["run_length"], 1.0)) {
+        const double eps = use["eps"];
+        begins_ = std::min(1.0, ends_ * eps / std::max(1.0 - eps, ends_ * 1e-9));
+    }
+
+    bool repeats(std::uint64_t sample) {
+        in_run_ = draws_.uniform(sample + 1) < (in_run_ ? 1.0 - ends_ : begins_) && sample > 0;
+        return in_run_;
+    }
+
+private:
+    RandomStream draws_;
+    double ends_;
+    double begins_ = 0.0;
+    bool in_run_ = false;
+};
+
+// The axes of one sensor update together: of some alone, the repeats are not the sensor's.
+class UpdateInstants final : public Stage {
+public:
+    explicit UpdateInstants(const EffectUse& use)
+        : beat_(beat_of(use)), period_s_(1.0 / use.context().rate_hz) {}
+
+    void apply(SampleBlock& block) override {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
+            block.world_s[i] -= period_s_ * beat_.at(block.first_index + i).age_samples;
+        }
+    }
+
+private:
+    UpdateBeat beat_;
+    double period_s_;
+};
+
+std::unique_ptr<Stage> make_update_instants(const EffectUse& use) {
+    return is_whole_beat(use.entry()) ? std::make_unique<UpdateInstants>(use) : nullptr;
+}
+
+bool knows_updates(const EffectModel& entry, const World* world) {
+    return is_whole_beat(entry) && (world == nullptr || recorded_beat_of(entry, world) != nullptr);
+}
+
+template <typename Pattern>
 class Stale final : public Stage {
 public:
     explicit Stale(const EffectUse& use) : pattern_(use) {
@@ -77,12 +124,15 @@ private:
                 block.temperature_C[i]};
     }
 
-    RepeatPattern pattern_;
+    Pattern pattern_;
     Reading shown_;
     std::array<bool, 3> acts_{};
 };
 
-std::unique_ptr<Stage> make_stale(const EffectUse& use) { return std::make_unique<Stale>(use); }
+std::unique_ptr<Stage> make_stale(const EffectUse& use) {
+    if (use["run_length"] > 0.0) { return std::make_unique<Stale<Runs>>(use); }
+    return std::make_unique<Stale<Beat>>(use);
+}
 
 constexpr EffectParam stale_params[] = {
     {.name = "eps",
@@ -134,12 +184,15 @@ constexpr EffectSignature stale_signature = {
 constinit const EffectDefinition stale_effect = {
     .name = "stale",
     .model =
-        "sample k repeats the one before, in rate and temperature, where floor(k (1 - eps) + phase) does "
-        "not advance, phase from the seed; with a run_length by a Markov chain whose share of repeats is eps",
+        "sample k repeats the one before, in rate and temperature, where x = k (1 - eps) + phase passes no "
+        "whole number, phase from the seed; on all axes, it shows the world as of the moment when x passed "
+        "one; with a run_length by a Markov chain whose share of repeats is eps",
     .source = "",
     .params = stale_params,
     .make = make_stale,
     .noise_only = true,
+    .make_timing = make_update_instants,
+    .timing_is_known = knows_updates,
     .signature = &stale_signature,
 };
 

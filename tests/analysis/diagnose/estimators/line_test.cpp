@@ -121,6 +121,24 @@ TEST(Line, LeavesNothingOfALineBesideAWrongClock) {
     }
 }
 
+// Between the updates of a sensor that is polled too fast a line has images, and it is folded at the rate of
+// updates: 60 Hz to 92.78 - 60.
+TEST(Line, LeavesNoImageOfALineBesideABeatOfRepeats) {
+    const SensorModel model = with_effect(calibrated_sensor(), "stale", {{"eps", 0.0722}});
+    for (const double f_hz : {12.3, 60.0}) {
+        const double seen_hz = f_hz < 46.39 ? f_hz : 92.78 - f_hz;
+        const SensorModel truth =
+            with_effect(model, "tone", {{"f_hz", f_hz}, {"amplitude_dps", 0.05}, {"phase_rad", 0.3}}, {"y"});
+        const auto recording = recorded(truth, 60000, 7);
+        const auto finding = found(make_line_estimator, "tone", recording, model);
+        ASSERT_TRUE(finding) << f_hz;
+        EXPECT_NEAR(finding->entries.front().params.at("f_hz"), seen_hz, 1e-3);
+        EXPECT_NEAR(finding->entries.front().params.at("amplitude_dps"), 0.05, 0.002) << f_hz;
+        const auto again = found(make_line_estimator, "tone", recording, with_cause(model, *finding));
+        EXPECT_LT(evidence(again), 3.0) << f_hz;
+    }
+}
+
 TEST(Line, TakesSeveralLinesOneAfterAnother) {
     const SensorModel model = calibrated_sensor();
     const SensorModel truth =
