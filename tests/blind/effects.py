@@ -85,6 +85,10 @@ class Acting:
     def delay_s(self):
         return 0.0
 
+    def age_s(self, rng):
+        """Of what each sample shows, beyond the delay; `rng` as for rows()."""
+        return 0.0
+
     def world_rate(self, instants):
         return None
 
@@ -397,7 +401,8 @@ class Tone(Acting):
 
     def alias_hz(self, axis=None):
         f = float(np.ravel(self.params["f_hz"])[0])
-        rate = self.context.rate_hz * (1.0 + self.context.sensor.rate_rel)  # the unit's own
+        # The unit's own rate, at which it updates.
+        rate = self.context.rate_hz * (1.0 + self.context.sensor.rate_rel) * self.context.fresh_share
         return abs(f - rate * np.round(f / rate))
 
     def noise(self, axis, rng, around):
@@ -870,11 +875,29 @@ class Stale(Acting):
     def to_params(cls, shape, strength):
         return {"eps": strength, "run_length": shape["run_length"]}
 
+    def _in_beat(self):
+        return float(self.params.get("run_length", 0.0)) == 0.0
+
+    def prepare(self, model):
+        if self._in_beat():
+            self.context.fresh_share = 1.0 - float(self.params["eps"])
+
+    def _updates(self, rng, n):
+        """Of a beat, how many updates there were by each row; a whole number at the moment of one."""
+        return np.arange(n) * (1.0 - float(self.params["eps"])) + rng.random()
+
+    def age_s(self, rng):
+        """A row of a beat shows the world as of the sensor's last update."""
+        if not self._in_beat():
+            return 0.0
+        since = np.mod(self._updates(rng, self.context.n), 1.0)
+        return since / (1.0 - float(self.params["eps"])) / self.context.rate_hz
+
     def _new(self, rng, n):
         """Which rows repeat none."""
         eps, run = float(self.params["eps"]), float(self.params.get("run_length", 0.0))
-        if run == 0.0:
-            source = np.floor(np.arange(n) * (1.0 - eps) + rng.random()).astype(int)
+        if self._in_beat():
+            source = np.floor(self._updates(rng, n)).astype(int)
             # New where the count moves.
             return np.concatenate([[True], np.diff(source) > 0])
         # Runs of repeats and of new rows in turn, each of geometric length, the first one of new rows.

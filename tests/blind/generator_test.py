@@ -153,6 +153,18 @@ class Noise(unittest.TestCase):
             since = np.diff(np.flatnonzero(np.diff(repeats.astype(int)) == 1))
             self.assertEqual(np.std(since) < 1.0, run == 0.0)
 
+    def test_a_line_folds_at_the_rate_of_updates(self):
+        context = Context(4, False, 20.0)
+        effects = [Tone(context, {"f_hz": 60.0, "amplitude_dps": 1.0, "phase_rad": 0.3}, ["x"]),
+                   Stale(context, {"eps": 0.0722, "run_length": 0.0}, list("xyz"))]
+        for effect in effects:
+            effect.prepare(context.model)
+        rows = record(context, effects)["gx_dps"]
+        power = np.abs(np.fft.rfft((rows - rows.mean()) * np.hanning(rows.size)))
+        f = np.argmax(power) * context.rate_hz / rows.size
+        self.assertAlmostEqual(f, (1.0 - 0.0722) * 100.0 - 60.0, delta=0.01)
+        self.assertAlmostEqual(f, effects[0].alias_hz(), delta=0.01)
+
     def test_bumps_move_all_axes_at_the_same_instants_with_their_energy(self):
         context = Context(5, False, 20.0)
         bumps = Bumps(context, {"size_dps": 2.0, "count": 200, "f_hz": 11.0, "decay_s": 0.2}, list("xyz"))

@@ -106,6 +106,7 @@ class Context:
         self.motion = Motion(stream(seed, "motion"), self.duration_s, fast) if motion else None
         self.bins = Bins(self.n, self.rate_hz)
         self.step_dps = LSB_DPS
+        self.fresh_share = 1.0  # of the rows, those that show an update
         self.finest_step_dps = 1e-4  # a converter without steps: noise hides all below
         if motion:
             t = np.arange(self.n) / self.rate_hz
@@ -222,11 +223,13 @@ def record(context, effects, noise_name="noise"):
         instants, stamps = e.times(stream(context.seed, noise_name, "t" + e.name), instants, stamps)
     stamps = stamps + rng.normal(0.0, sensor.jitter_s, n)
 
-    around = Surroundings(context, instants, turning=False)
+    ages = [e.age_s(stream(context.seed, noise_name, "r" + e.name)) for e in effects]
+    shown = instants - sum(ages)
+    around = Surroundings(context, shown, turning=False)
     rates = np.zeros((3, n))
     if context.motion:
         # The reference and the accelerometer are read at the stamped time, the gyro shows an older world.
-        seen = instants - sensor.latency_s - sum(e.delay_s() for e in effects)
+        seen = shown - sensor.latency_s - sum(e.delay_s() for e in effects)
         around.W = None
         for e in effects:
             if around.W is None:
