@@ -12,6 +12,7 @@ namespace gyrolog::resolution {
 // How many samples on either side say what the level in a hole is: so many that what they have in common with
 // the stand-ins is slower than the white noise reaches.
 constexpr std::size_t level_samples = 256;
+constexpr std::size_t level_reach = 2 * level_samples;
 
 }  // namespace gyrolog::resolution
 
@@ -19,20 +20,47 @@ namespace gyrolog {
 
 namespace {
 
-double mean_of_present(const std::vector<float>& values, const std::vector<bool>& present, std::size_t from,
-                       bool backwards) {
-    double sum = 0.0;
-    double count = 0.0;
-    const std::size_t reach = 2 * resolution::level_samples;
-    for (std::size_t i = 0; i < reach && count < static_cast<double>(resolution::level_samples); ++i) {
-        if (backwards ? i > from : from + i >= values.size()) { break; }
-        const std::size_t slot = backwards ? from - i : from + i;
-        if (!present[slot]) { continue; }
-        sum += static_cast<double>(values[slot]);
-        count += 1.0;
+// The mean of the values that are present in a window, which moves on only.
+class MovingLevel {
+public:
+    MovingLevel(const std::vector<float>& values, const std::vector<bool>& present)
+        : values_(values), present_(present) {}
+
+    // On the nearest samples before `end`.
+    double mean_before(std::size_t end) {
+        while (end_ < end) { add(end_++); }
+        while (first_ + resolution::level_reach < end || count_ > resolution::level_samples) {
+            remove(first_++);
+        }
+        return mean();
     }
-    return count > 0.0 ? sum / count : std::nan("");
-}
+
+    // On the nearest samples from `first` on.
+    double mean_from(std::size_t first) {
+        while (end_ < first) { add(end_++); }
+        while (first_ < first) { remove(first_++); }
+        const std::size_t reach = std::min(values_.size(), first + resolution::level_reach);
+        while (count_ < resolution::level_samples && end_ < reach) { add(end_++); }
+        return mean();
+    }
+
+private:
+    void add(std::size_t slot) { take(slot, 1.0); }
+    void remove(std::size_t slot) { take(slot, -1.0); }
+    void take(std::size_t slot, double sign) {
+        if (!present_[slot]) { return; }
+        sum_ += sign * static_cast<double>(values_[slot]);
+        count_ = sign > 0.0 ? count_ + 1 : count_ - 1;
+    }
+    double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : std::nan(""); }
+
+    const std::vector<float>& values_;
+    const std::vector<bool>& present_;
+    std::size_t first_ = 0;
+    std::size_t end_ = 0;
+    double sum_ = 0.0;
+    std::size_t count_ = 0;
+};
 
 // Of the recording, by slot.
 std::vector<bool> present_slots(const Prediction& prediction) {
@@ -73,6 +101,8 @@ void expect_in_holes(const Prediction& prediction, std::size_t axis, const std::
 void join_holes(std::vector<float>& values, const std::vector<bool>& present,
                 const std::function<double(std::size_t slot)>& beside) {
     const std::size_t length = values.size();
+    MovingLevel level_before(values, present);
+    MovingLevel level_after(values, present);
     for (std::size_t begin = 0; begin < length;) {
         if (present[begin]) {
             ++begin;
@@ -80,8 +110,8 @@ void join_holes(std::vector<float>& values, const std::vector<bool>& present,
         }
         std::size_t end = begin;
         while (end < length && !present[end]) { ++end; }
-        double before = begin > 0 ? mean_of_present(values, present, begin - 1, true) : std::nan("");
-        double after = end < length ? mean_of_present(values, present, end, false) : std::nan("");
+        double before = level_before.mean_before(begin);
+        double after = level_after.mean_from(end);
         if (std::isnan(before)) { before = std::isnan(after) ? 0.0 : after; }
         if (std::isnan(after)) { after = before; }
         // Next to a short hole both levels are those of one place.
