@@ -62,38 +62,11 @@ private:
     std::size_t count_ = 0;
 };
 
-// Of the recording, by slot.
-std::vector<bool> present_slots(const Prediction& prediction) {
-    std::vector<bool> present(prediction.length(), false);
-    const std::vector<Segment>& segments = prediction.world().recording().segments;
-    for (const Segment& segment : segments) {
-        const auto begin = static_cast<std::size_t>(segment.first_index - segments.front().first_index);
-        const std::size_t end = std::min(begin + segment.count, present.size());
-        for (std::size_t slot = begin; slot < end; ++slot) { present[slot] = true; }
-    }
-    return present;
-}
-
 std::vector<float> response_coefficients(const std::vector<float>& values, CosineTransform& transform) {
     std::vector<double> work(values.begin(), values.end());
     transform.forward(work);
     work[0] = 0.0;
     return {work.begin(), work.end()};
-}
-
-void expect_in_holes(const Prediction& prediction, std::size_t axis, const std::vector<bool>& present,
-                     std::vector<float>& values, CosineTransform& transform, int rounds) {
-    std::vector<std::size_t> missing;
-    for (std::size_t slot = 0; slot < present.size(); ++slot) {
-        if (!present[slot]) { missing.push_back(slot); }
-    }
-    join_holes(values, present, [](std::size_t) { return 0.0; });
-    const std::vector<double> density = density_of_model(prediction, axis);
-    const InverseCovariance inverse = inverse_covariance_of(prediction, density);
-    for (int round = 0; round < rounds; ++round) {
-        const std::vector<float> cosines = response_coefficients(values, transform);
-        expect_stand_ins(values, missing, weighted_values(prediction, density, cosines, transform), inverse);
-    }
 }
 
 }  // namespace
@@ -170,16 +143,22 @@ std::vector<float> response_cosines(const Prediction& prediction, std::size_t ax
 
 std::vector<float> response_cosines(const Prediction& prediction, std::size_t axis,
                                     std::vector<double> values, CosineTransform& transform, int rounds) {
-    const bool has_holes = prediction.world().recording().segments.size() > 1;
-    if (!has_holes || !prediction.moves()) {
+    const std::shared_ptr<const ExpectedStandIns>& holes = prediction.holes(axis);
+    if (!holes) {
         transform.forward(values);
         values[0] = 0.0;
         return {values.begin(), values.end()};
     }
-    const std::vector<bool> present = present_slots(prediction);
+    std::vector<bool> present(values.size(), true);
+    for (const std::size_t slot : holes->slots()) { present[slot] = false; }
     std::vector<float> filled(values.begin(), values.end());
     take_mean_off(filled, present);
-    expect_in_holes(prediction, axis, present, filled, transform, rounds);
+    join_holes(filled, present, [](std::size_t) { return 0.0; });
+    const std::vector<double> density = density_of_model(prediction, axis);
+    for (int round = 0; round < rounds; ++round) {
+        const std::vector<float> cosines = response_coefficients(filled, transform);
+        holes->expect(filled, weighted_values(prediction, density, cosines, transform));
+    }
     return response_coefficients(filled, transform);
 }
 

@@ -154,10 +154,18 @@ void fill_holes(const Prediction& prediction, std::size_t axis, AxisObservation&
     std::vector<float> cosines = seen.cosines;
     take_off(prediction.uncertain(axis), seen.uncertain_fit, cosines);
     const std::vector<double> density = density_of_expectation(prediction, axis, seen);
-    draw_stand_ins(seen.residual_rad_s, missing, weighted_values(prediction, density, cosines, transform),
-                   inverse_covariance_of(prediction, density),
-                   inverse_covariance_of(prediction, seen.density),
-                   derived_stream(seed, RandomPurpose::stand_ins, axis));
+    const std::vector<double> weighted = weighted_values(prediction, density, cosines, transform);
+    const InverseCovariance scatter = inverse_covariance_of(prediction, seen.density);
+    const RandomStream noise = derived_stream(seed, RandomPurpose::stand_ins, axis);
+    // Where the sensor moves the expectation is the model's.
+    const std::shared_ptr<const ExpectedStandIns>& holes = prediction.holes(axis);
+    if (holes && holes->slots() == missing) {
+        holes->expect(seen.residual_rad_s, weighted);
+        scatter_stand_ins(seen.residual_rad_s, missing, scatter, noise);
+        return;
+    }
+    draw_stand_ins(seen.residual_rad_s, missing, weighted, inverse_covariance_of(prediction, density),
+                   scatter, noise);
 }
 
 // White noise whose level the model has go with time has the same variance throughout afterwards.

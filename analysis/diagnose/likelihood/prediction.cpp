@@ -212,7 +212,9 @@ Prediction::Prediction(std::shared_ptr<const RecordedWorld> world, const SensorM
     bins_ = spectral_bins(length_, rate_hz_, half_, *shared_->level_changes);
     if (moves()) { read_motion(); }
     expect_spectrum();
-    if (moves()) { read_uncertain_responses(); }
+    if (!moves()) { return; }
+    read_holes();
+    read_uncertain_responses();
 }
 
 void Prediction::read_temperature() {
@@ -273,6 +275,23 @@ void Prediction::read_motion() {
         for (std::size_t slot = 0; slot < length_; ++slot) {
             change[slot] = (change[slot] - delayed[axis][slot]) / static_cast<float>(resolution::time_step_s);
         }
+    }
+}
+
+void Prediction::read_holes() {
+    const std::vector<Segment>& segments = world_->recording().segments;
+    if (segments.size() == 1) { return; }
+    std::vector<std::size_t> missing;
+    std::size_t slot = 0;
+    for (const Segment& segment : segments) {
+        const auto begin = static_cast<std::size_t>(segment.first_index - segments.front().first_index);
+        for (; slot < std::min(begin, length_); ++slot) { missing.push_back(slot); }
+        slot = begin + segment.count;
+    }
+    for (; slot < length_; ++slot) { missing.push_back(slot); }
+    for (const std::size_t axis : axes_) {
+        holes_[axis] = std::make_shared<const ExpectedStandIns>(
+            missing, inverse_covariance_of(*this, density_of_model(*this, axis)));
     }
 }
 

@@ -13,6 +13,7 @@
 #include "analysis/diagnose/likelihood/recent_responses.hpp"
 #include "analysis/diagnose/likelihood/response_memory.hpp"
 #include "analysis/diagnose/likelihood/spectral_bins.hpp"
+#include "analysis/diagnose/likelihood/stand_ins.hpp"
 #include "analysis/diagnose/likelihood/uncertain_mean.hpp"
 #include "analysis/numerics/cosine_transform.hpp"
 #include "analysis/simulate/effect_signature.hpp"
@@ -89,6 +90,9 @@ public:
     // be the reference's.
     double rate_sd_rad_s(std::size_t axis) const;
     const UncertainMean& uncertain(std::size_t axis) const { return uncertain_[axis]; }
+    // In a moving world, what is expected in the recording's holes under the model's noise; null where there
+    // are none.
+    const std::shared_ptr<const ExpectedStandIns>& holes(std::size_t axis) const { return holes_[axis]; }
 
     const SpectralBins& bins() const { return bins_; }
     const std::vector<double>& bin_frequencies_hz() const { return f_hz_; }
@@ -131,6 +135,7 @@ private:
     void read_responses();
     std::vector<std::size_t> level_changes_of_recording() const;
     void read_motion();
+    void read_holes();
     void read_uncertain_responses();
     std::array<std::vector<float>, 3> response_per_gain(std::size_t from) const;
     void add_reference_noise();
@@ -150,6 +155,7 @@ private:
     std::array<std::vector<float>, 3> denoised_response_rad_s_;
     std::array<std::vector<float>, 3> true_rate_rad_s_;
     std::array<std::vector<float>, 3> response_change_rad_s2_;
+    std::array<std::shared_ptr<const ExpectedStandIns>, 3> holes_;
     std::array<UncertainMean, 3> uncertain_;
     std::array<std::vector<float>, 3> white_course_;
     std::array<double, 3> white_course_mean_{};  // what parts() have of it

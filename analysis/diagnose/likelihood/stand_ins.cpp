@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/numerics/envelope_cholesky.hpp"
 #include "analysis/simulate/sensor_model.hpp"
 
 namespace gyrolog::resolution {
@@ -17,6 +16,8 @@ constexpr std::size_t stand_ins_beyond = 256;
 // Frequencies for each lag, at which a series is looked at. Between two the fastest term falls by 2 % of
 // itself, 1 - cos(pi / 16).
 constexpr std::size_t steps_per_lag = 8;
+// Numbers of factors that are kept: 32 MB.
+constexpr std::size_t kept_values = std::size_t{1} << 22U;
 
 }  // namespace gyrolog::resolution
 
@@ -41,23 +42,15 @@ double least_of_series(std::span<const double> by_lag) {
     return least;
 }
 
-// Missing samples that are taken together, in the order of their slots.
-struct Together {
-    std::size_t begin = 0;
-    std::size_t end = 0;
-    std::size_t kept_end = 0;  // Those that follow tell of the ones before only.
-};
-
-// Calls take(together, factor) for all parts of the missing samples. What is taken together is eliminated
-// from its end on: so the first of them do not depend on the last.
+// Calls take(part) for all parts of the missing samples.
 template <typename Take>
 void for_each_part(std::span<const std::size_t> slots, const InverseCovariance& inverse, Take take) {
     const std::vector<double>& by_lag = inverse.by_lag;
     std::vector<double> row;
-    for (Together part; part.begin < slots.size(); part.begin = part.kept_end) {
-        part.end = std::min(part.begin + resolution::stand_ins_together, slots.size());
-        part.kept_end = part.end == slots.size() ? part.end : part.end - resolution::stand_ins_beyond;
-        EnvelopeCholesky factor(inverse.least);
+    for (std::size_t begin = 0; begin < slots.size();) {
+        const std::size_t end = std::min(begin + resolution::stand_ins_together, slots.size());
+        const std::size_t kept_end = end == slots.size() ? end : end - resolution::stand_ins_beyond;
+        StandInPart part{begin, end, kept_end, EnvelopeCholesky(inverse.least)};
         std::size_t last = part.end;  // of the slots, the first that is too far away
         for (std::size_t place = part.end; place-- > part.begin;) {
             while (slots[last - 1] - slots[place] >= by_lag.size()) { --last; }
@@ -65,17 +58,18 @@ void for_each_part(std::span<const std::size_t> slots, const InverseCovariance& 
             for (std::size_t other = last; other-- > place;) {
                 row.push_back(by_lag[slots[other] - slots[place]]);
             }
-            factor.add_row(row);
+            part.factor.add_row(row);
         }
-        take(part, factor);
+        begin = kept_end;
+        take(std::move(part));
     }
 }
 
 // Of the slots' values x the steps d by C d = right + L e, where C = L L' is the inverse covariance among
-// them.
-template <typename Right, typename Normal>
+// them. `for_each`: calls what it is given for all parts.
+template <typename ForEach, typename Right, typename Normal>
 void take_steps(std::span<float> values, std::span<const std::size_t> slots, const InverseCovariance& inverse,
-                Right right_of, Normal normal_of) {
+                ForEach for_each, Right right_of, Normal normal_of) {
     std::vector<double> steps(slots.size(), 0.0);
     // With the steps that those before `begin` have taken.
     const auto right_side = [&](std::size_t place, std::size_t begin) {
@@ -87,18 +81,20 @@ void take_steps(std::span<float> values, std::span<const std::size_t> slots, con
         }
         return sum;
     };
-    for_each_part(slots, inverse, [&](const Together& part, const EnvelopeCholesky& factor) {
-        std::vector<double> step(factor.size());
+    for_each([&](const StandInPart& part) {
+        std::vector<double> step(part.factor.size());
         for (std::size_t i = 0; i < step.size(); ++i) { step[i] = right_side(part.end - 1 - i, part.begin); }
-        step = factor.solve_lower(std::move(step));
+        step = part.factor.solve_lower(std::move(step));
         for (std::size_t i = 0; i < step.size(); ++i) { step[i] += normal_of(slots[part.end - 1 - i]); }
-        step = factor.solve_transposed(std::move(step));
+        step = part.factor.solve_transposed(std::move(step));
         for (std::size_t place = part.begin; place < part.kept_end; ++place) {
             steps[place] = step[part.end - 1 - place];
         }
     });
     for (std::size_t i = 0; i < slots.size(); ++i) { values[slots[i]] += static_cast<float>(steps[i]); }
 }
+
+constexpr auto none = [](std::size_t) { return 0.0; };
 
 }  // namespace
 
@@ -129,27 +125,49 @@ void draw_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
                     std::span<const double> weighted, const InverseCovariance& expectation,
                     const InverseCovariance& scatter, const RandomStream& noise) {
     const auto towards = [&](std::size_t slot) { return -weighted[slot]; };
-    const auto normal = [&](std::size_t slot) { return noise.normal(slot); };
-    const auto none = [](std::size_t) { return 0.0; };
+    const auto worked_out = [&](const InverseCovariance& inverse) {
+        return [&](const auto& take) { for_each_part(slots, inverse, take); };
+    };
     if (expectation.by_lag == scatter.by_lag) {
-        take_steps(values, slots, scatter, towards, normal);
+        take_steps(values, slots, scatter, worked_out(scatter), towards,
+                   [&](std::size_t slot) { return noise.normal(slot); });
     } else {
-        take_steps(values, slots, expectation, towards, none);
-        take_steps(values, slots, scatter, none, normal);
+        take_steps(values, slots, expectation, worked_out(expectation), towards, none);
+        scatter_stand_ins(values, slots, scatter, noise);
     }
 }
 
-void expect_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
-                      std::span<const double> weighted, const InverseCovariance& expectation) {
+void scatter_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
+                       const InverseCovariance& inverse, const RandomStream& noise) {
     take_steps(
-        values, slots, expectation, [&](std::size_t slot) { return -weighted[slot]; },
-        [](std::size_t) { return 0.0; });
+        values, slots, inverse, [&](const auto& take) { for_each_part(slots, inverse, take); }, none,
+        [&](std::size_t slot) { return noise.normal(slot); });
+}
+
+ExpectedStandIns::ExpectedStandIns(std::vector<std::size_t> slots, InverseCovariance inverse)
+    : slots_(std::move(slots)), inverse_(std::move(inverse)) {
+    std::size_t values = 0;
+    for_each_part(slots_, inverse_, [&](StandInPart part) {
+        values += part.factor.distinct_rows() * inverse_.by_lag.size();
+        if (values <= resolution::kept_values) { parts_.push_back(std::move(part)); }
+    });
+    if (values > resolution::kept_values) { parts_ = {}; }
+}
+
+void ExpectedStandIns::expect(std::span<float> values, std::span<const double> weighted) const {
+    const auto for_each = [&](const auto& take) {
+        if (parts_.empty()) { return for_each_part(slots_, inverse_, take); }
+        for (const StandInPart& part : parts_) { take(part); }
+    };
+    take_steps(
+        values, slots_, inverse_, for_each, [&](std::size_t slot) { return -weighted[slot]; }, none);
 }
 
 double stand_ins_log_density_nats(std::span<const std::size_t> slots, std::span<const double> weighted,
                                   const InverseCovariance& inverse) {
     double nats = 0.0;
-    for_each_part(slots, inverse, [&](const Together& part, const EnvelopeCholesky& factor) {
+    for_each_part(slots, inverse, [&](const StandInPart& part) {
+        const EnvelopeCholesky& factor = part.factor;
         std::vector<double> normal(factor.size());
         for (std::size_t i = 0; i < normal.size(); ++i) { normal[i] = weighted[slots[part.end - 1 - i]]; }
         normal = factor.solve_lower(std::move(normal));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/diagnose/likelihood/spectral_bins.hpp"
+#include "analysis/numerics/envelope_cholesky.hpp"
 #include "analysis/simulate/counter_random.hpp"
 
 namespace gyrolog {
@@ -32,9 +33,35 @@ void draw_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
                     std::span<const double> weighted, const InverseCovariance& expectation,
                     const InverseCovariance& scatter, const RandomStream& noise);
 
-// The function sets the expectation alone: x_M - C_MM^-1 (C x)_M, linear in all values.
-void expect_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
-                      std::span<const double> weighted, const InverseCovariance& expectation);
+// Missing samples that are taken together, in the order of their slots, and the factor of their C_MM. What is
+// taken together is eliminated from its end on: so the first of them do not depend on the last.
+struct StandInPart {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    std::size_t kept_end = 0;  // Those that follow tell of the ones before only.
+    EnvelopeCholesky factor;
+};
+
+// The missing slots and the C_MM of one expectation, for many values. The factors are kept where they take no
+// more than some 30 MB, and are else worked out each time.
+class ExpectedStandIns {
+public:
+    ExpectedStandIns(std::vector<std::size_t> slots, InverseCovariance inverse);
+
+    const std::vector<std::size_t>& slots() const { return slots_; }
+    // The function sets the values of the slots to the expectation alone: x_M - C_MM^-1 (C x)_M, linear in
+    // all values.
+    void expect(std::span<float> values, std::span<const double> weighted) const;
+
+private:
+    std::vector<std::size_t> slots_;
+    InverseCovariance inverse_;
+    std::vector<StandInPart> parts_;  // empty where they are not kept
+};
+
+// The function adds noise of covariance C_MM^-1 to the values of the slots.
+void scatter_stand_ins(std::span<float> values, std::span<const std::size_t> slots,
+                       const InverseCovariance& inverse, const RandomStream& noise);
 
 // The function returns the logarithm of the density of the values of `slots` given all others, in nats and
 // without the factors 1 / sqrt(2 pi).
