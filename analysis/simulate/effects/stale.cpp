@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "analysis/recording/recording.hpp"
@@ -46,7 +47,7 @@ public:
 
 private:
     UpdateBeat beat_;
-    double update_ = -1.0;
+    double update_ = std::numeric_limits<double>::quiet_NaN();  // none before the first sample
 };
 
 // A Markov chain: a run ends after each of its samples with chance 1 / run_length, and the share of repeats

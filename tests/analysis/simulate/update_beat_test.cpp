@@ -117,5 +117,35 @@ TEST(UpdateBeat, IsNoneWhereRepeatsComeAtRandomOrNotAtAll) {
     }
 }
 
+// Whatever the phase, the first sample of all repeats none.
+TEST(UpdateBeat, IsThatOfASimulationLikeTheRecording) {
+    SensorModel model = with_effect(white_model(0.01), "stale", {{"eps", 0.3}});
+    for (AxisModel& axis : model.axes) { axis.bias_rad_s = 1.0; }
+    SensorModel noiseless = with_effect(ideal_model(), "stale", {{"eps", 0.3}});
+    for (AxisModel& axis : noiseless.axes) { axis.bias_rad_s = 1.0; }
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        SimulationRequest request;
+        request.seed = 100 + seed;
+        request.like =
+            std::make_shared<const RecordedWorld>(std::make_shared<const Recording>(recorded(model, seed)));
+        const Recording& seen = request.like->recording();
+        const Recording again = simulate_recording(model, request);
+        std::size_t others = 0;
+        for (std::size_t row = 1; row < seen.rows(); ++row) {
+            const auto repeats = [row](const Recording& recording) {
+                const Column& x = *recording.find("gx");
+                return x.value(row) == x.value(row - 1);
+            };
+            others += repeats(seen) == repeats(again) ? 0U : 1U;
+        }
+        // At the beat's very edges, and by no more than a row.
+        EXPECT_LT(others, samples / 50) << seed;
+        const Recording still = simulate_recording(noiseless, request);
+        for (std::size_t row = 0; row < still.rows(); ++row) {
+            ASSERT_NEAR(still.find("gx")->value(row), 1.0, 1e-12) << seed << ' ' << row;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace gyrolog
