@@ -26,6 +26,12 @@ bool are_same(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
+std::size_t EnvelopeCholesky::numbers() const {
+    std::size_t sum = 0;
+    for (const std::vector<double>& row : distinct_rows_) { sum += row.size(); }
+    return sum;
+}
+
 std::vector<double> EnvelopeCholesky::next_row(std::span<const double> row) const {
     const std::size_t i = size();
     const std::size_t first = i + 1 - row.size();

@@ -20,6 +20,8 @@ public:
 
     std::size_t size() const { return rows_.size(); }
     std::size_t distinct_rows() const { return distinct_rows_.size(); }
+    // In the distinct rows of L.
+    std::size_t numbers() const;
     // The solution x of L x = right.
     std::vector<double> solve_lower(std::vector<double> right) const;
     // The solution x of L' x = right. Of independent standard normal numbers it has the covariance C^-1.

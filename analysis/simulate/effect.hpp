@@ -64,11 +64,13 @@ struct EffectDefinition {
     bool noise_only = false;
     // It moves, by a law, the moments at which the world is sampled, and does nothing else.
     bool timing_only = false;
-    // A part of it that acts before the world is asked, on the moments that the samples show.
+    // A second stage, which acts before the world is asked: on the moments that the samples show.
     std::unique_ptr<Stage> (*make_timing)(const EffectUse&) = nullptr;
-    // Those moments are known of an entry that has else no part in the noise-free answer. `world`: null where
-    // any will do.
-    bool (*timing_is_known)(const EffectModel&, const World* world) = nullptr;
+    // By how much that stage makes what samples show older in the mean.
+    double (*mean_age_samples)(const EffectModel&) = nullptr;
+    // Whether the world tells that stage what to do to each sample. It is then a part of the noise-free
+    // answer, whatever `noise_only` says.
+    bool (*timing_is_known)(const EffectModel&, const World& world) = nullptr;
     // The course that an entry needs, if it needs one.
     std::optional<EffectTable> table{};
     // Under this name a diagnosis models with it what no effect of the catalogue is; empty for others.

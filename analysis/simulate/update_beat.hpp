@@ -47,8 +47,9 @@ private:
 
 // The beat in which a recording repeats: most rows that repeat the one before, in all gyro axes at once, come
 // 1 / eps samples apart. Samples count on the recording's grid from its first row. The phase is that of
-// groups of 64 repeats, so that it follows two clocks that drift against each other; chance repeats, which
-// have no phase, only scatter it. Empty where samples repeat at random or not at all.
+// groups of 64 repeats or more (of eight where there are few), so that it follows two clocks that drift
+// against each other; chance repeats, which have no phase, only scatter it. Empty where samples repeat at
+// random, hardly ever or nearly always.
 //
 // eps maximises the periodogram of the repeats' times (Schuster 1898) up to the share of rows that repeat.
 std::optional<UpdateBeat> recorded_beat(const Recording& recording);

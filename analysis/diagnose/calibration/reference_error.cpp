@@ -72,6 +72,7 @@ AngleAndWhite angle_and_white(const Prediction& prediction, const AxisObservatio
 // A filter that a person describes has a spectrum and changes the motion, too.
 bool changes_noise_alone(const EffectModel& entry) {
     const EffectDefinition& effect = *find_effect(entry.effect);
+    if (effect.make_timing != nullptr) { return false; }
     if (effect.noise_only || effect.signature == nullptr) { return effect.noise_only; }
     const EffectSignature& signature = *effect.signature;
     const bool is_filter = signature.changes_mean || signature.method == EvidenceMethod::described;

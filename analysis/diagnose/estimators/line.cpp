@@ -341,8 +341,8 @@ private:
     // What else the model has, a delay or a scale, acts on what is added: entries are such that the line
     // comes out as it was seen.
     void refer_to_model(Finding& finding) const {
-        SensorModel model =
-            without_noise(without_what_is_recorded(prediction_->model(), prediction_->world()), nullptr);
+        SensorModel model = without_noise(
+            without_what_is_recorded(prediction_->model(), prediction_->world()), prediction_->world());
         model.full_scale_rad_s = model.saturation_rad_s = 1e6;
         for (EffectModel& entry : finding.entries) {
             const std::size_t axis = axis_of(entry);
@@ -368,7 +368,7 @@ private:
     }
 
     double world_time_per_time(SensorModel model) const {
-        // A beat of repeats moves single samples, and none in the mean.
+        // What is held again and again keeps the world's pace.
         std::erase_if(model.effects,
                       [](const EffectModel& entry) { return find_effect(entry.effect)->noise_only; });
         SensorSimulator simulator(model, prediction_->rate_hz(), 1);
@@ -394,7 +394,7 @@ private:
                 const double c = std::cos(angle);
                 const double s = std::sin(angle);
                 const double y = (after.rate_rad_s[axis][i] - before.rate_rad_s[axis][i]) * deg_per_rad;
-                // What repeats is not judged, and comes at phases of its own.
+                // Repeats are not judged; and a beat has them where the line is oldest.
                 if (std::exchange(last, y) == y) { continue; }
                 cc += c * c;
                 cs += c * s;

@@ -313,6 +313,8 @@ Finding RepeatEstimator::finding_of(const Quantities& moving, const Excess& exce
         entry.axes.emplace_back(axis_names[moving.axes[c]]);
         finding.where.axes.push_back(moving.axes[c]);
     }
+    // What all axes do that carry news, the sensor does.
+    if (finding.where.axes == moving.axes) { entry.axes.assign(axis_names.begin(), axis_names.end()); }
     finding.entries = {std::move(entry)};
     finding.sd = {{{"eps", excess.eps_sd}}};
     finding.where.structure = effect_->signature->structure;

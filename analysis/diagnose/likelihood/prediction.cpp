@@ -83,7 +83,7 @@ SensorModel faultless(const SensorModel& model) {
     sensor.latency_s = model.latency_s;
     std::ranges::copy_if(model.effects, std::back_inserter(sensor.effects), [](const EffectModel& entry) {
         const EffectDefinition& effect = *find_effect(entry.effect);
-        return effect.timing_only || effect.timing_is_known != nullptr;
+        return effect.timing_only || effect.make_timing != nullptr;
     });
     return sensor;
 }
@@ -105,8 +105,8 @@ bool shapes_the_motion(const SensorModel& model) {
 }
 
 // What changes the model's answer to a world, and nothing else.
-SensorModel noiseless_and_certain(const SensorModel& model, const World& world) {
-    SensorModel noiseless = without_noise(model, &world);
+SensorModel noiseless_and_certain(const SensorModel& model, const RecordedWorld& world) {
+    SensorModel noiseless = without_noise(model, world);
     for (AxisModel& axis : noiseless.axes) { axis.sd_rel.clear(); }
     noiseless.sd_rel.clear();
     noiseless.sd_abs.clear();
@@ -175,7 +175,7 @@ std::optional<std::string> diagnosis_refusal(const Recording& recording) {
     return std::nullopt;
 }
 
-SensorModel without_noise(const SensorModel& model, const World* world) {
+SensorModel without_noise(const SensorModel& model, const RecordedWorld& world) {
     SensorModel noiseless = model;
     for (AxisModel& axis : noiseless.axes) {
         const double ramp = axis.noise.R_rad_per_s2;
@@ -187,10 +187,13 @@ SensorModel without_noise(const SensorModel& model, const World* world) {
     noiseless.temp_noise_C = 0.0;
     noiseless.ref_noise_rad_s = 0.0;
     noiseless.acc_noise_m_s2 = 0.0;
-    std::erase_if(noiseless.effects, [world](const EffectModel& entry) {
+    std::erase_if(noiseless.effects, [&](const EffectModel& entry) {
         const EffectDefinition& effect = *find_effect(entry.effect);
-        const bool has_timing = effect.timing_is_known != nullptr && effect.timing_is_known(entry, world);
-        return effect.noise_only && !has_timing;
+        if (!effect.noise_only) { return false; }
+        if (effect.make_timing == nullptr) { return true; }
+        if (effect.timing_is_known(entry, world)) { return false; }
+        noiseless.latency_s += effect.mean_age_samples(entry) / world.recording().rate_hz;
+        return true;
     });
     return noiseless;
 }

@@ -172,7 +172,8 @@ std::array<std::vector<float>, 3> noise_free_response(const Prediction& predicti
                                                       std::shared_ptr<const RecordedWorld> world,
                                                       const SensorModel& model);
 
-// The model with nothing random left in it, as far as it is not told by the world; null: any will do.
-SensorModel without_noise(const SensorModel& model, const World* world);
+// The model with nothing random left in it but what the world tells. Of the moments that samples show their
+// mean stays.
+SensorModel without_noise(const SensorModel& model, const RecordedWorld& world);
 
 }  // namespace gyrolog

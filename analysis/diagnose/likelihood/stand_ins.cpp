@@ -148,7 +148,7 @@ ExpectedStandIns::ExpectedStandIns(std::vector<std::size_t> slots, InverseCovari
     : slots_(std::move(slots)), inverse_(std::move(inverse)) {
     std::size_t values = 0;
     for_each_part(slots_, inverse_, [&](StandInPart part) {
-        values += part.factor.distinct_rows() * inverse_.by_lag.size();
+        values += part.factor.numbers();
         if (values <= resolution::kept_values) { parts_.push_back(std::move(part)); }
     });
     if (values > resolution::kept_values) { parts_ = {}; }

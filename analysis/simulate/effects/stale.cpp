@@ -19,6 +19,11 @@ bool is_whole_beat(const EffectModel& entry) {
     return on_all && EffectValues(entry)["run_length"] == 0.0;
 }
 
+// Of the samples that repeat none.
+double mean_age_samples(const EffectModel& entry) {
+    return is_whole_beat(entry) && EffectValues(entry)["eps"] > 0.0 ? 0.5 : 0.0;
+}
+
 // Null unless the world's beat is the entry's: both repeat as often, as far as chance would tell two numbers
 // of repeats apart.
 const UpdateBeat* recorded_beat_of(const EffectModel& entry, const World* world) {
@@ -90,11 +95,11 @@ private:
 };
 
 std::unique_ptr<Stage> make_update_instants(const EffectUse& use) {
-    return is_whole_beat(use.entry()) ? std::make_unique<UpdateInstants>(use) : nullptr;
+    return mean_age_samples(use.entry()) > 0.0 ? std::make_unique<UpdateInstants>(use) : nullptr;
 }
 
-bool knows_updates(const EffectModel& entry, const World* world) {
-    return is_whole_beat(entry) && (world == nullptr || recorded_beat_of(entry, world) != nullptr);
+bool knows_updates(const EffectModel& entry, const World& world) {
+    return recorded_beat_of(entry, &world) != nullptr;
 }
 
 template <typename Pattern>
@@ -140,7 +145,8 @@ constexpr EffectParam stale_params[] = {
      .meaning = "share of the samples that repeat: 1 less the sensor's update rate over the polling rate",
      .range = EffectParam::Range::share,
      .plausible_from = 1e-4,
-     .plausible_to = 0.45},
+     .plausible_to = 0.45,
+     .most = 0.999},
     {.name = "run_length",
      .meaning =
          "0: repeats come in a beat; else at random, in runs of this mean number, geometric, at least 1",
@@ -186,13 +192,15 @@ constinit const EffectDefinition stale_effect = {
     .name = "stale",
     .model =
         "sample k repeats the one before, in rate and temperature, where x = k (1 - eps) + phase passes no "
-        "whole number, phase from the seed; on all axes, it shows the world as of the moment when x passed "
+        "whole number, phase from the seed or that of the recording followed; on all axes, it shows the "
+        "world as of the moment when x passed "
         "one; with a run_length by a Markov chain whose share of repeats is eps",
     .source = "",
     .params = stale_params,
     .make = make_stale,
     .noise_only = true,
     .make_timing = make_update_instants,
+    .mean_age_samples = mean_age_samples,
     .timing_is_known = knows_updates,
     .signature = &stale_signature,
 };

@@ -47,13 +47,40 @@ double worst_age_error(const UpdateBeat& beat, const std::vector<double>& ages) 
 }
 
 TEST(UpdateBeat, IsReadFromTheRepeatsOfARecording) {
-    for (const double eps : {1e-3, 0.0722, 0.3, 0.45}) {
+    for (const double eps : {4.1e-4, 1.013e-3, 0.0722, 0.3, 0.4537, 0.78}) {
         for (const std::uint64_t seed : {1U, 2U, 3U}) {
             const SensorModel model = with_effect(white_model(0.01), "stale", {{"eps", eps}});
             const auto beat = recorded_beat(recorded(model, seed));
             ASSERT_TRUE(beat) << eps << ' ' << seed;
-            EXPECT_NEAR(beat->eps(), eps, 1e-5) << seed;
+            EXPECT_NEAR(beat->eps(), eps, 3e-6) << seed;
             EXPECT_LT(worst_age_error(*beat, ages_of(model, seed)), 0.05 + 0.15 * eps) << eps << ' ' << seed;
+        }
+    }
+}
+
+// Short segments, and a hole as long as the recording.
+TEST(UpdateBeat, IsReadAcrossHoles) {
+    for (const double eps : {0.003, 0.0722}) {
+        for (const std::uint64_t seed : {1U, 2U, 3U}) {
+            const SensorModel model = with_effect(white_model(0.01), "stale", {{"eps", eps}});
+            const Recording whole = recorded(model, seed);
+            const std::size_t kept = eps > 0.01 ? 19 : 20'000;
+            const std::size_t period = eps > 0.01 ? 23 : 40'000;
+            Recording parts = whole;
+            parts.segments.clear();
+            for (std::size_t at = 0; at + kept <= samples; at += period) {
+                parts.segments.push_back({at, kept, static_cast<std::int64_t>(at)});
+            }
+            const auto beat = recorded_beat(parts);
+            ASSERT_TRUE(beat) << eps << ' ' << seed;
+            const std::vector<double> ages = ages_of(model, seed);
+            std::size_t late = 0;
+            for (const Segment& segment : parts.segments) {
+                for (std::size_t k = segment.first; k < segment.first + segment.count; ++k) {
+                    late += std::fabs(beat->at(k).age_samples - ages[k]) > 0.1 ? 1U : 0U;
+                }
+            }
+            EXPECT_LT(static_cast<double>(late), 0.05 * samples) << eps << ' ' << seed;
         }
     }
 }

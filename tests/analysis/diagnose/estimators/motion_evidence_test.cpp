@@ -8,11 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnose/estimators/line.hpp"
 #include "analysis/diagnose/estimators/mean_response.hpp"
 #include "analysis/diagnose/estimators/saturation.hpp"
 #include "analysis/diagnose/likelihood/corrected_model.hpp"
 #include "analysis/diagnose/likelihood/denoised_reference.hpp"
 #include "analysis/diagnose/selection/forward_selection.hpp"
+#include "analysis/numerics/square.hpp"
 #include "tests/analysis/diagnose/observed.hpp"
 
 namespace gyrolog {
@@ -175,6 +177,39 @@ TEST(MotionEvidence, FindsALatencyFarBeyondTheTrials) {
     ASSERT_TRUE(finding);
     EXPECT_NEAR(finding->entries.front().params.at("delay_s"), 0.05, 4.0 * finding->sd.front().at("delay_s"));
     EXPECT_LT(finding->sd.front().at("delay_s"), 1e-3);
+}
+
+// A sample of a beat is up to a whole sample old, as its repeats tell.
+TEST(MotionEvidence, OfABeatThatTheModelHasIsNone) {
+    const SensorModel model = with_effect(moving_sensor(), "stale", {{"eps", 0.0722}});
+    const auto recording = recorded(model, 24'000, 43, world_without_rests());
+    const auto prediction = prediction_of(recording, model);
+    EXPECT_LT(response_nats("latency", recording, model), 3.0);
+    EXPECT_LT(evidence(found(make_line_estimator, "tone", recording, model)), 3.0);
+    const Observation seen(prediction, recording, 1);
+    const Observation without(prediction->with(moving_sensor()), recording, 1);
+    double left = 0.0;
+    double left_without = 0.0;
+    for (std::size_t slot = 0; slot < prediction->length(); ++slot) {
+        if (!seen.present()[slot]) { continue; }
+        left += square(static_cast<double>(seen.axis(0).residual_rad_s[slot]));
+        left_without += square(static_cast<double>(without.axis(0).residual_rad_s[slot]));
+    }
+    EXPECT_LT(left, 0.01 * left_without);
+}
+
+// Of a beat that the recording has not, its samples are half a sample old in the mean.
+TEST(MotionEvidence, OfABeatThatIsNotRecordedIsOfItsMeanAge) {
+    const SensorModel model = moving_sensor();
+    const auto recording = recorded(model, 24'000, 43, world_without_rests());
+    const auto prediction = prediction_of(recording, model);
+    SensorModel older = model;
+    older.latency_s += 0.5 / recording->rate_hz;
+    const auto in_mean = noise_free_response(*prediction, older);
+    EXPECT_EQ(noise_free_response(*prediction, with_effect(model, "stale", {{"eps", 0.0722}})), in_mean);
+    EXPECT_NE(noise_free_response(*prediction, model), in_mean);
+    const SensorModel read_twice = with_effect(model, "stale", {{"eps", 0.0722}, {"run_length", 1.0}});
+    EXPECT_EQ(noise_free_response(*prediction, read_twice), noise_free_response(*prediction, model));
 }
 
 // Its lag looks like latency, what it takes off the motion like noise; only with it nothing else is left.

@@ -1,5 +1,6 @@
 #include "analysis/diagnose/estimators/repeats.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -35,6 +36,18 @@ TEST(Repeats, AreFoundWithTheirShareOnAllAxes) {
         EXPECT_EQ(finding->where.structure, "duplicated_samples");
         EXPECT_FALSE(effect_refusal(finding->entries.front()));
     }
+}
+
+// What says one thing all the time belongs to the sensor as well, and what is not recorded.
+TEST(Repeats, OfAllAxesThatMoveAreTheSensors) {
+    const SensorModel model = typical_mpu9250();
+    Recording recording = *recorded(with_effect(model, "stale", {{"eps", 0.05}}), ten_minutes, 3);
+    std::ranges::fill(std::get<std::vector<std::int16_t>>(recording.columns[1].data), std::int16_t{3});
+    recording.columns.erase(recording.columns.begin());
+    const auto finding = repeats(std::make_shared<const Recording>(std::move(recording)), model);
+    ASSERT_TRUE(finding);
+    EXPECT_EQ(finding->where.axes, (std::vector<std::size_t>{2}));
+    EXPECT_EQ(finding->entries.front().axes, (std::vector<std::string>{"x", "y", "z"}));
 }
 
 TEST(Repeats, AtRandomHaveTheLengthOfTheirRuns) {

@@ -153,6 +153,29 @@ TEST(StandIns, OfALongHoleBesideStrongSlowNoiseAreNoLarger) {
     for (const float value : values) { ASSERT_LT(std::fabs(value), 6.0 * sd); }
 }
 
+// Kept factors answer as those that are worked out anew, whatever the values.
+TEST(StandIns, ExpectedOnceAreThoseOfEveryDraw) {
+    const SpectralBins bins = spectral_bins(length, rate_hz);
+    std::vector<double> density;
+    for (const SpectralBin& bin : bins) { density.push_back((bin.f_hz < 0.8 ? 1e2 : 1.0) / rate_hz); }
+    const InverseCovariance inverse = inverse_covariance(bins, density, rate_hz, length, 64);
+    std::vector<std::size_t> slots;
+    for (std::size_t i = 100; i < 9000; i += i % 7 == 0 ? 40 : 3) { slots.push_back(i); }
+    const ExpectedStandIns expected(slots, inverse);
+    for (const std::uint64_t seed : {1U, 2U}) {
+        const RandomStream draws(seed, 2);
+        std::vector<double> weighted(length);
+        for (std::size_t i = 0; i < length; ++i) { weighted[i] = draws.normal(i); }
+        std::vector<float> kept(length, 1.0F);
+        expected.expect(kept, weighted);
+        scatter_stand_ins(kept, slots, autoregression, RandomStream(3, 4));
+        std::vector<float> drawn(length, 1.0F);
+        draw_stand_ins(drawn, slots, weighted, inverse, autoregression, RandomStream(3, 4));
+        for (const std::size_t slot : slots) { ASSERT_FLOAT_EQ(kept[slot], drawn[slot]) << slot; }
+        EXPECT_NE(kept[slots.front()], 1.0F);
+    }
+}
+
 // Of every 97 rows one is left out, of every ninth 97 five more, and once half a second.
 std::shared_ptr<const Recording> with_holes(Recording recording) {
     const Segment whole = recording.segments.front();
